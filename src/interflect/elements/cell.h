@@ -5,7 +5,7 @@
 namespace interflect::detail {
 
 /// Square or triangle of an element in the parameter domain of its patch: local (s, t) maps to (u + size s, v + size
-/// t). A triangle's central child is inverted: its `size` has the opposite sign.
+/// t). A triangle's central child has a `size` of opposite sign.
 struct Cell {
     float u = 0, v = 0, size = 1;
 
@@ -13,14 +13,13 @@ struct Cell {
     Parameters centre(bool triangle) const { return triangle ? at(1.0f / 3, 1.0f / 3) : at(0.5f, 0.5f); }
 
     /// Child k of the regular 1:4 subdivision. Square: k = 2 (upper half in v) + (upper half in u). Triangle: child 3
-    /// is central, the others contain corner k.
+    /// is central; child k < 3 contains corner k.
     Cell child(unsigned k, bool triangle) const {
         const float half = 0.5f * size;
         const bool central = triangle & (k == 3);
         return {u + half * static_cast<float>(k & 1u), v + half * static_cast<float>(k >> 1), central ? -half : half};
     }
 
-    /// Index of the child that contains a point.
     unsigned child_at(Parameters p, bool triangle) const {
         const float per_size = 1 / size;  // exact: a power of two
         const float s = (p.u - u) * per_size, t = (p.v - v) * per_size;

@@ -13,7 +13,6 @@
 
 namespace interflect::detail {
 
-/// Elements per task of a parallel sweep (parallel_for_ranges).
 inline constexpr std::size_t elements_at_once = 1 << 13;
 
 /// Quadtrees of elements over the patches of a scene; 11 bytes per element. Element i < patch_count() is the root of
@@ -55,14 +54,14 @@ class ElementForest {
         __builtin_prefetch(geometry + 64);
     }
 
-    /// First of the four children.
+    /// First of the four children; `none` for a leaf.
     std::uint32_t first_child(std::uint32_t e) const {
         const std::uint32_t child = std::atomic_ref(nodes_[e].first_child).load(std::memory_order_acquire);
         return child >= being_made ? none : child;
     }
     bool is_leaf(std::uint32_t e) const { return first_child(e) == none; }
     std::vector<std::uint32_t> leaves() const;  ///< In ascending order.
-    /// Leaf below `root` that contains `p`, ignoring elements from `limit` on.
+    /// Returns the leaf below `root` that contains `p`, ignoring elements from `limit` on.
     std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const {
         return leaf_below(root, Cell(), p, limit);
     }
@@ -77,7 +76,7 @@ class ElementForest {
     /// @return  Old index of each element first + i.
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
-    /// Parents of all blocks of siblings in order, the input of rebuild().
+    /// Returns the parents of all blocks of siblings in order, the input of rebuild().
     std::vector<std::uint32_t> subdivided() const;
     /// Recreates the elements of another forest of the same scene in a forest of roots.
     /// @throws InputError if an element cannot be subdivided in this order.
@@ -94,7 +93,7 @@ class ElementForest {
     void for_siblings_from_leaves(const Body& body) const;
 
   private:
-    static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are being created
+    static constexpr std::uint32_t being_made = 0xfffffffeu;
 
     struct Node {
         std::uint32_t first_child;

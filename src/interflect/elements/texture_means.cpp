@@ -19,7 +19,6 @@ bool is_parallelogram(const std::array<Vector, 4>& x) {
     return twist.length() <= rounding * ((x[2] - x[0]).length() + (x[3] - x[1]).length());
 }
 
-/// Whether position and texture coordinates are linear in (u, v).
 bool is_linear(const Scene& scene, const Patch& patch) {
     std::array<V3f, 4> corners;
     std::array<V2f, 4> coordinates;
@@ -30,7 +29,7 @@ bool is_linear(const Scene& scene, const Patch& patch) {
     return is_parallelogram(corners) && is_parallelogram(coordinates);
 }
 
-/// Twice the area of a triangle on a patch [m^2], accurate below the rounding of positions.
+/// Returns twice the area of a triangle on a patch [m^2], accurate below the rounding of positions.
 double doubled_area(const PatchGeometry::Shape& shape, const std::array<Parameters, 3>& p) {
     const auto edge = [&](const Parameters& a, const Parameters& b) {
         const double au = a.u, av = a.v, bu = b.u, bv = b.v;

@@ -9,14 +9,14 @@
 
 namespace interflect::detail {
 
-/// Area-weighted means of textures over cells. With linear texture coordinates, a cell has exactly the mean of its
-/// children, to rounding. Other quadrilaterals are approximated by 32 triangles per cell.
+/// Area-weighted means of textures over cells. With linear texture coordinates, a cell has the mean of its children, to
+/// rounding. Other quadrilaterals are approximated by 32 triangles per cell.
 class TextureMeans {
   public:
     /// @param scene  Valid; must outlive this.
     explicit TextureMeans(const Scene& scene);
 
-    /// @param texture  Index; none: the mean is 1.
+    /// Returns 1 without a texture (`none`).
     Rgb mean(std::uint32_t texture, const Patch& patch, const PatchGeometry& geometry, const Cell& cell) const;
 
   private:

@@ -35,7 +35,7 @@ struct Run {
     std::optional<Solution> finished;  // cached solution()
 
     void dim(std::size_t group, float factor);
-    /// Copies the forest, which grows.
+    /// Copies the growing forest.
     Solution snapshot();
     /// @throws std::runtime_error if the data are inconsistent.
     void archive(StateArchive& archive);

@@ -25,7 +25,7 @@ void limit_time(SolverState& state) {
     state.stop.limit_time(state.start, state.options.limits.time - state.earlier_seconds);
 }
 
-/// Interruption discards the work. @throws Interrupted
+/// Runs work that an interruption discards. @throws Interrupted
 template <class Work>
 void atomically(Run& run, const Work& work) {
     const IterationStart start(run.state);
@@ -95,7 +95,7 @@ void iterate_until(Run& run, const Limits& limits) {
 }  // namespace detail
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
-    // Non-owning: they outlive the solver.
+    // Non-owning: both outlive the solver.
     const std::shared_ptr<const Scene> shared_scene(std::shared_ptr<void>(), &scene);
     const std::shared_ptr<const RayCaster> shared_caster(std::shared_ptr<void>(), &ray_caster);
     Solver solver(shared_scene, options, shared_caster);

@@ -35,8 +35,8 @@ struct Escaped {
 /// level by level, as a structure of arrays with lane refill. This hides memory latency and vectorises.
 class Descent {
   public:
-    /// @param old_size    Size of the forest before the step. The other arguments must outlive this.
-    /// @param importance  Collects importance found by rays, or null.
+    /// @param old_size  Size of the forest before the step. The other arguments must outlive this; `importance` may be
+    /// null.
     Descent(const Materials& materials, ElementForest& forest, const TransportStep& step, std::uint32_t old_size,
             ContributionSums& sums, FoundImportance* importance)
         : materials_(materials),
@@ -53,7 +53,7 @@ class Descent {
         pairs_.next.fill(none);
     }
 
-    /// @param source       Leaf, or old_size + a part of the luminaires' emission (Emission).
+    /// @param source       Leaf, or old_size + index of a part of the luminaires' emission (Emission).
     /// @param contribution Payload of each ray. @param of_groups  Its power by light group.
     /// @param origins      On the leaf's patch; unused for luminaire parts.
     /// @param transmitted  Transmittance before the hits; scales found importance.
@@ -70,16 +70,16 @@ class Descent {
         for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
         ++escaped_.rays;
     }
-    /// On leaves that reflect where they receive; in any order.
+    /// Hit points on leaves that reflect where they receive, in any order.
     const std::vector<StartPoint>& start_points() const { return start_points_; }
-    /// Flushes all contributions.
+    /// Flushes all contributions. @return  Escaped power and rays.
     Escaped finish();
 
   private:
     static constexpr std::size_t lanes = RayPairs::lanes;
     struct RayState {
         std::uint32_t source, patch;
-        std::uint32_t left;        // index in left_
+        std::uint32_t left;
         Parameters start;          // on the source's patch
         Rgb reflectance{0, 0, 0};  // rho_i
     };

@@ -12,7 +12,7 @@
 namespace interflect::detail {
 
 /// Importance at the hit points of rays, summed by source. Its mean estimates the transported importance of a leaf (Eq.
-/// 7, Prikryl et al. 2000), even for small lamps that few importance rays hit.
+/// 7, Prikryl et al. 2000), even of small lamps that few importance rays hit.
 class FoundImportance {
   public:
     /// @param most_per_ray  Maximum importance found by one ray.

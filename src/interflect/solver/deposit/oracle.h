@@ -10,7 +10,7 @@
 
 namespace interflect::detail {
 
-/// Element or luminaire part in the oracle.
+/// One end of a pair in the oracle: an element or a luminaire part.
 struct ElementProxy {
     V3f centre{0, 0, 0};  ///< [m]
     V3f normal{0, 0, 0};
@@ -19,8 +19,8 @@ struct ElementProxy {
     float least_cosine = 0;
 };
 
-/// Estimates an upper bound of the form factor from receiver to shooter: A_j / (pi d^2 + A_j) =: f of a disk, times the
-/// cosines at both ends. These are at least 2 f: parts of close elements face each other more directly.
+/// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j) for a disk, times the
+/// cosines at both ends. Cosines are at least 2 f: parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
     // By value and branch-free, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
@@ -38,7 +38,7 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
 
 /// Refinement test for a pair of elements. Depends on the state before the step, not on other rays.
 struct Oracle {
-    bool refines = false;  ///< False: pairs descend to leaves.
+    bool refines = false;  ///< False: leaves exchange light.
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
     float min_area = 0;  ///< Elements below four times this area are not divided [m^2].

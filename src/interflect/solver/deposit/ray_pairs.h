@@ -34,11 +34,11 @@ struct alignas(64) RayPairs {
     Vectors shooter_centre, shooter_normal;
     Floats shooter_area, shooter_least_cosine;
     Floats reflected;   // largest channel of rho_i B_j
-    Numbers settled;    // accepted or not divisible
+    Numbers settled;    // accepted or indivisible
     Numbers of_power;   // receiver of power, final if settled
     Numbers on_demand;  // an end lacks children
-    Numbers goes_on;    // still in flight
-    Numbers next;       // first of the children to descend to, if any
+    Numbers goes_on;
+    Numbers next;  // first of the children to descend to, if any
 
     /// Settles pairs that the oracle accepts (Eq. 14, 15, Prikryl et al. 2000) or that are too small to divide.
     void evaluate_oracle(const Oracle& oracle);

@@ -41,7 +41,7 @@ class SourcePaths {
         return (shooter > receiver) & (number < lowest);
     }
 
-    /// Selects the largest shooter not larger than the receiver, or the lowest. Larger ones would give the same
+    /// Selects the largest shooter not larger than the receiver, or the lowest. Larger shooters would give the same
     /// received power.
     void choose(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
@@ -75,7 +75,7 @@ class SourcePaths {
     std::vector<Shooter> sources_;
 };
 
-/// Returns the first child, if any; creates it on demand if the forest may grow.
+/// Returns the first child, if any. Creates children on demand if the forest may grow.
 inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t element, bool may_grow) {
     const std::uint32_t child = forest.first_child(element);
     return child == none && may_grow ? forest.subdivide(element) : child;

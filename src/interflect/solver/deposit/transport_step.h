@@ -17,11 +17,11 @@ struct TransportStep : RayPlan {
 
     Radiosity known_light;  ///< Radiosity for the oracle; empty: `light`.
     const Radiosity& light_for_oracle() const { return known_light.empty() ? light : known_light; }
-    bool importance_at_patches = false;  ///< Patches instead of leaves receive importance.
+    bool importance_at_patches = false;
     Oracle oracle;
     /// Random walks complete the transport of this power (Walks).
     bool to_the_end = false;
-    /// Leaves that reflect where they receive (Received::start_points); may be empty.
+    /// Nonzero for leaves that reflect where they receive (Received::start_points); may be empty.
     std::span<const std::uint8_t> reflecting_where_received;
     bool reflects_where_received(std::uint32_t leaf) const {
         return !reflecting_where_received.empty() && reflecting_where_received[leaf] != 0;

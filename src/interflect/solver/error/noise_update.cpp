@@ -13,8 +13,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Mean of y z over siblings: their averaged difference y and new difference z from the parent. E y z = |d|^2 for true
-/// differences d.
+/// Returns the mean of y z over siblings: their averaged difference y and new difference z from the parent. E y z =
+/// |d|^2 for true differences d.
 double measured_signal(const SolverState& state, const Estimate& fresh, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t parent = forest.parent(first);

@@ -9,7 +9,7 @@ namespace {
 
 /// Siblings are under-sampled below this fraction of their parent's rays.
 constexpr float under_sampled = 0.125f;
-/// Largest expected ratio of squared differences to those among the parent's siblings: at an edge.
+/// Largest expected ratio of squared differences to those of the parent: at an edge.
 constexpr float highest_expected_decay = 0.5f;
 
 }  // namespace
@@ -65,8 +65,8 @@ AddedError added_error(const SolverState& state, std::uint32_t first) {
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }
 
-/// Applies a Wiener filter with each sibling's own noise, and divides the common loss in proportion to the remaining
-/// variance to preserve the mean.
+/// Applies a Wiener filter with each sibling's own noise. The common loss is divided in proportion to the remaining
+/// variance, which preserves the mean.
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const SiblingVariation variation = sibling_variation(state, first);

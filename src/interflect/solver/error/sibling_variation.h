@@ -12,7 +12,7 @@ namespace interflect::detail {
 /// Assumed relative variation of irradiance in an unmeasured leaf.
 inline constexpr float assumed_variation = 0.1f;
 
-/// Variation of irradiance among siblings, the four children of an element, in squared luminance [(lm/m^2)^2 or
+/// Variation of irradiance among siblings, the four children of an element, as squared luminance [(lm/m^2)^2 or
 /// (W/m^2)^2].
 struct SiblingVariation {
     float spread = 0;  ///< Mean square difference from the parent: signal (true variation) plus noise.
@@ -26,12 +26,12 @@ struct SiblingVariation {
     float signal() const { return is_under_sampled() ? assumed : spread - noise; }
     /// Wiener filter: near 1 if the signal far exceeds the noise, 0 if differences are noise.
     float shrinkage() const;
-    /// Mean square error after shrinkage, beyond the parent's. Unbiased (Stein 1981; the four differences sum to zero:
-    /// three dimensions).
+    /// Mean square error after shrinkage, beyond the parent's. Unbiased (Stein 1981, in three dimensions because the
+    /// four differences sum to zero).
     float risk() const;
 };
 
-/// Of siblings `first` ... `first` + 3.
+/// Variation among siblings `first` ... `first` + 3.
 SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first);
 
 bool uses_shrinkage(const SolverState& state);
@@ -48,7 +48,7 @@ struct Shrinkage {
 };
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first);
 
-/// Of the element's siblings; 0 if unknown.
+/// Signal among an element's siblings; 0 if unknown.
 float signal_beside(const SolverState& state, std::uint32_t e);
 
 inline std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {

@@ -20,8 +20,8 @@ struct BoxImportance {
     double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
 };
 
-/// The exponent allows for few valuable rays among many. Boxes separate these, so the factor restores exponent 1
-/// between boxes.
+/// The exponent allows for few valuable rays among many. Boxes already separate these, so the factor restores exponent
+/// 1 between boxes.
 std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
                                                float exponent) {
     std::vector<BoxImportance> boxes(emission.box_count());
@@ -32,7 +32,7 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
         power[emission.box(i)] += channel_sum(emission.power(i));
     }
     if (boxes.size() == 1) return boxes;
-    double first = 0, second = 0;  // moments of importance
+    double first = 0, second = 0;
     for (std::size_t b = 0; b < boxes.size(); ++b) {
         first += power[b] * boxes[b].mean();
         second += power[b] * boxes[b].mean() * boxes[b].mean();
@@ -65,7 +65,6 @@ void weigh_parts(const Emission& emission, const std::vector<PartImportance>& fo
     }
 }
 
-/// @param numbers  >= 0.
 void raise(std::span<float> numbers, float exponent) {
     if (exponent == 0.75f) {  // default; square roots vectorise
         for (float& x : numbers) x = std::sqrt(x) * std::sqrt(std::sqrt(x));

@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Off without a view.
+/// Returns off without a view.
 ImportanceUse importance_use(const Solution& so_far);
 
 /// psi of every element; empty without a view. Refers to the solution.

@@ -20,7 +20,7 @@ class ViewImportance {
     ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)
         : views_(views.begin(), views.end()), seed_(seed) {}
 
-    /// Adds about `rays_per_view` jittered camera rays per view.
+    /// Adds about `rays_per_view` jittered rays per view.
     void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
                          int rays_per_view);
 
@@ -29,12 +29,12 @@ class ViewImportance {
     std::int64_t views() const { return std::ssize(views_); }
     /// Share of the pictures that shows surfaces.
     double shown_share() const { return shares_ > 0 ? hit_shares_ / shares_ : 0; }
-    /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element: it sums to 1
-    /// over first hits, and surfaces behind panes add their transmitted share.
+    /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element. It sums to 1
+    /// over first hits; surfaces behind panes add their transmitted share.
     /// @param at_patches  Spreads V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
-    /// Call before elements from `size` on are removed.
+    /// Call before the elements from `size` on are removed.
     void shrink(std::uint32_t size);
 
     void archive(StateArchive& archive);

@@ -7,8 +7,8 @@
 
 namespace interflect::detail {
 
-/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) per element (SolverState::history). The
-/// larger tau of newer children only redistributes their parent's mean, which preserves power.
+/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) per element; the history is the number of
+/// rays in its mean. A larger tau of newer children only redistributes their parent's mean, which preserves power.
 void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
            const IterationPlan& plan);
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
@@ -25,11 +25,11 @@ void merge(const SolverState& state, GroupLight& mean, const GroupLight& receive
 void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
                        const IterationPlan& plan);
 
-/// Averages escaped power like irradiance (Eq. 6): that of one iteration includes light of the previous one.
+/// Averages escaped power like irradiance (Eq. 6). The power of one iteration includes light of the previous one.
 void merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan);
 
-/// Adds the rays of an iteration. The inherited mean of new elements is too smooth, so they keep only
-/// `inherited_weight` of their history.
+/// Adds the rays of an iteration. New elements keep only `inherited_weight` of their history, because their inherited
+/// mean is too smooth.
 void update_history(SolverState& state, const IterationPlan& plan);
 
 }  // namespace interflect::detail

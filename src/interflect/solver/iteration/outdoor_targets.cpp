@@ -46,7 +46,6 @@ struct LineFinder {
             if (b.hit.patch == none) keep(b.ray, static_cast<double>(channel_sum(b.transmittance)) / 3);
     }
 
-    /// Finds the lines to the origins of rays begin ... end - 1.
     std::vector<OutdoorLine> find(std::size_t begin, std::size_t end) const {
         RayBatch batch;
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
@@ -213,8 +212,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// Light along each line over the square root of its source's total. Lines of a sun are parallel: only the dimmer sky
-/// can locate a window along them.
+/// Returns the light along each line over the square root of its source's total. Lines of a sun are parallel: only the
+/// dimmer sky can locate a window along them.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -255,7 +254,7 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 }  // namespace
 
 std::int64_t aim_outdoor_light(SolverState& state) {
-    // Many, because a small window transmits little importance; few of all rays.
+    // Many, because a small window transmits little importance, but few of all rays.
     constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());

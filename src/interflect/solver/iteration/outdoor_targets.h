@@ -13,7 +13,7 @@ namespace interflect::detail {
 /// Line along which outdoor light would reach a surface.
 struct OutdoorLine {
     Ray light;          ///< From the surface point, in the direction of the light.
-    std::uint32_t sun;  ///< Index of the sun, or none for sky light.
+    std::uint32_t sun;  ///< Index of the sun; `none` for skies.
     double importance;  ///< Importance-weighted power received per unit of brightness.
 };
 

@@ -24,7 +24,7 @@ inline void pull(const ElementForest& forest, GroupLight& light) {
 void accumulate(GroupLight& sum, const GroupLight& more);
 void scale(GroupLight& light, float factor);
 
-/// Sums the groups. @param dimming  Solution::dimming; excludes groups with factor 0.
+/// @param dimming  Solution::dimming; excludes groups with factor 0.
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
 struct GroupRadiosity {
@@ -34,7 +34,7 @@ struct GroupRadiosity {
     bool emits = true;
 
     std::size_t size() const { return groups ? groups->size() : 0; }
-    /// B of a leaf by one group [lm/m^2 or W/m^2].
+    /// Returns B of a leaf by one group [lm/m^2 or W/m^2].
     Rgb of(const Materials& materials, const ElementForest& forest, std::uint32_t leaf, std::size_t group) const {
         if ((*dimming)[group] == 0) return Rgb(0);
         const MeanSurface surface = materials.surface(forest.patch(leaf), leaf);

@@ -13,8 +13,8 @@
 namespace interflect::detail {
 
 /// Reflectance, exitance and transmittance by patch and, with textures, by element. Refers to the scene. If faces
-/// coincide, one receives all rays, and covered emitters keep the exitance of their uncovered share
-/// (RayCaster::uncovered_share): no place emits twice.
+/// coincide, one receives all rays. Covered emitters keep the exitance of their uncovered share
+/// (RayCaster::uncovered_share), so no place emits twice.
 class Materials {
   public:
     /// Ignores coincident faces.
@@ -25,7 +25,7 @@ class Materials {
     bool has_panes() const { return has_panes_; }
     const Rgb& reflectance(std::uint32_t patch) const { return material(patch).reflectance; }
     const Rgb& exitance(std::uint32_t patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
-    /// Scalar reflectance for importance; exact for grey surfaces.
+    /// Exact for grey surfaces.
     float mean_reflectance(std::uint32_t patch) const { return channel_sum(reflectance(patch)) / 3; }
     void prefetch(std::uint32_t patch) const { __builtin_prefetch(&scene_->patches[patch].material); }
     const Material& material(std::uint32_t patch) const {
@@ -47,7 +47,6 @@ class Materials {
     void grow(const ElementForest& forest) { elements_.grow(forest); }
 
   private:
-    /// @param exitance_share  Factor of each patch's exitance; empty: 1.
     Materials(const Scene& scene, std::vector<float> exitance_share);
 
     const Scene* scene_;
@@ -68,7 +67,7 @@ CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster
 /// Computes B = M + rho H [lm/m^2 or W/m^2]. With textures, inner elements have the mean of their children.
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
-/// Sum of area times value over the roots, in fixed order.
+/// Returns the sum of area times value over the roots, in fixed order.
 RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values);
 
 }  // namespace interflect::detail

@@ -19,7 +19,7 @@ struct MeanSurface {
 /// Mean surfaces of textured elements: 36 bytes for each, and 1 byte for any element.
 class TexturedElements {
   public:
-    /// @param exitance_share  Factor of each patch's exitance; empty: 1.
+    /// @param exitance_share  By patch; empty: 1.
     explicit TexturedElements(const Scene& scene, std::vector<float> exitance_share = {});
 
     bool empty() const { return !means_; }
@@ -33,7 +33,6 @@ class TexturedElements {
         return &surfaces_[4 * std::size_t{slot_of_block_[block]} + (element - patch_count_) % 4];
     }
 
-    /// Adds the elements created since the last call.
     void grow(const ElementForest& forest);
 
   private:

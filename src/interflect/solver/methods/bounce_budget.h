@@ -6,10 +6,9 @@ namespace interflect::detail {
 
 struct BounceRays {
     std::int64_t started = 0;
-    std::int64_t expected = 0;  ///< Traced rays, with random walks.
+    std::int64_t expected = 0;  ///< Traced rays, including random walks.
 };
 
-/// Distributes the rays of a pass over its bounces.
 class BounceBudget {
   public:
     BounceBudget() = default;
@@ -20,7 +19,7 @@ class BounceBudget {
     /// @return        Rays of the next bounce; random walks complete the last one.
     BounceRays next(double unshot);
     bool is_last() const { return is_last_ || left_ == 0; }
-    /// Unshot power summed over the bounces, relative to the first, extrapolated by a geometric series.
+    /// Returns the unshot power summed over the bounces, relative to the first, extrapolated by a geometric series.
     double bounces() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
 
   private:

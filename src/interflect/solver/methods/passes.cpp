@@ -25,7 +25,8 @@ namespace {
 /// Minimum rays of a run that prepares before its first iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Unshot power of a bounce relative to the first, partly weighted by importance; distributes rays over the bounces.
+/// Returns the unshot power of a bounce relative to the first, partly weighted by importance, to distribute rays over
+/// the bounces.
 double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -80,7 +81,7 @@ struct Passes::Pass {
     std::vector<Rgb> unshot = {};                              ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
     StartPoints start_points = {};
-    double first_power = 0, first_weighted_power = 0;  ///< Of the first bounce; see PowerPlan.
+    double first_power = 0, first_weighted_power = 0;  ///< In the first bounce; see PowerPlan.
     Estimate sum = {};
 };
 

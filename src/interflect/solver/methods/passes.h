@@ -27,7 +27,7 @@ class Passes : public IterationMethod {
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
-    /// For other methods: prepare(), then a pass on the resulting mesh.
+    /// Serves other methods: prepare(), then a pass on the resulting mesh.
     void make_first_estimate(SolverState& state);
 
   protected:
@@ -41,7 +41,7 @@ class Passes : public IterationMethod {
 
     /// Unshot power summed over the bounces of the last pass, relative to the first; 0: unknown.
     double bounces_ = 0;
-    bool finds_importance_ = false;  // in the next iteration, after a change of views
+    bool finds_importance_ = false;  // before the next iteration, after a change of views
     ViewChange view_change_;
 };
 

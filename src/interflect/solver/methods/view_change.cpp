@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Probabilities with which power rays start on elements, without luminaires.
+/// Returns the probabilities with which power rays start on elements, without luminaires.
 std::vector<float> power_sampling(const SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
     const ImportanceWeights weights =
@@ -28,8 +28,8 @@ std::vector<float> patch_importance(const SolverState& state) {
     return values;
 }
 
-/// Ratio of the new to the old variance per ray, weighted by the importance of some views. Payloads are proportional to
-/// a source's power over its share of the rays.
+/// Returns the ratio of the new to the old variance per ray, weighted by importance. Payloads are proportional to a
+/// source's power over its share of the rays.
 /// @param importance  By patch.
 float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
                   const std::vector<float>& new_q) {

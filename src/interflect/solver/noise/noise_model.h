@@ -17,7 +17,7 @@ namespace interflect::detail {
 /// Estimate of one iteration, before merging.
 struct Estimate {
     std::vector<Rgb> irradiance = {};    ///< H by element [lm/m^2 or W/m^2].
-    std::vector<float> variance = {};    ///< Of its luminance, for independent rays.
+    std::vector<float> variance = {};    ///< Variance of its luminance, for independent rays.
     GroupLight groups = {};              ///< `irradiance` by light group.
     std::vector<float> importance = {};  ///< Empty if not carried.
     RgbD escaped_power{0, 0, 0};
@@ -31,24 +31,24 @@ class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
-    /// Luminance variance of a mean over `rays` rays: of a root, or of another element's difference from its parent.
-    /// @param mean  Running mean by element.
+    /// Returns the luminance variance of a mean over `rays` rays: of a root, or of another element's difference from
+    /// its parent. @param mean  Running mean by element.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
     bool is_known() const { return iterations_ > 1; }
 
-    /// Noise variance of siblings `first` ... `first` + 3 relative to its area-weighted mean. With few rays, a sibling
+    /// Returns the noise variance of siblings `first` ... `first` + 3 relative to its mean. With few rays, a sibling
     /// may be dark by chance, so the shares tend to 1. @param rays  In the mean of the siblings.
     std::array<float, 4> shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
                                 float rays) const;
 
-    /// New elements have a quarter of their parent's rays on a quarter of the area.
+    /// New elements receive a quarter of their parent's rays on a quarter of the area.
     void grow(const ElementForest& forest, std::uint32_t first);
 
     /// Call before the iteration is merged.
     /// @param history  Rays in the mean; 0: the difference from the parent is unknown.
-    /// @param weight   Of the squared error; inner elements have the sum of their leaves.
+    /// @param weight   Weight of the squared error; inner elements have the sum of their leaves.
     void add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
@@ -73,7 +73,7 @@ class NoiseModel {
         Spread& operator+=(const Spread& other);
     };
 
-    /// Class n of elements hit by about one in 2^n rays. Siblings share a class: one may be hit by chance.
+    /// Returns class n for elements hit by about one in 2^n rays. Siblings share a class: one may be hit by chance.
     std::size_t rarity(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
         const std::uint32_t parent = forest.parent(e), known = parent == none ? e : parent;
         const float h = luminance(mean[known]), rays_per_arrival = per_ray_[known] / (h * h);

@@ -12,7 +12,7 @@ inline constexpr std::size_t finer_levels = 6;
 /// Products of the mean and an independent iteration, summed over siblings. Their expected values are squared errors
 /// and differences without noise, whatever the noise model.
 struct RiskCheck {
-    double weight = 0;             ///< Of the iterations; 0: no data.
+    double weight = 0;             ///< Total weight of iterations; 0: no data.
     double expected = 0;           ///< Squared errors after shrinkage by SiblingVariation::risk().
     double measured = 0;           ///< The same, measured later.
     double signal = 0;             ///< Squared differences of the leaves from their parents.

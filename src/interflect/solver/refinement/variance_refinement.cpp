@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Expected squared differences of children relative to those of siblings: 1/4 for linear irradiance, 1/2 at an edge.
+/// Expected ratio of squared differences of children and siblings: 1/4 for linear irradiance, 1/2 at an edge.
 constexpr float expected_decay = 0.3f;
 /// The same relative to squared irradiance, for a root.
 constexpr float assumed_square = 0.04f;
@@ -28,7 +28,7 @@ constexpr double negligible_gain = 2e-7;
 /// bright corner of a lamp's housing escapes less easily.
 constexpr double negligible_misplacement = 3e-7;
 /// Leaves above this share of the pictures' light reflect where they receive. Total power is then within 0.05% with
-/// lights 2 cm below a ceiling (5% without), light behind a 1 cm slit within 6%.
+/// lights 2 cm below a ceiling (5% without), and light behind a 1 cm slit within 6%.
 constexpr double tolerable_misplacement = 3e-5;
 /// Relative weight of errors on invisible surfaces, whose effect on the view is blurred.
 constexpr double unseen_shape = 0.02;
@@ -60,7 +60,7 @@ class VarianceOracle {
         return blurs || misplaces;
     }
 
-    /// True if unknown.
+    /// Whether power reflected from wrong places matters; true if unknown.
     bool may_misplace(std::uint32_t leaf) const {
         if (state_.history[leaf] == 0 || !state_.noise.is_known()) return true;
         return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > most_misplaced_power_;
@@ -80,7 +80,7 @@ class VarianceOracle {
         const SiblingVariation variation = sibling_variation(state_, forest_.first_child(forest_.parent(leaf)));
         return {expected_decay * variation.signal(), 4 * variation.noise};
     }
-    /// Of the squared luminance error.
+    /// Returns the weight of the squared luminance error.
     double weight(std::uint32_t leaf) const {
         double w = error_weight(state_, measure_, leaf);
         if (!psi_.empty()) {
@@ -89,7 +89,7 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    /// Reflected from wrong places, times importance.
+    /// Returns the power reflected from wrong places, times importance.
     double misplaced_power(std::uint32_t leaf, float signal) const {
         const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
@@ -102,7 +102,7 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
-    /// Light in the pictures or, without a view, all received power.
+    /// Returns the light in the pictures or, without a view, all received power.
     double reference_power() const {
         if (!psi_.empty()) return error_reference(state_, ErrorMeasure::pictures);
         double sum = 0;

@@ -28,7 +28,6 @@ struct WeightSums {
     }
 };
 
-/// Sums are in fixed order.
 WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, StableArray<Weights>& weights) {
     const bool by_power = shares.power > 0 || shares.weighted_power > 0 || shares.power_nearby > 0;
     return parallel_sum(s.forest.size(), elements_at_once, WeightSums(), [&](std::size_t begin, std::size_t end) {

@@ -24,7 +24,7 @@ struct SampleStreams {
     std::uint64_t seed;
     std::vector<std::uint64_t> used;  ///< Points consumed.
     std::vector<std::uint64_t> used_by_parts;
-    std::uint64_t allocations = 0;  ///< Steps so far.
+    std::uint64_t allocations = 0;  ///< Number of steps so far.
 };
 
 /// Generates rays from samples first_sample, first_sample + 1, ... Origins are uniform on the cell, `offset` above the
@@ -37,7 +37,7 @@ void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, Poin
                 std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins,
                 std::span<const StartPoint> starts = {});
 
-/// batch.rays[begin ... end - 1] of one source.
+/// Rays batch.rays[begin ... end - 1] of one source.
 struct SourceRays {
     std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part (Emission).
     std::uint32_t begin, end;
@@ -58,7 +58,7 @@ class RayMaker {
              const SampleStreams& streams);
 
     const RayAllocation& allocation() const { return allocation_; }
-    std::uint32_t elements() const { return elements_; }  ///< Before the step.
+    std::uint32_t elements() const { return elements_; }  ///< Size of the forest before the step.
 
     void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const;
 

@@ -18,9 +18,9 @@ struct RayPlan {
     /// Weight >= 0 by element (0 for inner ones), then by part of `emission`. All 0: no rays.
     std::vector<float> q;
     std::int64_t rays = 0;               ///< N > 0.
-    Radiosity light;                     ///< To shoot; empty: no power.
+    Radiosity light;                     ///< Light to shoot; empty: no power.
     const Emission* emission = nullptr;  ///< Luminaires that shoot, or null.
-    GroupRadiosity groups;               ///< Received separately.
+    GroupRadiosity groups;               ///< Light groups received separately.
     /// True: rays carry B_s over the sum of its channels. False: B_s A_s / (N q_s), unbiased.
     bool equal_payloads = false;
     Importance importance;                      ///< psi to shoot; empty: no importance.
@@ -31,7 +31,7 @@ struct RayPlan {
     bool carries_importance() const { return !importance.empty(); }
 };
 
-/// With the sums over leaves of P_s (Eq. 3) and of P_s psi_s (Eq. 9, 10; 0 if not used).
+/// A plan, with the sums over leaves of P_s (Eq. 3) and of P_s psi_s (Eq. 9, 10; 0 if not used).
 struct PowerPlan {
     RayPlan rays;
     double power = 0, weighted_power = 0;

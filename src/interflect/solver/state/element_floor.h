@@ -7,18 +7,18 @@
 
 namespace interflect::detail {
 
-/// Minimum area of elements, from the views and the size of surfaces.
+/// Minimum area of elements, from views and surface sizes.
 class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);
 
-    /// Smallest area that a pixel of any view covers [m^2]; infinite without views.
+    /// Returns the smallest area that a pixel of any view covers [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// RefinementOptions::min_area if given, else pixel_area() if seen by a view, else unseen() [m^2].
+    /// Returns RefinementOptions::min_area if given, else pixel_area() if a view sees the element, else unseen() [m^2].
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
-    /// For invisible surfaces [m^2]: default_element_size() squared.
+    /// Minimum area of invisible surfaces [m^2]: default_element_size() squared.
     float unseen() const { return unseen_; }
 
   private:

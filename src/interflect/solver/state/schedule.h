@@ -14,7 +14,7 @@ struct IterationPlan {
     bool warms_up = false;                ///< Not averaged: the next iteration replaces it.
     bool is_final = false;                ///< Ends the run, even with fewer traced rays.
     std::uint32_t old_elements = 0;       ///< Elements before the iteration.
-    std::int64_t importance_rays = 0;     ///< Carry importance alone.
+    std::int64_t importance_rays = 0;     ///< Rays that carry importance alone.
     std::int64_t rays_for_new_views = 0;  ///< After a change of views.
     /// Factor of each patch's history after a change of views (ViewChange). Empty: 1.
     std::vector<float> history_factor = {};
@@ -32,8 +32,8 @@ class Schedule {
     std::int64_t start_rays() const;
     /// Records these passes. Power rays are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// It should end within a time limit, because an interrupted iteration is lost. @param seconds  Since the run
-    /// began.
+    /// Plans an iteration that should end within a time limit, because an interrupted one is lost. @param seconds
+    /// Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);
@@ -41,7 +41,7 @@ class Schedule {
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
-    /// Keeps the size of the first iterations.
+    /// The size of the first iterations does not change.
     void set_limits(const Limits& limits);
     void archive(StateArchive& archive);
 
@@ -59,7 +59,7 @@ class Schedule {
     std::int64_t averaged_at_restart_ = 0;
     int finished_ = 0;
     bool is_over_ = false;
-    double planned_at_ = 0;           // [s]
+    double planned_at_ = 0;           // [s], of the last iteration
     std::int64_t planned_after_ = 0;  // rays traced before it
 };
 

@@ -30,7 +30,7 @@ namespace interflect::detail {
 /// Limits of SolverState::targets. 20 halvings at each place reach from 10 km to 1 cm.
 inline constexpr int most_places = 4, most_targets = 80;
 
-/// Persists between iterations.
+/// State that persists between iterations.
 struct SolverState {
     /// @param scene, caster  Must outlive this.
     SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o);
@@ -58,9 +58,9 @@ struct SolverState {
     RiskCheck risk_check;
     PayloadHistogram payloads;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
-    std::int64_t rays_of_other_views = 0;  // averaged before the views changed
+    std::int64_t rays_of_other_views = 0;  // rays averaged before the views changed
     RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
-    double escaped_power_rays = 0;         // rays
+    double escaped_power_rays = 0;         // rays in this mean
 
     Monitor monitor;
     StopRequest stop;  // after a first estimate, also by the time limit
@@ -72,7 +72,7 @@ struct SolverState {
     double seconds_of_this_call() const {
         return std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }
-    /// Of all work, including earlier calls.
+    /// Duration of all work, including earlier calls.
     double seconds() const { return earlier_seconds + seconds_of_this_call(); }
 
     /// @throws std::runtime_error if the data are inconsistent.
@@ -88,7 +88,6 @@ void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 /// Computes the view importance of every element and resets the indirect importance.
 void compute_view_importance(SolverState& state);
 
-/// Refers to its arguments.
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
 
 RgbD radiated_power(const SolverState& state);

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Contributions by final index.
+/// Contributions by final index of the element.
 class RenumberedSums {
   public:
     RenumberedSums(ContributionSums& sums, std::uint32_t old_size, std::vector<std::uint32_t> old_numbers)
@@ -33,7 +33,7 @@ class RenumberedSums {
     std::vector<std::uint32_t> old_numbers_;
 };
 
-/// The parents of dropped elements receive the contributions.
+/// The parents of dropped elements receive their contributions.
 void drop_excess(ElementForest& forest, RenumberedSums& sums, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
@@ -52,13 +52,13 @@ std::vector<PartImportance> found_by_parts(const RayPlan& plan, const RayAllocat
     return parts;
 }
 
-/// Averages the importance that a leaf received with that found by its own rays. A found term has weight 1, received
-/// importance the expected effective number of its rays. These weights do not depend on the estimates, so the mean is
-/// unbiased.
+/// Averages the importance that a leaf received with that found by its own rays. A ray that finds importance has weight
+/// 1; received importance has the expected effective number of its rays. These weights do not depend on the estimates,
+/// so the mean is unbiased.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const FoundImportance& found, const PayloadTotals& payload, std::size_t elements,
            std::vector<float>& received) {
-    // Without incoming importance there is no incoming estimate.
+    // No estimate arrives without importance.
     const double rays_per_importance = payload.importance > 0 ? payload.importance / payload.importance_square : 0;
     constexpr std::size_t blocks_at_once = 16;
     parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {

@@ -16,16 +16,16 @@
 
 namespace interflect::detail {
 
-/// By element. Inner elements have the mean of their children.
+/// Results of a step by element. Inner elements have the mean of their children.
 struct Received {
     std::vector<Rgb> irradiance;  ///< [lm/m^2 or W/m^2]
-    /// Of its luminance, for independent rays (Poisson).
+    /// Variance of its luminance for independent rays (Poisson).
     std::vector<float> variance;
     GroupLight groups;              ///< `irradiance` by light group.
     std::vector<float> importance;  ///< Per area; empty if not carried.
     /// Sum of rho psi at the hits of each luminaire part's rays; empty without importance.
     std::vector<PartImportance> part_importance;
-    StartPoints start_points;  ///< On leaves in reflecting_where_received.
+    StartPoints start_points;  ///< Hit points on leaves in reflecting_where_received.
     PayloadHistogram payloads;
     RgbD shot_power{0, 0, 0};  ///< Received plus escaped [lm or W].
     RgbD escaped_power{0, 0, 0};
@@ -43,7 +43,7 @@ Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_s
 
 Received nothing_received(const TransportStep& step, std::size_t elements);
 
-/// Variance of area-weighted means of independent elements, from the leaves up.
+/// Computes the variance of area-weighted means of independent elements, from the leaves up.
 inline void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {
         double sum = 0, area = 0;  // squared areas exceed the range of a float

@@ -28,7 +28,7 @@ std::uint64_t walk_key(const SampleStreams& streams) {
     return mix(mix(streams.seed, purpose), streams.allocations);
 }
 
-/// Rays per task: amortise it, yet fit the second-level cache.
+/// Rays per task: enough to amortise it, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
 constexpr std::size_t rays_ahead = 32;
 
@@ -72,7 +72,7 @@ struct Shooting {
     Panes panes;
 };
 
-/// Data of one task; one object per thread, reused.
+/// One object per thread, reused.
 struct Batch {
     explicit Batch(const Descent& d) : descent(d) {}
 
@@ -99,12 +99,12 @@ std::optional<FoundImportance> make_found_importance(const TransportStep& step, 
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
-    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // per ray
+    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;
     return std::optional<FoundImportance>(std::in_place, hits * *std::max_element(largest.begin(), largest.end()),
                                           step.rays, forest.size() + step.part_count());
 }
 
-// Steps of a batch: trace, deposit, walk. ContributionSums are integers, so several machines could sum them.
+// Steps of a batch. Their integer sums could be added up over several machines.
 
 void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
     shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
@@ -146,7 +146,7 @@ void deposit(const TransportStep& step, const Shooting& shooting, Batch& batch) 
     descent.finish_batch();
 }
 
-/// @param task  Index of the first ray.
+/// Continues a batch as random walks. @param task  Index of the first ray.
 void walk(const TransportStep& step, const Shooting& shooting, const Walks& walks, std::uint64_t task, Batch& batch) {
     Walkers& walkers = batch.walkers;
     const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {
@@ -164,7 +164,6 @@ void walk(const TransportStep& step, const Shooting& shooting, const Walks& walk
     walks.follow(task, walkers, batch.descent);
 }
 
-/// In any order.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());

@@ -33,7 +33,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 
-/// In the order of transport().
+/// Returns the rays of transport(), in its order.
 std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,
                                 const SampleStreams& streams);
 

@@ -32,20 +32,20 @@ struct Walkers {
     PointBlock points;
 };
 
-/// Random walks that complete a pass (TransportStep::to_the_end). Survival is by reflectance times the transmittance of
-/// crossed panes: rays through panes deposit several times and would otherwise multiply. A walk costs no time for
-/// elements that it does not visit.
+/// Random walks that complete a pass (TransportStep::to_the_end). A particle survives with the probability of its
+/// reflectance times the transmittance of the crossed panes. Otherwise rays through panes, which deposit several times,
+/// would multiply the particles. A walk costs no time for elements that it does not visit.
 class Walks {
   public:
     /// @param elements  Size of the forest before the step; newer elements receive through their ancestors.
     Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
           const TransportStep& step, const ContributionUnits& units, std::uint32_t elements, std::uint64_t key);
 
-    /// The caller appends the filtered power by light group to `received_groups`.
-    /// @param power          Of the ray before any pane.
-    /// @param transmittance  Of the panes in front of the hit.
+    /// Adds a particle. The caller appends its filtered power by light group to `received_groups`.
+    /// @param power          Power of the ray before any pane.
+    /// @param transmittance  Transmittance of the panes before the hit.
     void add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const;
-    /// @param task  Key of the random numbers.
+    /// Traces particles to their end. @param task  Key of the random numbers.
     void follow(std::uint64_t task, Walkers& walkers, Descent& descent) const;
 
   private:

@@ -16,8 +16,8 @@ namespace interflect::detail {
 
 using V3d = Imath::V3d;
 
-/// Unoccluded form factor from a differential area at x to a convex polygon: Lambert's edge sum (1760; Baum et al.
-/// 1989), clipped to the horizon; 0 if x is behind the polygon.
+/// Returns the unoccluded form factor from a differential area at x to a convex polygon: Lambert's edge sum (1760; Baum
+/// et al. 1989), clipped to the horizon. 0 if x is behind the polygon.
 /// @param normal   Unit normal at x.
 /// @param polygon  Three to seven corners [m], counter-clockwise from the lit side.
 double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V3d> polygon);
@@ -48,7 +48,7 @@ class ExchangeEstimator {
     ExchangeEstimator(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t seed)
         : forest_(forest), ray_caster_(ray_caster), panes_(scene, ray_caster), seed_(seed) {}
 
-    /// Whether each extends above the other's plane by more than rounding.
+    /// Whether each element extends above the other's plane by more than rounding.
     bool face_each_other(const ElementPair& pair) const;
 
     /// @param rays  Incremented by the traced rays, at most 2 effort^2.

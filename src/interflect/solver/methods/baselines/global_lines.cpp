@@ -22,7 +22,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Lines per task; a task finds the next crossings of all its lines at a time.
+/// A task finds the next crossings of all its lines at a time.
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
 /// Deposits per line, on average, at which a patch's sums overflow. Normally one; more through panes and the backs of
@@ -42,16 +42,16 @@ struct LineDomain {
         constexpr float margin = 1.0001f;  // for rounding
         radius = margin * std::sqrt(square);
     }
-    /// Disk crossed by the lines of one direction [m^2].
+    /// Area of the disk crossed by the lines of one direction [m^2].
     double cross_section() const {
         return std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
     }
 };
 
-/// Patch that faces a line, and the patch that it sees backwards, if any.
+/// Patch that faces a line, and the patch visible from it backwards, if any.
 struct LineSegment {
     std::uint32_t front, back;
-    bool is_mutual;  ///< Not through the back of a one-sided face.
+    bool is_mutual;  ///< `front` is visible from `back`: not through the back of a one-sided face.
 };
 
 /// Active lines of a task; one object per thread, reused.
@@ -66,7 +66,7 @@ struct LineBundle {
     std::vector<Panes::HitBehind> behind;
 };
 
-/// Directions are uniform on the sphere, crossings on the disk through the centre.
+/// Generates uniform lines: directions on the sphere, crossings on the disk through the centre.
 void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::uint64_t first, LineBundle& bundle) {
     fill_points(set, key, first, bundle.lines.size(), bundle.points);
     bundle.slack.assign(bundle.lines.size(), std::numeric_limits<float>::infinity());
@@ -169,7 +169,7 @@ class LineSums {
     const std::vector<std::int64_t>& started() const { return started_; }
 
   private:
-    /// @param to  Invalid if the light escapes. @param factor  2 unless opposite lines carry the same light.
+    /// @param to  `none` if the light escapes. @param factor  2 unless opposite lines carry the same light.
     void carry(std::uint32_t from, std::uint32_t to, const Rgb& factor) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(factor) * power_per_radiosity_;
         if (to == none) {
@@ -189,8 +189,8 @@ class LineSums {
     std::vector<std::int64_t> squares_, started_, escaped_rays_;
 };
 
-/// Passes with global lines (Sbert 1993, 1997), see docs/method.md: uniform lines in a sphere of radius R around the
-/// scene, along which patches that see each other exchange light.
+/// Passes with global lines (Sbert 1993, 1997); see docs/method.md. Lines are uniform in a sphere of radius R around
+/// the scene. Every two patches that see each other along a line exchange light.
 ///
 /// With N lines that carry B_a 4 pi R^2 / (2 N), the expected power from a to b is A_a F_ab B_a. A line costs 1 + 2 h
 /// rays on average, h = sum A / (4 pi R^2), which determines N. Constant on patches. Cost: O(N h log(patches)).
@@ -241,7 +241,7 @@ class GlobalLines final : public Passes {
     static constexpr std::uint64_t line_purpose = 0x6c696e6573;
     const LineDomain domain_;
     const Panes panes_;
-    double area_ = 0;  // that lines can hit [m^2]
+    double area_ = 0;  // area that lines can hit [m^2]
 };
 
 }  // namespace

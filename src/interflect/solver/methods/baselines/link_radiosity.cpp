@@ -47,13 +47,13 @@ Sphere sphere_around(const Scene& scene, const Patch& patch) {
     return sphere;
 }
 
-/// Upper bound of the exchange between surfaces inside two spheres [m^2].
+/// Returns an upper bound of the exchange between surfaces inside two spheres [m^2].
 double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double area_b) {
     const double gap = std::max(0.0f, (a.centre - b.centre).length() - a.radius - b.radius);
     return area_a * area_b / (std::numbers::pi * gap * gap);
 }
 
-/// Light or importance received over the links, per area. @param area_of  Link::area or Link::mean_area.
+/// Returns light or importance received over the links, per area. @param area_of  Link::area or Link::mean_area.
 template <class T>
 std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, const std::vector<T>& leaving,
                       T (Link::*area_of)() const) {
@@ -149,7 +149,7 @@ void LinkedElements::find_patches_to_link() {
         candidates_.insert(candidates_.end(), some.begin(), some.end());
 }
 
-/// Drops pairs without unoccluded exchange.
+/// Turns candidates into links; drops pairs without unoccluded exchange.
 void LinkedElements::link_candidates() {
     require_room_for(candidates_.size());
     std::vector<Link> made(candidates_.size());
@@ -216,8 +216,8 @@ struct RadiosityRange {
     }
 };
 
-/// Error bound of an exchange [m^2]: the variation of the form factor, and the unoccluded exchange to the degree that
-/// lines of sight differ.
+/// Returns the error bound of an exchange [m^2]: the variation of the form factor, and the unoccluded exchange to the
+/// degree that lines of sight differ.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
     if (transmittance == 0) return exchange.area * bound_if_blocked;

@@ -31,20 +31,20 @@ struct LinkCandidate {
 
 struct RefinementCandidate;
 
-/// Hierarchical radiosity (Hanrahan et al. 1991), a deterministic solver of Eq. 1, Prikryl et al. 2000, for checking
-/// the Monte Carlo methods. A sweep gathers one bounce over the links between elements and ends with push-pull. Form
+/// Hierarchical radiosity (Hanrahan et al. 1991), a deterministic solver of Eq. 1, Prikryl et al. 2000, to check the
+/// Monte Carlo methods. A sweep gathers one bounce over the links between elements and ends with push-pull. Form
 /// factors are integrals (exchange.h); only visibility is sampled.
 ///
 /// Four links to the children of one end replace a link if its error bound exceeds epsilon times the reference power
 /// (oracle_threshold.h). The bound is rho_i B_j A_i times the variation of F_ij over an element (Smits et al. 1992),
 /// including partial occlusion. Links are refined only when light has settled, so no mesh is made for incomplete light.
-/// With importance, psi is transported backwards over the same links, so sum v P = sum psi W on any mesh; bounds are
+/// With importance, psi is transported backwards over the same links, so sum v P = sum psi W on any mesh. Bounds are
 /// weighted by psi_i / psi_max (Eq. 15).
 ///
-/// The run ends when light has settled and no link needs refinement, within limits.rays (except for the first links),
-/// max_elements and min_area. IterationReport::rays are visibility rays, escaped_power reached no surface: in a closed
-/// scene, the error of the form factors. Errors and rays of elements are 0. The same seed gives the same bits for any
-/// number of threads. Cost: O(patches^2 + links).
+/// The run ends when light has settled and no link needs refinement. It stays within limits.rays (except for the first
+/// links), max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
+/// escaped_power is the error of the form factors. The same seed gives the same bits for any number of threads. Cost:
+/// O(patches^2 + links).
 class LinkedElements : public IterationMethod {
   public:
     /// @param state  Must outlive this. @param link_limit  Maximum number of links.

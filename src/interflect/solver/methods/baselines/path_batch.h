@@ -57,7 +57,7 @@ struct PathSums {
     FixedPoint unit;
     std::vector<FixedPoint::Value> received;
     FixedPoint::Value escaped{};
-    std::vector<std::int64_t> started;  ///< By patch.
+    std::vector<std::int64_t> started;  ///< Rays that left each patch.
     std::int64_t rays = 0, escaped_rays = 0;
 
     /// @param hits  Maximum hits of a ray; more than 1 with panes.
@@ -66,7 +66,7 @@ struct PathSums {
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
 
-    /// Upper bound of the expected received power in any channel: emitted power / (1 - rho).
+    /// Returns an upper bound of the expected received power in any channel: emitted power / (1 - rho).
     static double most_expected(const WalkSource& payload) {
         double power = 0, rho = 0;
         for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
@@ -144,7 +144,7 @@ class PathBatch {
         }
     }
 
-    /// A path of source s carries W_s / (N q_s). A source's paths are consecutive points of its sequence.
+    /// Starts paths. A path of source s carries W_s / (N q_s). A source's paths are consecutive points of its sequence.
     void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
         w.particles.resize(static_cast<std::size_t>(end - begin));
         w.make_room_for_rays();
@@ -196,8 +196,8 @@ class PathBatch {
     }
 
     /// Russian roulette and splitting: reflected power continues as a random number of copies with mean n, each with
-    /// 1/n of the power. With n = power * density / quantum, a copy carries the power of a particle emitted there.
-    /// Sampling is systematic.
+    /// 1/n of the power. With n = power * density / quantum, a copy carries the power of a particle emitted there. One
+    /// random number samples all copies systematically.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;

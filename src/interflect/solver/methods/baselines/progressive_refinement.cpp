@@ -24,7 +24,7 @@ constexpr std::int64_t fewest_rays_of_step = 16;
 /// Sum of the weights of all steps, until measured.
 constexpr double assumed_shots = 2;
 
-/// Rays of one series of steps, from darkness to little unshot power. Weights are relative to the initial amount.
+/// Rays of a series of steps, from darkness to little unshot power. Weights are relative to the initial amount.
 struct ShotBudget {
     std::int64_t left;
     double expected;  ///< Sum of the weights of all steps.
@@ -35,7 +35,7 @@ struct ShotBudget {
     std::int64_t share(double weight, double unshot) const {
         return std::llround(std::min(1.0, weight / (expected * unshot)) * static_cast<double>(left));
     }
-    /// Random walks for the remaining rays; a walk shoots its power `expected` times.
+    /// Returns the random walks for the remaining rays; a walk shoots its power `expected` times.
     std::int64_t walks() const {
         return std::max<std::int64_t>(1, std::llround(static_cast<double>(left) / std::max(1.0, expected)));
     }
@@ -75,7 +75,7 @@ struct PowerSeries {
     ImportanceWeights weights;
     std::vector<Rgb> unshot;                           ///< Irradiance.
     Estimate fresh;                                    ///< Sum of the steps.
-    bool emits = true;                                 ///< Next step is the first.
+    bool emits = true;                                 ///< The next step is the first.
     double first_power = 0, first_weighted_power = 0;  ///< Before the first step; see PowerPlan.
 };
 
@@ -106,7 +106,6 @@ bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
     return !is_last;
 }
 
-/// @return  Whether another step follows.
 bool shoot_some_power(SolverState& state, PowerSeries& series) {
     const Radiosity light(state.materials, series.unshot, series.emits);
     auto [plan, power, weighted_power, lost] =
@@ -180,7 +179,7 @@ class ProgressiveRefinement final : public IterationMethod {
     Numbers current_, before_;  // before_: before the iteration
 };
 
-/// Rays that importance lacks of its share alpha of `planned` rays.
+/// Returns the rays that importance lacks of its share alpha of `planned` rays.
 std::int64_t ProgressiveRefinement::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));

@@ -38,7 +38,7 @@ BatchResult follow_paths(SolverState& state, const WalkSource& payload, std::int
     return arrived;
 }
 
-/// For equal, independent contributions.
+/// Assumes equal, independent contributions.
 Estimate independent_contributions(const SolverState& state, const BatchResult& batch) {
     const double power = luminance(integral(*state.forest, batch.irradiance));
     Estimate estimate{.irradiance = batch.irradiance, .escaped_power = batch.escaped};
@@ -63,8 +63,8 @@ BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t ray
     return arrived;
 }
 
-/// Importance that guides particles: of Eq. 10, because leaving power is important for its destination, or on request
-/// of Eq. 9.
+/// Returns the importance that guides particles. Leaving power is important for its destination: hence Eq. 10, or on
+/// request Eq. 9.
 std::vector<float> leading_importance(const Solution& so_far) {
     switch (importance_use(so_far)) {
         case ImportanceUse::off:
@@ -77,7 +77,8 @@ std::vector<float> leading_importance(const Solution& so_far) {
     return so_far.options.experimental.total_importance ? total_importance(so_far) : so_far.indirect_importance;
 }
 
-/// beta + (1 - beta) psi, psi relative to its mean over emitted power: power alone starts the share beta of the paths.
+/// Returns beta + (1 - beta) psi, with psi relative to its mean over emitted power: power alone starts the share beta
+/// of the paths.
 std::vector<float> particle_density(const Solution& so_far, const std::vector<Rgb>& emitted) {
     std::vector<float> density = leading_importance(so_far);
     double power = 0, important = 0;
@@ -130,7 +131,7 @@ void RandomWalks::prepare(SolverState& state) {
     state.schedule.began_with(0, state.importance_rays);
 }
 
-/// Rays that importance lacks of its share alpha of `planned` rays.
+/// Returns the rays that importance lacks of its share alpha of `planned` rays.
 std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));

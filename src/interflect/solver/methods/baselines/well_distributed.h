@@ -42,7 +42,7 @@ class WellDistributedRays : public IterationMethod {
     std::vector<double> shot_by_parts_;  // rays, by luminaire part
     std::vector<Rgb> received_;          // payloads per area, by element and channel [1/m^2]
     GroupLight received_groups_;         // received_ by light group
-    RgbD escaped_{0, 0, 0};              // payloads
+    RgbD escaped_{0, 0, 0};              // payloads that escaped
     std::int64_t total_ = 0;             // N
 };
 
