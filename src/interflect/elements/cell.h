@@ -24,7 +24,7 @@ struct Cell {
         const float per_size = 1 / size;  // exact: a power of two
         const float s = (p.u - u) * per_size, t = (p.v - v) * per_size;
         const bool right = s >= 0.5f, upper = t >= 0.5f, central = triangle & !right & !upper & (s + t >= 0.5f);
-        // Branch-free. No child of a triangle is both right and upper.
+        // No child of a triangle is both right and upper.
         const unsigned k = static_cast<unsigned>(right) | static_cast<unsigned>(upper & !(triangle & right)) << 1;
         return central ? 3 : k;
     }

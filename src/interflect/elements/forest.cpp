@@ -78,7 +78,7 @@ std::uint32_t ElementForest::subdivide(std::uint32_t e) {
     std::atomic_ref<std::uint32_t> slot(nodes_[e].first_child);
     std::uint32_t state = none;
     if (level(e) >= deepest_level || !slot.compare_exchange_strong(state, being_made, std::memory_order_acquire)) {
-        while (state == being_made) {  // being created by another thread, within tens of nanoseconds
+        while (state == being_made) {  // another thread creates them within tens of nanoseconds
             std::this_thread::yield();
             state = slot.load(std::memory_order_acquire);
         }
@@ -109,7 +109,7 @@ std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
     struct Siblings {
         Block block;
         std::array<Node, 4> nodes;
-        std::uint32_t first;  // old index of the first
+        std::uint32_t first;
     };
     std::vector<Siblings> made;
     made.reserve((last - first) / 4);

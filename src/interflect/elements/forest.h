@@ -30,7 +30,7 @@ class ElementForest {
     /// Address space [bytes].
     static constexpr std::size_t reserved_per_element = 11;
 
-    /// @throws InputError unless the scene has the geometry of this forest.
+    /// @throws InputError for a scene of other geometry.
     void require_made_for(const Scene& scene) const;
 
     std::uint32_t patch_count() const { return patch_count_; }
@@ -54,14 +54,14 @@ class ElementForest {
         __builtin_prefetch(geometry + 64);
     }
 
-    /// First of the four children; `none` for a leaf.
+    /// `none` for a leaf.
     std::uint32_t first_child(std::uint32_t e) const {
         const std::uint32_t child = std::atomic_ref(nodes_[e].first_child).load(std::memory_order_acquire);
         return child >= being_made ? none : child;
     }
     bool is_leaf(std::uint32_t e) const { return first_child(e) == none; }
-    std::vector<std::uint32_t> leaves() const;  ///< In ascending order.
-    /// Returns the leaf below `root` that contains `p`, ignoring elements from `limit` on.
+    std::vector<std::uint32_t> leaves() const;
+    /// Leaf below `root` that contains `p`, ignoring elements from `limit` on.
     std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const {
         return leaf_below(root, Cell(), p, limit);
     }
@@ -76,7 +76,7 @@ class ElementForest {
     /// @return  Old index of each element first + i.
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
-    /// Returns the parents of all blocks of siblings in order, the input of rebuild().
+    /// Input of rebuild().
     std::vector<std::uint32_t> subdivided() const;
     /// Recreates the elements of another forest of the same scene in a forest of roots.
     /// @throws InputError if an element cannot be subdivided in this order.
@@ -115,7 +115,7 @@ class ElementForest {
     std::uint64_t scene_fingerprint_;
     std::vector<PatchGeometry> geometry_;
     std::uint32_t patch_count_;
-    /// First element of each generation, then the end. Parents belong to an earlier generation.
+    /// First element of each generation, then the end. Parents belong to earlier generations.
     std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;
@@ -142,14 +142,13 @@ void ElementForest::for_siblings_from_leaves(const Body& body) const {
     for (std::size_t g = generations_.size() - 1; g > 0; --g) for_siblings(generations_[g - 1], generations_[g], body);
 }
 
-/// Copies the parent's value to each element from `first` on.
 template <class T>
 void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {
     values.resize(forest.size());
     for (std::uint32_t e = first; e < forest.size(); ++e) values[e] = values[forest.parent(e)];
 }
 
-/// Adds each parent's value to its children, from the roots down. Values are per unit area.
+/// Adds each parent's value per area to its children, from the roots down.
 template <class T>
 void push(const ElementForest& forest, std::vector<T>& values) {
     forest.for_siblings_from_roots([&](std::uint32_t first) {
@@ -158,7 +157,7 @@ void push(const ElementForest& forest, std::vector<T>& values) {
     });
 }
 
-/// Sets inner elements to the area-weighted mean of their children, from the leaves up.
+/// Sets inner elements to the area-weighted mean of their children.
 template <class T>
 void pull(const ElementForest& forest, std::vector<T>& values) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {

@@ -9,8 +9,8 @@
 
 namespace interflect::detail {
 
-/// Area-weighted means of textures over cells. With linear texture coordinates, a cell has the mean of its children, to
-/// rounding. Other quadrilaterals are approximated by 32 triangles per cell.
+/// Area-weighted means of textures over cells, exact for linear texture coordinates. Other quadrilaterals are
+/// approximated by 32 triangles per cell.
 class TextureMeans {
   public:
     /// @param scene  Valid; must outlive this.

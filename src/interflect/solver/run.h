@@ -16,7 +16,6 @@
 
 namespace interflect::detail {
 
-/// A run of the solver: scene, method and state. See Solver.
 struct Run {
     /// @param caster  Of this scene. @throws InputError as Solver does.
     Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster, const SolveOptions& options);
@@ -31,8 +30,8 @@ struct Run {
     int iteration = 0;
     std::vector<float> known_dimming;  // factors of the stored light
 
-    std::mutex finishing;              // guards `finished`
-    std::optional<Solution> finished;  // cached solution()
+    std::mutex finishing;  // guards `finished`
+    std::optional<Solution> finished;
 
     void dim(std::size_t group, float factor);
     /// Copies the growing forest.

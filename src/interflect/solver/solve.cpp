@@ -49,7 +49,7 @@ void prepare(Run& run) {
     limit_time(state);
 }
 
-/// Plans the next iteration; 0 rays if the run is over. @param rays_asked_for  In total; extends a completed plan.
+/// @param rays_asked_for  In total; extends a completed plan. @return  0 rays if the run is over.
 IterationPlan plan_iteration(Run& run, std::int64_t rays_asked_for) {
     SolverState& state = run.state;
     const IterationPlan next = run.method->plan(state);

@@ -12,7 +12,7 @@
 
 namespace interflect::detail {
 
-/// Contribution of a ray, as integers: three channels of power, squared luminance, importance.
+/// Integers: three channels of power, squared luminance, importance.
 using Contribution = std::array<std::int64_t, 5>;
 inline constexpr std::size_t power_terms = 4, importance_term = 4;
 
@@ -46,8 +46,7 @@ class ContributionSums {
     void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
         for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
     }
-    /// Frees the memory of collected elements, unless the forest is small: clearing new pages is slower than the
-    /// additions.
+    /// Frees collected memory, unless the forest is small: clearing new pages is slower than the additions.
     void release(std::size_t begin, std::size_t end) {
         if (elements_ <= most_kept) return;
         sums_.release(begin, end);
@@ -74,11 +73,11 @@ class ContributionSums {
             bin.deposits[bin.count++] = {element, source & (most_sources - 1), power, importance};
             if (bin.count == bin.deposits.size()) flush(region);
         }
-        /// Limits the table of sources; invalidates their indices.
+        /// Invalidates the indices of sources.
         void release_sources() {
             if (contributions_.size() >= enough_sources) flush_all();
         }
-        /// Adds all bins to the sums; invalidates the indices of sources.
+        /// Invalidates the indices of sources.
         void flush_all() {
             for (std::size_t region = 0; region < regions; ++region) flush(region);
             contributions_.clear();

@@ -126,7 +126,7 @@ inline void Descent::look_up_receiver(std::size_t i) {
         pairs_.importance[i] = step_.oracle.importance[element];
 }
 
-/// Creates children at the larger end of a pair, or settles the pair.
+/// Creates children at the larger end, or settles the pair.
 void Descent::subdivide_on_demand(std::size_t i) {
     const std::uint32_t receiver = pairs_.receiver[i];
     if (pairs_.shooter_area[i] > pairs_.area[i]) {

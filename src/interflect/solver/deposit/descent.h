@@ -35,8 +35,8 @@ struct Escaped {
 /// level by level, as a structure of arrays with lane refill. This hides memory latency and vectorises.
 class Descent {
   public:
-    /// @param old_size  Size of the forest before the step. The other arguments must outlive this; `importance` may be
-    /// null.
+    /// @param old_size  Size of the forest before the step. @param importance  May be null. Arguments must outlive
+    /// this.
     Descent(const Materials& materials, ElementForest& forest, const TransportStep& step, std::uint32_t old_size,
             ContributionSums& sums, FoundImportance* importance)
         : materials_(materials),
@@ -61,7 +61,7 @@ class Descent {
                  std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
                  float transmitted = 1);
     void prefetch(const Hit& hit) const;
-    /// Finishes all rays in flight, at the end of a task.
+    /// Finishes all rays in flight.
     void finish_batch();
     void deposit_at(std::uint32_t leaf, const Contribution& contribution, std::span<const std::int64_t> of_groups) {
         buffer_.add(leaf, buffer_.add_source(contribution, of_groups), true, false);
@@ -70,9 +70,9 @@ class Descent {
         for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
         ++escaped_.rays;
     }
-    /// Hit points on leaves that reflect where they receive, in any order.
+    /// Hit points on leaves that reflect where they receive.
     const std::vector<StartPoint>& start_points() const { return start_points_; }
-    /// Flushes all contributions. @return  Escaped power and rays.
+    /// @return  Escaped power and rays.
     Escaped finish();
 
   private:
@@ -80,7 +80,7 @@ class Descent {
     struct RayState {
         std::uint32_t source, patch;
         std::uint32_t left;
-        Parameters start;          // on the source's patch
+        Parameters start;
         Rgb reflectance{0, 0, 0};  // rho_i
     };
 

@@ -10,7 +10,7 @@
 
 namespace interflect::detail {
 
-/// One end of a pair in the oracle: an element or a luminaire part.
+/// Element or luminaire part at one end of a pair.
 struct ElementProxy {
     V3f centre{0, 0, 0};  ///< [m]
     V3f normal{0, 0, 0};
@@ -22,7 +22,7 @@ struct ElementProxy {
 /// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j) for a disk, times the
 /// cosines at both ends. Cosines are at least 2 f: parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
-    // By value and branch-free, to vectorise.
+    // Branch-free, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
     const auto larger = [](float x, float y) { return x < y ? y : x; };
     const V3f d = receiver.centre - shooter.centre;
@@ -36,7 +36,7 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
     return f * from_shooter * to_receiver;
 }
 
-/// Refinement test for a pair of elements. Depends on the state before the step, not on other rays.
+/// Refinement test. Depends on the state before the step, not on other rays.
 struct Oracle {
     bool refines = false;  ///< False: leaves exchange light.
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
@@ -48,9 +48,8 @@ struct Oracle {
     /// psi before the step; empty unless by_importance.
     std::vector<float> importance;
 
-    /// Evaluates Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000, for the largest channel.
-    /// @param reflected  Largest channel of rho_i B_j [lm/m^2 or W/m^2].
-    /// @param psi        psi_i of the receiver; 1 unless by_importance.
+    /// Evaluates Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000.
+    /// @param reflected  Largest channel of rho_i B_j [lm/m^2 or W/m^2]. @param psi  psi_i; 1 unless by_importance.
     bool accepts(const ElementProxy& shooter, const ElementProxy& receiver, float reflected, float psi) const {
         const double power = static_cast<double>(reflected) * receiver.area;
         return power * psi * form_factor_estimate(shooter, receiver) <= threshold;

@@ -30,7 +30,7 @@ struct alignas(64) RayPairs {
     Vectors normal;
     Floats area, importance;  // psi_i
     // Shooter: the current element around the origin.
-    Numbers shooter, lowest_shooter;  // indices in SourcePaths; lowest: the ray's leaf or a new element
+    Numbers shooter, lowest_shooter;  // in SourcePaths; lowest: the ray's leaf or a new element
     Vectors shooter_centre, shooter_normal;
     Floats shooter_area, shooter_least_cosine;
     Floats reflected;   // largest channel of rho_i B_j
@@ -42,7 +42,7 @@ struct alignas(64) RayPairs {
 
     /// Settles pairs that the oracle accepts (Eq. 14, 15, Prikryl et al. 2000) or that are too small to divide.
     void evaluate_oracle(const Oracle& oracle);
-    /// Chooses the next action of each pair, except creating children.
+    /// Chooses the next action, except creating children.
     /// @param needs_leaf  Rays descend to a leaf among the first `old_size` elements.
     void choose_next(bool needs_leaf, std::uint32_t old_size);
     void go_down();

@@ -19,15 +19,15 @@ class SourcePaths {
         std::uint32_t first = 0, last = 0;
     };
 
-    /// Both arguments must outlive this.
+    /// The arguments must outlive this.
     SourcePaths(ElementForest& forest, const TransportStep& step) : forest_(forest), step_(step) {}
 
     Path append_leaf(std::uint32_t leaf);
-    /// Appends a proxy for one ray of a part of the luminaires' emission.
+    /// For one ray of a part of the luminaires' emission (Emission).
     Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void clear() { sources_.clear(); }
 
-    /// Starts at the root. @param reflectance  rho_i of the hit patch.
+    /// @param reflectance  rho_i of the hit patch.
     void begin(RayPairs& pairs, std::size_t i, const Path& path, const Rgb& reflectance) const {
         pairs.lowest_shooter[i] = path.last;
         pairs.shooter_normal.set(i, sources_[path.first].normal);
@@ -41,15 +41,14 @@ class SourcePaths {
         return (shooter > receiver) & (number < lowest);
     }
 
-    /// Selects the largest shooter not larger than the receiver, or the lowest. Larger shooters would give the same
-    /// received power.
+    /// Selects the largest shooter not larger than the receiver, or the lowest. Larger ones would give the same power.
     void choose(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
         while (number < pairs.lowest_shooter[i] && sources_[number].area > pairs.area[i]) ++number;
         take(pairs, i, number, reflectance);
     }
 
-    /// Replaces the lowest shooter by its child at the ray's origin. @return  False if it cannot be divided.
+    /// Replaces the lowest shooter by its child at the ray's origin. @return  False if indivisible.
     bool subdivide(RayPairs& pairs, std::size_t i, const Parameters& start, const Rgb& reflectance, bool may_grow);
 
   private:
@@ -59,7 +58,7 @@ class SourcePaths {
         V3f centre, normal;
         float area;  // [m^2]
         float least_cosine;
-        Rgb radiosity{0, 0, 0};  // new elements inherit it
+        Rgb radiosity{0, 0, 0};
     };
 
     void take(RayPairs& pairs, std::size_t i, std::uint32_t number, const Rgb& reflectance) const {
@@ -75,7 +74,7 @@ class SourcePaths {
     std::vector<Shooter> sources_;
 };
 
-/// Returns the first child, if any. Creates children on demand if the forest may grow.
+/// Returns the first child, if any. Creates it on demand if the forest may grow.
 inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t element, bool may_grow) {
     const std::uint32_t child = forest.first_child(element);
     return child == none && may_grow ? forest.subdivide(element) : child;

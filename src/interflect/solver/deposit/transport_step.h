@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// A step of transport: the rays of a plan and their receivers.
+/// The rays of a plan and their receivers.
 struct TransportStep : RayPlan {
     explicit TransportStep(RayPlan plan = {}) : RayPlan(std::move(plan)) {}
 

@@ -32,7 +32,7 @@ Extents extents_in_pixels(const SolverState& state, std::uint32_t element) {
     return {std::sqrt(pixels * aspect), std::sqrt(pixels / aspect)};
 }
 
-/// The same in two dimensions. Differences of siblings change sign along one side, the other, or both.
+/// Sibling differences change sign along one side, the other, or both.
 float shown_of_patch(const Extents& patch) { return shown_of_steps(patch.u) * shown_of_steps(patch.v); }
 float shown_of_siblings(const Extents& sibling) {
     const float u = shown_of_pairs(sibling.u), v = shown_of_pairs(sibling.v);

@@ -65,8 +65,8 @@ AddedError added_error(const SolverState& state, std::uint32_t first) {
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }
 
-/// Applies a Wiener filter with each sibling's own noise. The common loss is divided in proportion to the remaining
-/// variance, which preserves the mean.
+/// Wiener filter with each sibling's own noise. The common loss is divided in proportion to the remaining variance,
+/// which preserves the mean.
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const SiblingVariation variation = sibling_variation(state, first);

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Assumed relative variation of irradiance in an unmeasured leaf.
+/// Assumed relative variation in an unmeasured leaf.
 inline constexpr float assumed_variation = 0.1f;
 
 /// Variation of irradiance among siblings, the four children of an element, as squared luminance [(lm/m^2)^2 or
@@ -31,7 +31,7 @@ struct SiblingVariation {
     float risk() const;
 };
 
-/// Variation among siblings `first` ... `first` + 3.
+/// For siblings `first` ... `first` + 3.
 SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first);
 
 bool uses_shrinkage(const SolverState& state);
@@ -42,13 +42,13 @@ struct AddedError {
 };
 AddedError added_error(const SolverState& state, std::uint32_t first);
 
-/// Factors of the differences of four siblings, and the remaining noise of each relative to its mean.
+/// Factors of sibling differences, and the remaining noise of each relative to its mean.
 struct Shrinkage {
     std::array<float, 4> kept, noise;
 };
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first);
 
-/// Signal among an element's siblings; 0 if unknown.
+/// Signal among the element's siblings; 0 if unknown.
 float signal_beside(const SolverState& state, std::uint32_t e);
 
 inline std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {

@@ -10,10 +10,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Share of the next larger neighbourhood in Neighbourhoods::smooth().
+/// Used by Neighbourhoods::smooth().
 constexpr float taken_over = 0.3f;
 
-/// Mean importance in a box of outdoor light, and the factor of its parts (Emission).
+/// Mean importance in a box of outdoor light (Emission), and the factor of its parts.
 struct BoxImportance {
     PartImportance all;
     float factor = 1;
@@ -21,7 +21,7 @@ struct BoxImportance {
 };
 
 /// The exponent allows for few valuable rays among many. Boxes already separate these, so the factor restores exponent
-/// 1 between boxes.
+/// 1 between them.
 std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
                                                float exponent) {
     std::vector<BoxImportance> boxes(emission.box_count());
@@ -43,7 +43,7 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
     return boxes;
 }
 
-/// Computes the importance of each part; the mean of its emitter is a prior of `rays_of_mean` rays.
+/// The mean of an emitter's parts is a prior of `rays_of_mean` rays.
 void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
                  ImportanceWeights& weights) {
     constexpr std::size_t alike = Emission::parts_per_emitter;

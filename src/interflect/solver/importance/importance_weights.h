@@ -11,20 +11,20 @@
 
 namespace interflect::detail {
 
-/// Returns off without a view.
+/// Off without a view.
 ImportanceUse importance_use(const Solution& so_far);
 
-/// psi of every element; empty without a view. Refers to the solution.
+/// Empty without a view. Refers to the solution.
 Importance importance_of(const Solution& so_far);
 std::vector<float> total_importance(const Solution& so_far);
 
-/// Importance found by the rays of a part of the luminaires' emission (Emission).
+/// Found by the rays of a part of the luminaires' emission (Emission).
 struct PartImportance {
     double found = 0;  ///< Sum over its rays [1/m^2]
     double rays = 0;
 };
 
-/// Importance for sampling power rays; empty if unused.
+/// For sampling power rays; empty if unused.
 struct ImportanceWeights {
     std::vector<float> elements;
     std::vector<float> nearby;               ///< Mean over each patch's neighbourhood (Neighbourhoods); may be empty.

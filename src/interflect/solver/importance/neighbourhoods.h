@@ -18,7 +18,7 @@ class Neighbourhoods {
     bool empty() const { return patches_.empty(); }
 
     /// Moves each neighbourhood's mean towards its parent's by `share`, from the root to the patches.
-    /// @param values  Per area, by patch. @param share  In [0, 1].
+    /// @param values  Per area, by patch.
     void smooth(const ElementForest& forest, std::span<float> values, float share) const;
 
   private:

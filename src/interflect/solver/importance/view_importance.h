@@ -20,7 +20,6 @@ class ViewImportance {
     ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)
         : views_(views.begin(), views.end()), seed_(seed) {}
 
-    /// Adds about `rays_per_view` jittered rays per view.
     void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
                          int rays_per_view);
 
@@ -34,7 +33,7 @@ class ViewImportance {
     /// @param at_patches  Spreads V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
-    /// Call before the elements from `size` on are removed.
+    /// Call before elements from `size` on are removed.
     void shrink(std::uint32_t size);
 
     void archive(StateArchive& archive);

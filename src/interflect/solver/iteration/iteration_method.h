@@ -18,24 +18,21 @@ class IterationMethod {
     /// @throws Interrupted
     virtual void prepare(SolverState&) {}
     virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
-    /// Plans the next iteration; 0 rays if the run is over.
+    /// 0 rays: the run is over.
     virtual IterationPlan plan(SolverState& state);
     /// Traces and merges rays that carry importance alone (Eq. 7, 8). @throws Interrupted
     virtual void update_importance(SolverState&, IterationPlan&) {}
     /// @param plan  Receives the number of rays. @throws Interrupted
     virtual Estimate trace(SolverState& state, IterationPlan& plan) = 0;
-    /// Merges the estimate with the running mean (Eq. 6).
+    /// Eq. 6.
     virtual void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) = 0;
     /// Refines the mesh between iterations; Eq. 14 and 15 refine it during trace().
     virtual void refine(SolverState&) {}
     virtual void discard() {}
-    /// Computes all results of elements except irradiance.
     virtual void finish(SolverState& state) const;
-    /// Computes view importance; resets indirect importance.
     virtual void change_views(SolverState& state);
 
     virtual void archive(StateArchive& archive) = 0;
-    /// Whether the archived state fits this run.
     virtual bool fits(const SolverState&) const { return true; }
 };
 

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) per element; the history is the number of
+/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) per element; its history is the number of
 /// rays in its mean. A larger tau of newer children only redistributes their parent's mean, which preserves power.
 void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
            const IterationPlan& plan);
@@ -28,8 +28,7 @@ void merge_independent(const SolverState& state, GroupLight& mean, const GroupLi
 /// Averages escaped power like irradiance (Eq. 6). The power of one iteration includes light of the previous one.
 void merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan);
 
-/// Adds the rays of an iteration. New elements keep only `inherited_weight` of their history, because their inherited
-/// mean is too smooth.
+/// New elements keep only `inherited_weight` of their history, because their inherited mean is too smooth.
 void update_history(SolverState& state, const IterationPlan& plan);
 
 }  // namespace interflect::detail

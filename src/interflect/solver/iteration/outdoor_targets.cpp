@@ -81,7 +81,7 @@ struct LineFinder {
     }
 };
 
-/// Thins the lines and preserves their total importance.
+/// Preserves the total importance.
 std::vector<OutdoorLine> some_of(const std::vector<OutdoorLine>& lines) {
     constexpr std::size_t enough = 1 << 14;
     const std::size_t stride = (lines.size() + enough - 1) / enough;
@@ -127,7 +127,7 @@ std::vector<Weighed> crossing(const std::vector<Weighed>& lines, const Imath::Bo
     return found;
 }
 
-/// Sums the weights of the lines that cross a box, more for lines near its centre.
+/// Lines near the centre count more.
 double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     const float farthest = (box.size() / 2).length2();
     double sum = 0;
@@ -139,7 +139,7 @@ double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box
     return sum;
 }
 
-/// Returns the part of a box, halved along its long axes, with the largest centred weight.
+/// Best part of a box, halved along its long axes.
 Imath::Box3f best_half(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     const V3f size = box.size();
     const float widest = std::max({size.x, size.y, size.z});
@@ -168,7 +168,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
                                        const Imath::Box3f& scene_box) {
     constexpr std::size_t most_lines = 4096, fewest_lines = 16;
     static_assert(most_targets % most_places == 0);
-    constexpr double share_of_rest = 0.05;  // minimum share of all weight for another place
+    constexpr double share_of_rest = 0.05;  // minimum share of the weight for another place
     // A quarter of evenly spread lines crosses half a box; all lines of a window do.
     constexpr double worthwhile_share = 0.4;
     // Relative to the scene, whose own parts resolve larger boxes.
@@ -181,7 +181,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     std::vector<Imath::Box3f> targets;
     for (int place = 0; place < most_places && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
          ++place) {
-        // Starts at the smallest target that most lines cross.
+        // Smallest target that most lines cross.
         Imath::Box3f box = scene_box;
         std::vector<Weighed> inside = rest;
         for (const Imath::Box3f& target : targets) {
@@ -212,8 +212,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// Returns the light along each line over the square root of its source's total. Lines of a sun are parallel: only the
-/// dimmer sky can locate a window along them.
+/// Light along each line over the square root of its source's total. Lines of a sun are parallel: only the dimmer sky
+/// can locate a window along them.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -229,8 +229,8 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
     return weights;
 }
 
-/// Estimates the importance of the parts from the lines, as a prior of `rays_of_lines` rays. Each box also gets a mean
-/// line, so no part starts at zero.
+/// Estimates importance from the lines, as a prior of `rays_of_lines` rays. Each box also gets a mean line, so no part
+/// starts at zero.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     constexpr double rays_of_lines = 8;
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);

@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Colours [group][element]; the groups sum to the total. Empty without groups.
+/// Colours [group][element], summing to the total. Empty without groups.
 using GroupLight = std::vector<std::vector<Rgb>>;
 
 inline void inherit(const ElementForest& forest, std::uint32_t first, GroupLight& light) {
@@ -34,7 +34,7 @@ struct GroupRadiosity {
     bool emits = true;
 
     std::size_t size() const { return groups ? groups->size() : 0; }
-    /// Returns B of a leaf by one group [lm/m^2 or W/m^2].
+    /// B [lm/m^2 or W/m^2].
     Rgb of(const Materials& materials, const ElementForest& forest, std::uint32_t leaf, std::size_t group) const {
         if ((*dimming)[group] == 0) return Rgb(0);
         const MeanSurface surface = materials.surface(forest.patch(leaf), leaf);

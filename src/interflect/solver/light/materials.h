@@ -43,7 +43,7 @@ class Materials {
         return channel_sum(surface(patch, element).reflectance) / 3;
     }
     bool has_textures() const { return !elements_.empty(); }
-    /// Adds new elements, which until then have their patch's mean.
+    /// New elements have their patch's mean until then.
     void grow(const ElementForest& forest) { elements_.grow(forest); }
 
   private:
@@ -59,15 +59,15 @@ class Materials {
 /// Emission lost to coincident faces.
 struct CoveredEmission {
     std::int64_t wholly = 0, partly = 0;
-    RgbD power{0, 0, 0};  ///< Lost power [lm or W]
+    RgbD power{0, 0, 0};  ///< [lm or W]
 };
 /// @throws InputError if the ray caster is of another scene.
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
-/// Computes B = M + rho H [lm/m^2 or W/m^2]. With textures, inner elements have the mean of their children.
+/// B = M + rho H [lm/m^2 or W/m^2]. With textures, inner elements have the mean of their children.
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
-/// Returns the sum of area times value over the roots, in fixed order.
+/// Sum of area times value over the roots, in fixed order.
 RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values);
 
 }  // namespace interflect::detail

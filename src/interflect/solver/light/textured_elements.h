@@ -26,7 +26,7 @@ class TexturedElements {
 
     MeanSurface of_patch(std::uint32_t patch, const PatchGeometry& geometry) const { return mean(patch, geometry, {}); }
 
-    /// Null if the patch is not textured, or before grow(). Not for roots.
+    /// Null if not textured, or before grow(). Not for roots.
     const MeanSurface* find(std::uint32_t element) const {
         const std::uint32_t block = (element - patch_count_) / 4;
         if (block >= slot_of_block_.size() || slot_of_block_[block] == none) return nullptr;

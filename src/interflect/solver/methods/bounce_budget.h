@@ -15,11 +15,11 @@ class BounceBudget {
     /// @param bounces  Expected unshot power summed over the bounces, relative to the first; 0: unknown.
     BounceBudget(std::int64_t rays, double bounces);
 
-    /// @param unshot  Relative to the first bounce.
-    /// @return        Rays of the next bounce; random walks complete the last one.
+    /// @param unshot  Relative to the first bounce. @return  Rays of the next bounce; random walks complete the last
+    /// one.
     BounceRays next(double unshot);
     bool is_last() const { return is_last_ || left_ == 0; }
-    /// Returns the unshot power summed over the bounces, relative to the first, extrapolated by a geometric series.
+    /// Unshot power summed over the bounces, relative to the first, extrapolated by a geometric series.
     double bounces() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
 
   private:

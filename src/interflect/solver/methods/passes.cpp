@@ -25,8 +25,7 @@ namespace {
 /// Minimum rays of a run that prepares before its first iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Returns the unshot power of a bounce relative to the first, partly weighted by importance, to distribute rays over
-/// the bounces.
+/// Unshot power relative to the first bounce, partly weighted by importance, to distribute rays over the bounces.
 double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -64,7 +63,7 @@ void set_estimate(SolverState& state, Estimate estimate) {
 
 std::int64_t rays_so_far(const SolverState& state) { return state.power_rays + state.importance_rays; }
 
-/// Whether Eq. 14 or 15 refines the mesh during a pass.
+/// By Eq. 14 or 15, during a pass.
 bool refines_by_power(const SolverState& state) {
     return state.options.method.refines && !refines_by_variance(state.options);
 }
@@ -166,7 +165,7 @@ void Passes::prepare(SolverState& state) {
     state.importance_rays += aim_outdoor_light(state);
     if (state.options.method.refines)
         for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));
-    state.importance_rays += aim_outdoor_light(state);  // with more accurate importance
+    state.importance_rays += aim_outdoor_light(state);
     state.schedule.began_with(0, rays_so_far(state));
     if (rays_so_far(state) > 0) report(state, 0);
 }

@@ -14,8 +14,7 @@ namespace interflect::detail {
 /// the rays (Eq. 3, 10). A pass is an unbiased estimate on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
-    /// Estimates importance and the initial mesh (Eq. 14, 15) in small passes. The light of the last serves until the
-    /// first iteration, but is not in the mean.
+    /// Estimates importance and the initial mesh (Eq. 14, 15) in small passes, whose light is not in the mean.
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
@@ -27,7 +26,7 @@ class Passes : public IterationMethod {
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
-    /// Serves other methods: prepare(), then a pass on the resulting mesh.
+    /// Serves other methods: prepare(), then a pass.
     void make_first_estimate(SolverState& state);
 
   protected:

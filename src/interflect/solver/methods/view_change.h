@@ -8,14 +8,14 @@
 namespace interflect::detail {
 
 /// Sampling and importance before the views changed. They convert the history of the averaged light to the number of
-/// new rays with the same noise: fewer where the new views increase the ray density, more elsewhere.
+/// new rays with the same noise: fewer where the new views increase the ray density.
 class ViewChange {
   public:
     bool empty() const { return old_q_.empty(); }
     /// Call before the views change.
     void record(const SolverState& state);
     void clear() { old_q_.clear(), old_importance_.clear(); }
-    /// Returns the factor of each patch's history, given the importance of the new views.
+    /// Factor of each patch's history, given the importance of the new views.
     std::vector<float> history_factor(const SolverState& state) const;
 
     void archive(StateArchive& archive);

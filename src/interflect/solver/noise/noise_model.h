@@ -31,19 +31,18 @@ class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
-    /// Returns the luminance variance of a mean over `rays` rays: of a root, or of another element's difference from
-    /// its parent. @param mean  Running mean by element.
+    /// Luminance variance of a mean over `rays` rays: of a root, or of another element's difference from its parent.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
     bool is_known() const { return iterations_ > 1; }
 
-    /// Returns the noise variance of siblings `first` ... `first` + 3 relative to its mean. With few rays, a sibling
-    /// may be dark by chance, so the shares tend to 1. @param rays  In the mean of the siblings.
+    /// Noise variance of siblings `first` ... `first` + 3 relative to its mean. With few rays, a sibling may be dark by
+    /// chance, so the shares tend to 1.
     std::array<float, 4> shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
                                 float rays) const;
 
-    /// New elements receive a quarter of their parent's rays on a quarter of the area.
+    /// New elements receive a quarter of the rays on a quarter of the area.
     void grow(const ElementForest& forest, std::uint32_t first);
 
     /// Call before the iteration is merged.
@@ -73,7 +72,7 @@ class NoiseModel {
         Spread& operator+=(const Spread& other);
     };
 
-    /// Returns class n for elements hit by about one in 2^n rays. Siblings share a class: one may be hit by chance.
+    /// Class n of elements hit by about one in 2^n rays. Siblings share a class: one may be hit by chance.
     std::size_t rarity(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
         const std::uint32_t parent = forest.parent(e), known = parent == none ? e : parent;
         const float h = luminance(mean[known]), rays_per_arrival = per_ray_[known] / (h * h);
@@ -81,7 +80,7 @@ class NoiseModel {
         const int n = rays_per_arrival > 1 ? std::ilogb(rays_per_arrival) : 0;
         return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
-    /// Differences of siblings from their mean have three quarters of the independent variance.
+    /// Differences of siblings from their mean have three quarters of the variance.
     static float share_of_own(const ElementForest& forest, std::uint32_t e) {
         return e < forest.patch_count() ? 1.0f : 0.75f;
     }

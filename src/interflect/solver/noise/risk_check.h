@@ -10,7 +10,7 @@ namespace interflect::detail {
 inline constexpr std::size_t finer_levels = 6;
 
 /// Products of the mean and an independent iteration, summed over siblings. Their expected values are squared errors
-/// and differences without noise, whatever the noise model.
+/// and differences without noise.
 struct RiskCheck {
     double weight = 0;             ///< Total weight of iterations; 0: no data.
     double expected = 0;           ///< Squared errors after shrinkage by SiblingVariation::risk().

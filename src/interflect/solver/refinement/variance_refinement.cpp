@@ -60,7 +60,7 @@ class VarianceOracle {
         return blurs || misplaces;
     }
 
-    /// Whether power reflected from wrong places matters; true if unknown.
+    /// True if unknown.
     bool may_misplace(std::uint32_t leaf) const {
         if (state_.history[leaf] == 0 || !state_.noise.is_known()) return true;
         return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > most_misplaced_power_;
@@ -80,7 +80,6 @@ class VarianceOracle {
         const SiblingVariation variation = sibling_variation(state_, forest_.first_child(forest_.parent(leaf)));
         return {expected_decay * variation.signal(), 4 * variation.noise};
     }
-    /// Returns the weight of the squared luminance error.
     double weight(std::uint32_t leaf) const {
         double w = error_weight(state_, measure_, leaf);
         if (!psi_.empty()) {
@@ -89,7 +88,7 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    /// Returns the power reflected from wrong places, times importance.
+    /// Times importance.
     double misplaced_power(std::uint32_t leaf, float signal) const {
         const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
@@ -102,7 +101,7 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
-    /// Returns the light in the pictures or, without a view, all received power.
+    /// Light in the pictures or, without a view, all received power.
     double reference_power() const {
         if (!psi_.empty()) return error_reference(state_, ErrorMeasure::pictures);
         double sum = 0;

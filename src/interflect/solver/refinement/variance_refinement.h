@@ -10,7 +10,7 @@ namespace interflect::detail {
 /// so splits cause no bias. Call between iterations.
 void refine_by_variance(SolverState& state);
 
-/// Marks leaves that reflect where they receive (StartPoints). Empty unless refine_by_variance() makes the mesh.
+/// Marks leaves that reflect where they receive (StartPoints), if refine_by_variance() makes the mesh.
 std::vector<std::uint8_t> leaves_that_blur(const SolverState& state);
 
 }  // namespace interflect::detail

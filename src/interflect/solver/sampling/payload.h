@@ -62,7 +62,7 @@ class PayloadHistogram {
     PayloadHistogram& operator+=(const PayloadHistogram& other);
 
     double largest_over_mean() const;  ///< 1 without power.
-    /// Returns the power, relative to the mean, that a share of the rays exceeds; accurate to 19%.
+    /// Power, relative to the mean, that a share of the rays exceeds; accurate to 19%.
     double quantile_over_mean(double share) const;
 
     void archive(StateArchive& archive) {
@@ -74,7 +74,7 @@ class PayloadHistogram {
 
   private:
     static constexpr int bins_per_octave = 4, middle_bin = 512, bins = 2 * middle_bin;
-    std::vector<std::int64_t> rays_;  // by bin
+    std::vector<std::int64_t> rays_;
     double power_ = 0, largest_ = 0;
     std::int64_t count_ = 0;
 };

@@ -37,7 +37,7 @@ class RayAllocation {
     std::size_t block_count() const { return blocks_.size(); }
     static std::size_t block_of(std::size_t source) { return source / block_sources; }
     /// Calls body(s, first, next) for the sources of a block, with rays [first, next), until it returns false. @return
-    /// The last result, or true.
+    /// The last result.
     template <class Body>
     bool for_each_in_block(std::size_t block, const Body& body) const {
         const std::size_t begin = block * block_sources, end = std::min(q_.size(), begin + block_sources);
@@ -59,8 +59,8 @@ class RayAllocation {
         double q_before;         // over previous blocks
         std::int64_t first_ray;  // of previous blocks
     };
-    /// Returns the rays of the sources whose weights sum to `q`, which has the same bits at the end of a block and the
-    /// start of the next.
+    /// Rays of the sources whose weights sum to `q`, which has the same bits at the end of a block and the start of the
+    /// next.
     std::int64_t rays_before(double q) const {
         const double before = q / q_sum_ * static_cast<double>(rays_) + offset_;
         return std::min(rays_, static_cast<std::int64_t>(before));  // N + offset may round up to N + 1

@@ -24,13 +24,12 @@ struct SampleStreams {
     std::uint64_t seed;
     std::vector<std::uint64_t> used;  ///< Points consumed.
     std::vector<std::uint64_t> used_by_parts;
-    std::uint64_t allocations = 0;  ///< Number of steps so far.
+    std::uint64_t allocations = 0;
 };
 
 /// Generates rays from samples first_sample, first_sample + 1, ... Origins are uniform on the cell, `offset` above the
 /// patch. Directions have density cos(theta) / pi.
 /// @param key     Of the point sequence (fill_points).
-/// @param points  Working space.
 /// @param rays    Output; its size is the number of rays.
 /// @param starts  Origins to sample (StartPoints::of); empty: uniform.
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
@@ -43,7 +42,7 @@ struct SourceRays {
     std::uint32_t begin, end;
 };
 
-/// Rays of one task; one object per thread, reused.
+/// One object per thread, reused.
 struct RayBatch {
     std::vector<SourceRays> sources;
     std::vector<Ray> rays;
@@ -58,7 +57,7 @@ class RayMaker {
              const SampleStreams& streams);
 
     const RayAllocation& allocation() const { return allocation_; }
-    std::uint32_t elements() const { return elements_; }  ///< Size of the forest before the step.
+    std::uint32_t elements() const { return elements_; }
 
     void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const;
 

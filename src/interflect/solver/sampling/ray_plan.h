@@ -31,7 +31,7 @@ struct RayPlan {
     bool carries_importance() const { return !importance.empty(); }
 };
 
-/// A plan, with the sums over leaves of P_s (Eq. 3) and of P_s psi_s (Eq. 9, 10; 0 if not used).
+/// With the sums over leaves of P_s (Eq. 3) and of P_s psi_s (Eq. 9, 10; 0 if not used).
 struct PowerPlan {
     RayPlan rays;
     double power = 0, weighted_power = 0;
@@ -41,13 +41,12 @@ struct PowerPlan {
 /// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000). The method selects q: by
 /// power (Eq. 3), direct importance, or total or indirect importance (Eq. 9, 10). One share is sampled by power alone
 /// (beta), another by neighbourhood importance, because underestimated small lamps give rays large weights.
-/// @param weights   importance_weights(so_far).
-/// @param emission  Luminaires, shot if `light` emits.
+/// @param emission  Shot if `light` emits.
 /// @param light     To shoot. The plan refers to `so_far`, `emission` and `light`.
 PowerPlan plan_power(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);
 
-/// Plans rays that carry importance alone (Eq. 8). The plan refers to `importance`.
+/// Plans rays that carry importance alone (Eq. 8). Refers to `importance`.
 RayPlan plan_importance(const Materials& materials, const Solution& so_far, const Importance& importance,
                         std::int64_t rays);
 

@@ -21,14 +21,14 @@ struct StartPoint {
 class StartPoints {
   public:
     StartPoints() = default;
-    /// The order of `points` is irrelevant. Cost: O(n log n) on all threads, 16 bytes per point.
+    /// The order is irrelevant. Cost: O(n log n) on all threads, 16 bytes per point.
     explicit StartPoints(std::vector<StartPoint> points);
 
     /// Returns the points of a leaf; empty: uniform origins. Cost: O(log n).
     std::span<const StartPoint> of(std::uint32_t leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 
-    /// Samples a point by power. @param points  At least one. @param u  In [0, 1).
+    /// Samples a point by power. @param points  Not empty. @param u  In [0, 1).
     static Parameters choose(std::span<const StartPoint> points, float u);
 
   private:

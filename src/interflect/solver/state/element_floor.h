@@ -12,13 +12,13 @@ class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);
 
-    /// Returns the smallest area that a pixel of any view covers [m^2]; infinite without views.
+    /// Smallest area that a pixel of any view covers [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// Returns RefinementOptions::min_area if given, else pixel_area() if a view sees the element, else unseen() [m^2].
+    /// RefinementOptions::min_area if given, else pixel_area() if a view sees the element, else unseen() [m^2].
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
-    /// Minimum area of invisible surfaces [m^2]: default_element_size() squared.
+    /// For invisible surfaces [m^2]: default_element_size() squared.
     float unseen() const { return unseen_; }
 
   private:

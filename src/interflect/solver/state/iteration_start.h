@@ -8,8 +8,8 @@
 
 namespace interflect::detail {
 
-/// Copies of the data that an iteration changes before it ends, to discard an interrupted iteration. The repeated
-/// iteration then has the bits of an uninterrupted run. Memory: 12 bytes per element.
+/// Copies of the data that an iteration changes, to discard an interrupted one. The repeated iteration then has the
+/// bits of an uninterrupted run. 12 bytes per element.
 class IterationStart {
   public:
     explicit IterationStart(const SolverState& state);

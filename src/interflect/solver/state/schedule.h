@@ -9,11 +9,11 @@
 namespace interflect::detail {
 
 struct IterationPlan {
-    std::int64_t rays = 0;                ///< Planned, and the weight in the mean; 0: the run is over.
-    std::int64_t traced = 0;              ///< Initially the planned rays.
-    bool warms_up = false;                ///< Not averaged: the next iteration replaces it.
-    bool is_final = false;                ///< Ends the run, even with fewer traced rays.
-    std::uint32_t old_elements = 0;       ///< Elements before the iteration.
+    std::int64_t rays = 0;  ///< Planned, and the weight in the mean; 0: the run is over.
+    std::int64_t traced = 0;
+    bool warms_up = false;  ///< Not averaged: the next iteration replaces it.
+    bool is_final = false;  ///< Ends the run, even with fewer traced rays.
+    std::uint32_t old_elements = 0;
     std::int64_t importance_rays = 0;     ///< Rays that carry importance alone.
     std::int64_t rays_for_new_views = 0;  ///< After a change of views.
     /// Factor of each patch's history after a change of views (ViewChange). Empty: 1.
@@ -28,12 +28,12 @@ class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Rays of each pass before the first iteration: at most an eighth of all, and few even if iterations are long.
+    /// Rays of each pass before the first iteration: at most an eighth of all.
     std::int64_t start_rays() const;
     /// Records these passes. Power rays are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// Plans an iteration that should end within a time limit, because an interrupted one is lost. @param seconds
-    /// Since the run began.
+    /// The plan should end within a time limit, because an interrupted iteration is lost. @param seconds  Since the run
+    /// began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);
@@ -41,7 +41,7 @@ class Schedule {
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
-    /// The size of the first iterations does not change.
+    /// Keeps the size of the first iterations.
     void set_limits(const Limits& limits);
     void archive(StateArchive& archive);
 

@@ -30,7 +30,6 @@ namespace interflect::detail {
 /// Limits of SolverState::targets. 20 halvings at each place reach from 10 km to 1 cm.
 inline constexpr int most_places = 4, most_targets = 80;
 
-/// State that persists between iterations.
 struct SolverState {
     /// @param scene, caster  Must outlive this.
     SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o);
@@ -40,7 +39,7 @@ struct SolverState {
     const Scene* lit = &scene;  // with dimmed sources
     Materials materials;
     std::vector<Imath::Box3f> targets;  // of outdoor light, for the current views
-    Emission emission;                  // of the luminaires
+    Emission emission;
     const RayCaster& ray_caster;
     const SourceGroups groups;
     Solution solution;
@@ -56,7 +55,7 @@ struct SolverState {
     std::vector<float> history;  // rays averaged into each element's mean
     NoiseModel noise;
     RiskCheck risk_check;
-    PayloadHistogram payloads;  // of the last iteration
+    PayloadHistogram payloads;
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
     std::int64_t rays_of_other_views = 0;  // rays averaged before the views changed
     RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
@@ -72,7 +71,7 @@ struct SolverState {
     double seconds_of_this_call() const {
         return std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }
-    /// Duration of all work, including earlier calls.
+    /// Includes earlier calls.
     double seconds() const { return earlier_seconds + seconds_of_this_call(); }
 
     /// @throws std::runtime_error if the data are inconsistent.
@@ -82,10 +81,10 @@ struct SolverState {
 /// Changes the exitances to those of `lit`, which must outlive the state.
 void set_sources(SolverState& state, const Scene& lit);
 
-/// Replaces the targets and resets the importance of luminaire parts.
+/// Resets the importance of luminaire parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
-/// Computes the view importance of every element and resets the indirect importance.
+/// Resets the indirect importance.
 void compute_view_importance(SolverState& state);
 
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);

@@ -58,7 +58,6 @@ std::vector<PartImportance> found_by_parts(const RayPlan& plan, const RayAllocat
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const FoundImportance& found, const PayloadTotals& payload, std::size_t elements,
            std::vector<float>& received) {
-    // No estimate arrives without importance.
     const double rays_per_importance = payload.importance > 0 ? payload.importance / payload.importance_square : 0;
     constexpr std::size_t blocks_at_once = 16;
     parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {

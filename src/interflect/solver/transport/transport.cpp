@@ -47,8 +47,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Returns an upper bound of the visits of a random walk: the expected 1 / (1 - rho), times a factor for chance and
-/// panes that leaves 2^49 units for the expected power.
+/// Upper bound of the visits of a random walk: the expected 1 / (1 - rho), times a factor for chance and panes that
+/// leaves 2^49 units for the expected power.
 double most_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
@@ -104,7 +104,7 @@ std::optional<FoundImportance> make_found_importance(const TransportStep& step, 
                                           step.rays, forest.size() + step.part_count());
 }
 
-// Steps of a batch. Their integer sums could be added up over several machines.
+// Steps of a batch. Several machines could sum their integers.
 
 void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
     shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
@@ -146,7 +146,7 @@ void deposit(const TransportStep& step, const Shooting& shooting, Batch& batch) 
     descent.finish_batch();
 }
 
-/// Continues a batch as random walks. @param task  Index of the first ray.
+/// @param task  Index of the first ray.
 void walk(const TransportStep& step, const Shooting& shooting, const Walks& walks, std::uint64_t task, Batch& batch) {
     Walkers& walkers = batch.walkers;
     const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {

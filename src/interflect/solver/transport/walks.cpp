@@ -67,7 +67,7 @@ void Walks::survive(double offset, Walkers& walkers) const {
     }
 }
 
-/// Starts rays at the hit point if the leaf reflects there, else uniformly on the leaf.
+/// At the hit point if the leaf reflects there, else uniformly on the leaf.
 void Walks::shoot(std::uint64_t key, Walkers& walkers) const {
     walkers.rays.resize(walkers.reflected.size());
     for (std::size_t i = 0; i < walkers.rays.size(); ++i) {

@@ -41,11 +41,11 @@ class Walks {
     Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
           const TransportStep& step, const ContributionUnits& units, std::uint32_t elements, std::uint64_t key);
 
-    /// Adds a particle. The caller appends its filtered power by light group to `received_groups`.
-    /// @param power          Power of the ray before any pane.
-    /// @param transmittance  Transmittance of the panes before the hit.
+    /// The caller appends the filtered power by light group to `received_groups`.
+    /// @param power          Before any pane.
+    /// @param transmittance  Of the panes before the hit.
     void add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const;
-    /// Traces particles to their end. @param task  Key of the random numbers.
+    /// @param task  Key of the random numbers.
     void follow(std::uint64_t task, Walkers& walkers, Descent& descent) const;
 
   private:

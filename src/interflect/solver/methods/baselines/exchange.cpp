@@ -23,7 +23,7 @@ struct Polygon {
     std::span<const V3d> corners() const { return {corner.data(), count}; }
 };
 
-/// Returns the corners, counter-clockwise from the front.
+/// Counter-clockwise from the front.
 Polygon polygon_of(const ElementForest& forest, std::uint32_t e) {
     const PatchGeometry& geometry = forest.geometry(forest.patch(e));
     const Cell cell = forest.cell(e);
@@ -89,7 +89,7 @@ std::uint64_t place(const ElementForest& forest, std::uint32_t e) {
     return std::uint64_t{forest.patch(e)} << 32 | forest.path(e);
 }
 
-/// Unoccluded form factors of an element's points.
+/// Unoccluded, over an element's points.
 struct FormFactors {
     double mean = 0;
     double spread = 0;  // largest minus smallest, extrapolated to the edges
@@ -157,7 +157,7 @@ struct LinesOfSight {
         exchange.variation = all > 0 ? largest_channel(most - least) : 0;
     }
 
-    /// Returns the transmittance of the panes between two points; 0 if another surface blocks the ray.
+    /// Transmittance of the panes between two points; 0 if another surface blocks the ray.
     Rgb transmittance(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
         const V3f origin = from + normal * ray_caster.ray_offset(forest.patch(source));
         const Ray ray{origin, (to - origin).normalized()};

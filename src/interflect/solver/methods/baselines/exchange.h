@@ -16,8 +16,8 @@ namespace interflect::detail {
 
 using V3d = Imath::V3d;
 
-/// Returns the unoccluded form factor from a differential area at x to a convex polygon: Lambert's edge sum (1760; Baum
-/// et al. 1989), clipped to the horizon. 0 if x is behind the polygon.
+/// Unoccluded form factor from a differential area at x to a convex polygon: Lambert's edge sum (1760; Baum et al.
+/// 1989), clipped to the horizon. 0 if x is behind the polygon.
 /// @param normal   Unit normal at x.
 /// @param polygon  Three to seven corners [m], counter-clockwise from the lit side.
 double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V3d> polygon);
@@ -41,14 +41,14 @@ struct Exchange {
 enum class Effort { quick = 2, thorough = 4 };
 
 /// Estimates the exchange between elements; thread-safe. The unoccluded part is Lambert's form over the larger element,
-/// integrated over the smaller by Gaussian quadrature. Visibility is sampled along lines between them; a line is free
+/// integrated over the smaller by Gaussian quadrature. Visibility is sampled along lines between them. A line is free
 /// if rays from each end first hit the other, apart from panes.
 class ExchangeEstimator {
   public:
     ExchangeEstimator(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t seed)
         : forest_(forest), ray_caster_(ray_caster), panes_(scene, ray_caster), seed_(seed) {}
 
-    /// Whether each element extends above the other's plane by more than rounding.
+    /// Whether each extends above the other's plane by more than rounding.
     bool face_each_other(const ElementPair& pair) const;
 
     /// @param rays  Incremented by the traced rays, at most 2 effort^2.

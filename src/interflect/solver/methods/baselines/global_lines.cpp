@@ -22,7 +22,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// A task finds the next crossings of all its lines at a time.
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
 /// Deposits per line, on average, at which a patch's sums overflow. Normally one; more through panes and the backs of
@@ -42,16 +41,16 @@ struct LineDomain {
         constexpr float margin = 1.0001f;  // for rounding
         radius = margin * std::sqrt(square);
     }
-    /// Area of the disk crossed by the lines of one direction [m^2].
+    /// [m^2] of the disk crossed by the lines of one direction.
     double cross_section() const {
         return std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
     }
 };
 
-/// Patch that faces a line, and the patch visible from it backwards, if any.
+/// Patch that faces a line, and the patch that it sees backwards, if any.
 struct LineSegment {
     std::uint32_t front, back;
-    bool is_mutual;  ///< `front` is visible from `back`: not through the back of a one-sided face.
+    bool is_mutual;  ///< Whether `back` also sees `front`: false through the back of a one-sided face.
 };
 
 /// Active lines of a task; one object per thread, reused.
@@ -66,7 +65,7 @@ struct LineBundle {
     std::vector<Panes::HitBehind> behind;
 };
 
-/// Generates uniform lines: directions on the sphere, crossings on the disk through the centre.
+/// Uniform: directions on the sphere, crossings on the disk through the centre.
 void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::uint64_t first, LineBundle& bundle) {
     fill_points(set, key, first, bundle.lines.size(), bundle.points);
     bundle.slack.assign(bundle.lines.size(), std::numeric_limits<float>::infinity());
@@ -118,7 +117,7 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
     }
 }
 
-/// Integer sums of a step, independent of the order of deposits.
+/// Integer sums, independent of the order of deposits.
 class LineSums {
   public:
     /// @param power_per_radiosity  Power along a segment per unit of radiosity [m^2].
@@ -146,7 +145,7 @@ class LineSums {
         add_concurrently(started_[segment.back], 1);
         carry(segment.back, segment.front, Rgb(1));
     }
-    /// Deposits light behind panes, in one direction because a pane may be one-sided. Opposite lines carry the rest.
+    /// Deposits light behind panes, in one direction because a pane may be one-sided.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
         carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
     }
@@ -193,7 +192,7 @@ class LineSums {
 /// the scene. Every two patches that see each other along a line exchange light.
 ///
 /// With N lines that carry B_a 4 pi R^2 / (2 N), the expected power from a to b is A_a F_ab B_a. A line costs 1 + 2 h
-/// rays on average, h = sum A / (4 pi R^2), which determines N. Constant on patches. Cost: O(N h log(patches)).
+/// rays on average, h = sum A / (4 pi R^2). Constant on patches. Cost: O(N h log(patches)).
 class GlobalLines final : public Passes {
   public:
     explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {
@@ -207,7 +206,7 @@ class GlobalLines final : public Passes {
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.forest;
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
-        // Products of bounces are unbiased only if bounces have independent lines.
+        // Only independent bounces have unbiased products.
         const std::uint64_t key = mix(mix(state.options.seed, line_purpose), state.streams.allocations);
         PerThread<LineBundle> bundles;
         std::atomic<bool> is_cut_short{false};

@@ -47,13 +47,13 @@ Sphere sphere_around(const Scene& scene, const Patch& patch) {
     return sphere;
 }
 
-/// Returns an upper bound of the exchange between surfaces inside two spheres [m^2].
+/// Upper bound for surfaces inside two spheres [m^2].
 double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double area_b) {
     const double gap = std::max(0.0f, (a.centre - b.centre).length() - a.radius - b.radius);
     return area_a * area_b / (std::numbers::pi * gap * gap);
 }
 
-/// Returns light or importance received over the links, per area. @param area_of  Link::area or Link::mean_area.
+/// Light or importance received over the links, per area. @param area_of  Link::area or Link::mean_area.
 template <class T>
 std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, const std::vector<T>& leaving,
                       T (Link::*area_of)() const) {
@@ -149,7 +149,7 @@ void LinkedElements::find_patches_to_link() {
         candidates_.insert(candidates_.end(), some.begin(), some.end());
 }
 
-/// Turns candidates into links; drops pairs without unoccluded exchange.
+/// Drops pairs without unoccluded exchange.
 void LinkedElements::link_candidates() {
     require_room_for(candidates_.size());
     std::vector<Link> made(candidates_.size());
@@ -216,8 +216,8 @@ struct RadiosityRange {
     }
 };
 
-/// Returns the error bound of an exchange [m^2]: the variation of the form factor, and the unoccluded exchange to the
-/// degree that lines of sight differ.
+/// Error bound [m^2]: the variation of the form factor, and the unoccluded exchange to the degree that lines of sight
+/// differ.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
     if (transmittance == 0) return exchange.area * bound_if_blocked;
@@ -261,7 +261,7 @@ bool LinkedElements::may_divide(std::uint32_t element) const {
     return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.unseen());
 }
 
-/// Keeps the candidates with the largest bounds, within the limit of rays.
+/// Keeps the largest bounds within the limit of rays.
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
     const std::int64_t rays = std::max<std::int64_t>(0, state_.options.limits.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);

@@ -37,9 +37,8 @@ struct RefinementCandidate;
 ///
 /// Four links to the children of one end replace a link if its error bound exceeds epsilon times the reference power
 /// (oracle_threshold.h). The bound is rho_i B_j A_i times the variation of F_ij over an element (Smits et al. 1992),
-/// including partial occlusion. Links are refined only when light has settled, so no mesh is made for incomplete light.
-/// With importance, psi is transported backwards over the same links, so sum v P = sum psi W on any mesh. Bounds are
-/// weighted by psi_i / psi_max (Eq. 15).
+/// including partial occlusion. Links are refined only when light has settled. With importance, psi is transported
+/// backwards over the same links, and bounds are weighted by psi_i / psi_max (Eq. 15).
 ///
 /// The run ends when light has settled and no link needs refinement. It stays within limits.rays (except for the first
 /// links), max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
@@ -47,7 +46,7 @@ struct RefinementCandidate;
 /// O(patches^2 + links).
 class LinkedElements : public IterationMethod {
   public:
-    /// @param state  Must outlive this. @param link_limit  Maximum number of links.
+    /// The state must outlive this. @param link_limit  Maximum number of links.
     explicit LinkedElements(SolverState& state, std::size_t link_limit = most_links);
 
     /// Links all patches that face each other. @throws InputError for too many links.

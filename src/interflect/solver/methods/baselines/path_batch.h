@@ -52,7 +52,7 @@ struct WalkSource {
     bool is_grey = false;          ///< Panes transmit the mean of their channels.
 };
 
-/// Integer sums of a batch, independent of the order of deposits.
+/// Integer sums, independent of the order of deposits.
 struct PathSums {
     FixedPoint unit;
     std::vector<FixedPoint::Value> received;
@@ -60,13 +60,13 @@ struct PathSums {
     std::vector<std::int64_t> started;  ///< Rays that left each patch.
     std::int64_t rays = 0, escaped_rays = 0;
 
-    /// @param hits  Maximum hits of a ray; more than 1 with panes.
+    /// @param hits  Maximum per ray; more than 1 with panes.
     PathSums(const WalkSource& payload, double hits)
         : unit(sum_headroom * hits * most_expected(payload)),
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
 
-    /// Returns an upper bound of the expected received power in any channel: emitted power / (1 - rho).
+    /// Upper bound of the expected received power: emitted power / (1 - rho).
     static double most_expected(const WalkSource& payload) {
         double power = 0, rho = 0;
         for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
@@ -81,7 +81,7 @@ struct Particle {
     Rgb power;
 };
 
-/// Active particles of a task; one object per thread, reused.
+/// One object per thread, reused.
 struct Wavefront {
     std::vector<Particle> particles, reflected;
     std::vector<Ray> rays;
@@ -144,7 +144,7 @@ class PathBatch {
         }
     }
 
-    /// Starts paths. A path of source s carries W_s / (N q_s). A source's paths are consecutive points of its sequence.
+    /// A path of source s carries W_s / (N q_s). A source's paths are consecutive points of its sequence.
     void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
         w.particles.resize(static_cast<std::size_t>(end - begin));
         w.make_room_for_rays();

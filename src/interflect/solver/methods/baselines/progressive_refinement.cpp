@@ -28,14 +28,14 @@ constexpr double assumed_shots = 2;
 struct ShotBudget {
     std::int64_t left;
     double expected;  ///< Sum of the weights of all steps.
-    double shot = 0;  ///< Sum of the weights so far.
+    double shot = 0;
 
     double measured() const { return shot > 0 ? shot : expected; }
-    /// @param weight  Amount selected for a step. @param unshot  Total unshot amount.
+    /// @param weight  Amount selected for a step. @param unshot  Total.
     std::int64_t share(double weight, double unshot) const {
         return std::llround(std::min(1.0, weight / (expected * unshot)) * static_cast<double>(left));
     }
-    /// Returns the random walks for the remaining rays; a walk shoots its power `expected` times.
+    /// A walk shoots its power `expected` times.
     std::int64_t walks() const {
         return std::max<std::int64_t>(1, std::llround(static_cast<double>(left) / std::max(1.0, expected)));
     }
@@ -73,8 +73,8 @@ struct ImportanceSeries {
 struct PowerSeries {
     ShotBudget budget;
     ImportanceWeights weights;
-    std::vector<Rgb> unshot;                           ///< Irradiance.
-    Estimate fresh;                                    ///< Sum of the steps.
+    std::vector<Rgb> unshot;
+    Estimate fresh;
     bool emits = true;                                 ///< The next step is the first.
     double first_power = 0, first_weighted_power = 0;  ///< Before the first step; see PowerPlan.
 };
@@ -148,8 +148,7 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
 
 /// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995) with rays in place of form factors; see
 /// docs/method.md. The first step shoots the emitters. Later steps shoot all patches with at least half of the largest
-/// unshot power, weighted by importance: long batches for transport(). Importance is computed by the same steps in dual
-/// order.
+/// unshot power, weighted by importance. Importance is computed by the same steps in dual order.
 ///
 /// An iteration is a solution from darkness. Random walks complete its last step. Constant on patches. The same seed
 /// gives the same bits for any number of threads.
@@ -176,10 +175,10 @@ class ProgressiveRefinement final : public IterationMethod {
         double importance_shots = assumed_shots, power_shots = assumed_shots;  // see ShotBudget::expected
         std::int64_t importance_history = 0;                                   // rays in the mean
     };
-    Numbers current_, before_;  // before_: before the iteration
+    Numbers current_, before_;
 };
 
-/// Returns the rays that importance lacks of its share alpha of `planned` rays.
+/// Rays that importance lacks of its share alpha of `planned` rays.
 std::int64_t ProgressiveRefinement::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));

@@ -63,8 +63,7 @@ BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t ray
     return arrived;
 }
 
-/// Returns the importance that guides particles. Leaving power is important for its destination: hence Eq. 10, or on
-/// request Eq. 9.
+/// Importance that guides particles. Leaving power is important for its destination: hence Eq. 10, or on request Eq. 9.
 std::vector<float> leading_importance(const Solution& so_far) {
     switch (importance_use(so_far)) {
         case ImportanceUse::off:
@@ -77,8 +76,8 @@ std::vector<float> leading_importance(const Solution& so_far) {
     return so_far.options.experimental.total_importance ? total_importance(so_far) : so_far.indirect_importance;
 }
 
-/// Returns beta + (1 - beta) psi, with psi relative to its mean over emitted power: power alone starts the share beta
-/// of the paths.
+/// beta + (1 - beta) psi, with psi relative to its mean over emitted power: power alone starts the share beta of the
+/// paths.
 std::vector<float> particle_density(const Solution& so_far, const std::vector<Rgb>& emitted) {
     std::vector<float> density = leading_importance(so_far);
     double power = 0, important = 0;
@@ -131,7 +130,7 @@ void RandomWalks::prepare(SolverState& state) {
     state.schedule.began_with(0, state.importance_rays);
 }
 
-/// Returns the rays that importance lacks of its share alpha of `planned` rays.
+/// Rays that importance lacks of its share alpha of `planned` rays.
 std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));

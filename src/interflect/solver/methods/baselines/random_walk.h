@@ -20,7 +20,7 @@ struct PathSeries {
 ///
 /// With importance (Pattanaik and Mudur 1993, 1995), walks from the cameras estimate psi with the share alpha of the
 /// rays. The particle density is then proportional to power times psi: particles split where psi rises and end more
-/// often where it falls. Unbiased for every psi while beta > 0.
+/// often where it falls. Unbiased while beta > 0.
 ///
 /// Paths are complete, so ray counts deviate by about 1% from the plan. The same seed gives the same bits for any
 /// number of threads. Cost: O(N log(patches)), 150 bytes per patch.
@@ -32,7 +32,7 @@ class RandomWalks : public IterationMethod {
 
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
-    /// Merges by Eq. 6. Weights are planned rays: long paths also deposit more, so weights of traced rays would cause a
+    /// Merges by Eq. 6, weighted by planned rays: long paths also deposit more, so weights of traced rays would cause a
     /// bias.
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
     void discard() override { current_ = before_; }
@@ -47,7 +47,7 @@ class RandomWalks : public IterationMethod {
         PathSeries light, importance;
         std::int64_t importance_history = 0;  // planned rays in the mean of psi
     };
-    Series current_, before_;  // before_: before the iteration
+    Series current_, before_;
 };
 
 }  // namespace interflect::detail

@@ -19,7 +19,6 @@ class WellDistributedRays : public IterationMethod {
   public:
     explicit WellDistributedRays(const SolverState& state);
 
-    /// Makes a first estimate by a pass, unless iterations are single bounces.
     void prepare(SolverState& state) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
@@ -37,7 +36,7 @@ class WellDistributedRays : public IterationMethod {
   private:
     void keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const;
 
-    Passes passes_;                      // before the first iteration
+    Passes passes_;
     std::vector<double> shot_;           // rays, by leaf
     std::vector<double> shot_by_parts_;  // rays, by luminaire part
     std::vector<Rgb> received_;          // payloads per area, by element and channel [1/m^2]
