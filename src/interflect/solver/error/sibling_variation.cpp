@@ -9,7 +9,7 @@ namespace {
 
 /// Siblings are under-sampled below this fraction of their parent's rays.
 constexpr float under_sampled = 0.125f;
-/// Largest expected ratio of squared differences to those of the parent: at an edge.
+/// Largest expected ratio of a sibling signal to that of the parent's siblings: at an edge.
 constexpr float highest_expected_decay = 0.5f;
 
 }  // namespace
@@ -45,7 +45,7 @@ SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first
         variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
     SiblingVariation variation{spread / area, variance / area};
-    // Shrinkage of few rays would leave more noise than any plausible signal. The parent's siblings bound the signal.
+    // With few rays, shrinkage leaves more noise than any plausible signal. The parent's siblings bound the signal.
     const std::uint32_t parent = forest.parent(first);
     if (uses_shrinkage(state) && state.history[first] < under_sampled * state.history[parent])
         variation.assumed = parent < forest.patch_count()

@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Used by Neighbourhoods::smooth().
+/// Share of the next larger neighbourhood (Neighbourhoods::smooth()).
 constexpr float taken_over = 0.3f;
 
 /// Mean importance in a box of outdoor light (Emission), and the factor of its parts.

@@ -14,7 +14,7 @@ namespace interflect::detail {
 /// Off without a view.
 ImportanceUse importance_use(const Solution& so_far);
 
-/// Empty without a view. Refers to the solution.
+/// psi of every element; empty without a view. Refers to the solution.
 Importance importance_of(const Solution& so_far);
 std::vector<float> total_importance(const Solution& so_far);
 

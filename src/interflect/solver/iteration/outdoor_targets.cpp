@@ -139,7 +139,7 @@ double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box
     return sum;
 }
 
-/// Best part of a box, halved along its long axes.
+/// Returns the half of a box, along its long axes, with the largest centred weight.
 Imath::Box3f best_half(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     const V3f size = box.size();
     const float widest = std::max({size.x, size.y, size.z});

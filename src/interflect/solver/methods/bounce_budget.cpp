@@ -11,7 +11,7 @@ namespace {
 constexpr double fewest_rays_of_bounce = 2;
 /// They also do if less than this share of the pass remains: each bounce takes time for every element.
 constexpr double least_share_left = 0.05;
-/// Fewer would make the power of small passes noisy. Rays beyond the plan are not counted.
+/// Minimum number of random walks; fewer make small passes noisy. Rays beyond the plan are not counted.
 constexpr std::int64_t fewest_walks = 32;
 /// Unshot power summed over all bounces, relative to the first, until measured.
 constexpr double assumed_bounces = 2;

@@ -32,8 +32,8 @@ class Schedule {
     std::int64_t start_rays() const;
     /// Records these passes. Power rays are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// The plan should end within a time limit, because an interrupted iteration is lost. @param seconds  Since the run
-    /// began.
+    /// The iteration should end within the time limit, because an interrupted one is lost.
+    /// @param seconds  Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);

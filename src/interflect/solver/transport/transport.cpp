@@ -104,8 +104,6 @@ std::optional<FoundImportance> make_found_importance(const TransportStep& step, 
                                           step.rays, forest.size() + step.part_count());
 }
 
-// Steps of a batch. Several machines could sum their integers.
-
 void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
     shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
     batch.hits.resize(batch.shot.rays.size());

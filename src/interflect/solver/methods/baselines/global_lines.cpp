@@ -206,7 +206,7 @@ class GlobalLines final : public Passes {
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.forest;
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
-        // Only independent bounces have unbiased products.
+        // Each bounce has its own lines: products of dependent bounces would be biased.
         const std::uint64_t key = mix(mix(state.options.seed, line_purpose), state.streams.allocations);
         PerThread<LineBundle> bundles;
         std::atomic<bool> is_cut_short{false};
