@@ -4,30 +4,27 @@
 
 namespace interflect::detail {
 
-/// Part of a patch's parameter domain covered by an element, a square or a triangle. A local point (s, t) maps to (u +
-/// size s, v + size t). `size` is negative for inverted triangles; central children are inverted relative to their
-/// parents.
+/// Square or triangle of an element in the parameter domain of its patch: local (s, t) maps to (u + size s, v + size
+/// t). A triangle's central child has a `size` of opposite sign.
 struct Cell {
     float u = 0, v = 0, size = 1;
 
     Parameters at(float s, float t) const { return {u + size * s, v + size * t}; }
     Parameters centre(bool triangle) const { return triangle ? at(1.0f / 3, 1.0f / 3) : at(0.5f, 0.5f); }
 
-    /// Child k of the regular 1:4 subdivision. Quadrilateral: k = 2 (upper half in v) + (upper half in u). Triangle:
-    /// children 0, 1, 2 contain the corners v0, v1, v2; 3 is the central one.
+    /// Child k of the regular 1:4 subdivision. Square: k = 2 (upper half in v) + (upper half in u). Triangle: child 3
+    /// is central; child k < 3 contains corner k.
     Cell child(unsigned k, bool triangle) const {
         const float half = 0.5f * size;
         const bool central = triangle & (k == 3);
-        // Products instead of unpredictable branches.
         return {u + half * static_cast<float>(k & 1u), v + half * static_cast<float>(k >> 1), central ? -half : half};
     }
 
-    /// Index of the child that contains a point. Points on a border are assigned consistently.
     unsigned child_at(Parameters p, bool triangle) const {
         const float per_size = 1 / size;  // exact: a power of two
         const float s = (p.u - u) * per_size, t = (p.v - v) * per_size;
         const bool right = s >= 0.5f, upper = t >= 0.5f, central = triangle & !right & !upper & (s + t >= 0.5f);
-        // Bit operations instead of unpredictable branches. No child of a triangle is both right and upper.
+        // No child of a triangle is both right and upper.
         const unsigned k = static_cast<unsigned>(right) | static_cast<unsigned>(upper & !(triangle & right)) << 1;
         return central ? 3 : k;
     }

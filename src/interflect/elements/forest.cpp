@@ -17,7 +17,7 @@ namespace interflect::detail {
 namespace {
 
 std::size_t valid_capacity(std::size_t capacity, std::size_t patches) {
-    constexpr std::size_t end = 0xfffffffeu;  // numbers from here on are reserved
+    constexpr std::size_t end = 0xfffffffeu;  // reserved from here on
     if (capacity < patches || capacity >= end)
         throw InputError(
             fmt::format("a forest of at most {} elements: expected at least the {} patches and less than {}", capacity,
@@ -78,7 +78,7 @@ std::uint32_t ElementForest::subdivide(std::uint32_t e) {
     std::atomic_ref<std::uint32_t> slot(nodes_[e].first_child);
     std::uint32_t state = none;
     if (level(e) >= deepest_level || !slot.compare_exchange_strong(state, being_made, std::memory_order_acquire)) {
-        while (state == being_made) {  // another thread is creating them, within tens of nanoseconds
+        while (state == being_made) {  // another thread creates them within tens of nanoseconds
             std::this_thread::yield();
             state = slot.load(std::memory_order_acquire);
         }
@@ -105,11 +105,11 @@ std::uint32_t ElementForest::subdivide(std::uint32_t e) {
 
 std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
     const std::uint32_t last = size();
-    const auto number = [&](std::uint32_t e) { return (e - patch_count()) / 4; };  // of the block
+    const auto number = [&](std::uint32_t e) { return (e - patch_count()) / 4; };
     struct Siblings {
         Block block;
         std::array<Node, 4> nodes;
-        std::uint32_t first;  // old number of the first
+        std::uint32_t first;
     };
     std::vector<Siblings> made;
     made.reserve((last - first) / 4);

@@ -13,26 +13,24 @@
 
 namespace interflect::detail {
 
-/// Number of elements per task of a parallel sweep (parallel_for_ranges).
 inline constexpr std::size_t elements_at_once = 1 << 13;
 
-/// Quadtrees of elements over the patches of a scene. Element i < patch_count() is the whole patch i; children follow
-/// their parents in blocks of four. 32-bit indices, 11 bytes an element: data for tree descent per element, other data
-/// per block. Threads may subdivide while others traverse; put_in_order() then assigns final numbers.
+/// Quadtrees of elements over the patches of a scene; 11 bytes per element. Element i < patch_count() is the root of
+/// patch i. Children follow in blocks of four siblings. Threads may subdivide while others traverse; put_in_order()
+/// then makes the indices independent of threads.
 class ElementForest {
   public:
-    /// At the finest level an element's side is 2^-15 of its patch's side.
     static constexpr int deepest_level = 15;
 
     /// Creates one element per patch.
-    /// @param capacity  Maximum number of elements, >= the number of patches and < 2^32 - 2; reserves address space.
+    /// @param capacity  In [patches, 2^32 - 2); reserves address space.
     /// @throws InputError for another capacity or a vertex index out of range; AddressSpaceError.
     ElementForest(const Scene& scene, std::size_t capacity);
 
-    /// Address space per element [bytes].
+    /// Address space [bytes].
     static constexpr std::size_t reserved_per_element = 11;
 
-    /// @throws InputError unless the forest was made for a scene of the same geometry (geometry_fingerprint).
+    /// @throws InputError for a scene of other geometry.
     void require_made_for(const Scene& scene) const;
 
     std::uint32_t patch_count() const { return patch_count_; }
@@ -40,12 +38,10 @@ class ElementForest {
     std::size_t capacity() const { return nodes_.capacity(); }
 
     std::uint32_t patch(std::uint32_t e) const { return is_root(e) ? e : block_of(e).patch; }
-    std::uint32_t parent(std::uint32_t e) const {
-        return is_root(e) ? none : block_of(e).parent;
-    }                                                             ///< Roots have no parent.
+    std::uint32_t parent(std::uint32_t e) const { return is_root(e) ? none : block_of(e).parent; }
     float area(std::uint32_t e) const { return nodes_[e].area; }  ///< [m^2]
-    int level(std::uint32_t e) const;                             ///< 0 for a root.
-    /// Path from the root: 1, then two binary digits per level, the number of the child.
+    int level(std::uint32_t e) const;
+    /// Path from the root: 1, then two bits per level, the index of the child.
     std::uint32_t path(std::uint32_t e) const {
         return is_root(e) ? 1 : block_of(e).parent_path << 2 | number_in_block(e);
     }
@@ -58,42 +54,38 @@ class ElementForest {
         __builtin_prefetch(geometry + 64);
     }
 
-    /// First of the four children.
+    /// `none` for a leaf.
     std::uint32_t first_child(std::uint32_t e) const {
         const std::uint32_t child = std::atomic_ref(nodes_[e].first_child).load(std::memory_order_acquire);
         return child >= being_made ? none : child;
     }
     bool is_leaf(std::uint32_t e) const { return first_child(e) == none; }
-    std::vector<std::uint32_t> leaves() const;  ///< In ascending order.
-    /// The leaf below `root` that contains a point of its patch, among elements below `limit` (by default all).
+    std::vector<std::uint32_t> leaves() const;
+    /// Leaf below `root` that contains `p`, ignoring elements from `limit` on.
     std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const {
         return leaf_below(root, Cell(), p, limit);
     }
-    /// The same, starting at an element whose cell contains the point.
+    /// The same from `e`, whose cell must contain `p`.
     std::uint32_t leaf_below(std::uint32_t e, Cell cell, Parameters p, std::uint32_t limit = none) const;
 
     /// Creates the children of `e` unless they exist. Thread-safe.
-    /// @return  The first child, or none if the forest is full or `e` is at the deepest level.
+    /// @return  First child; none if the forest is full or `e` is at the deepest level.
     std::uint32_t subdivide(std::uint32_t e);
 
-    /// Renumbers the elements from `first` on by level, patch and path, independent of threads. No thread may use the
-    /// forest during the call.
-    /// @return  The old number of each element first + i.
+    /// Sorts the elements from `first` on by level, patch and path. Not thread-safe.
+    /// @return  Old index of each element first + i.
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
-    /// Parents of all blocks of siblings in order: the input of rebuild().
+    /// Input of rebuild().
     std::vector<std::uint32_t> subdivided() const;
-    /// Recreates the trees of another forest of the same scene with the same numbers. Call on a forest without
-    /// children.
+    /// Recreates the elements of another forest of the same scene in a forest of roots.
     /// @throws InputError if an element cannot be subdivided in this order.
     void rebuild(std::span<const std::uint32_t> parents);
 
-    /// Removes the last four siblings, which must be leaves, and returns their parent. The forest must be in order, and
-    /// no thread may use it during the call.
+    /// Removes the last four siblings (leaves) of an ordered forest and returns their parent. Not thread-safe.
     std::uint32_t drop_last_siblings();
 
-    /// Calls body(first) for each block of siblings on all threads, parents before children. Elements made since the
-    /// last put_in_order() are processed on one thread.
+    /// Calls body(first) for each block of siblings, parents before children; in parallel after put_in_order().
     template <class Body>
     void for_siblings_from_roots(const Body& body) const;
     /// The same, children before parents.
@@ -101,13 +93,12 @@ class ElementForest {
     void for_siblings_from_leaves(const Body& body) const;
 
   private:
-    static constexpr std::uint32_t being_made = 0xfffffffeu;  // children are being created
+    static constexpr std::uint32_t being_made = 0xfffffffeu;
 
     struct Node {
         std::uint32_t first_child;
         float area;
     };
-    /// Data shared by four siblings.
     struct Block {
         std::uint32_t parent, patch, parent_path;
     };
@@ -122,9 +113,9 @@ class ElementForest {
     static void for_siblings(std::uint32_t begin, std::uint32_t end, const Body& body);
 
     std::uint64_t scene_fingerprint_;
-    std::vector<PatchGeometry> geometry_;  // per patch
+    std::vector<PatchGeometry> geometry_;
     std::uint32_t patch_count_;
-    /// First element of each generation, and the end of the last one. Parents belong to an earlier generation.
+    /// First element of each generation, then the end. Parents belong to earlier generations.
     std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;
@@ -151,14 +142,13 @@ void ElementForest::for_siblings_from_leaves(const Body& body) const {
     for (std::size_t g = generations_.size() - 1; g > 0; --g) for_siblings(generations_[g - 1], generations_[g], body);
 }
 
-/// Copies the parent's value to each element from `first` on.
 template <class T>
 void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {
     values.resize(forest.size());
     for (std::uint32_t e = first; e < forest.size(); ++e) values[e] = values[forest.parent(e)];
 }
 
-/// Adds each parent's value to its children, from the roots down. Values are per unit of area.
+/// Adds each parent's value per area to its children, from the roots down.
 template <class T>
 void push(const ElementForest& forest, std::vector<T>& values) {
     forest.for_siblings_from_roots([&](std::uint32_t first) {
@@ -167,7 +157,7 @@ void push(const ElementForest& forest, std::vector<T>& values) {
     });
 }
 
-/// Sets inner elements to the area-weighted mean of their children, from the leaves up.
+/// Sets inner elements to the area-weighted mean of their children.
 template <class T>
 void pull(const ElementForest& forest, std::vector<T>& values) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {

@@ -8,9 +8,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Squares per side of a quadrilateral with non-linear texture coordinates.
+/// Squares per side of a non-linear quadrilateral.
 constexpr int squares_per_side = 4;
-/// Twist, relative to the diagonals, up to which a quadrilateral counts as a parallelogram.
+/// Relative twist below which a quadrilateral is a parallelogram.
 constexpr float rounding = 1e-5f;
 
 template <class Vector>
@@ -19,7 +19,6 @@ bool is_parallelogram(const std::array<Vector, 4>& x) {
     return twist.length() <= rounding * ((x[2] - x[0]).length() + (x[3] - x[1]).length());
 }
 
-/// Whether both position and texture coordinates are linear in a quadrilateral's parameters.
 bool is_linear(const Scene& scene, const Patch& patch) {
     std::array<V3f, 4> corners;
     std::array<V2f, 4> coordinates;
@@ -30,8 +29,7 @@ bool is_linear(const Scene& scene, const Patch& patch) {
     return is_parallelogram(corners) && is_parallelogram(coordinates);
 }
 
-/// Twice the area of the triangle between three points of a patch [m^2], accurate also far below the rounding of
-/// positions.
+/// Twice the area of a triangle on a patch [m^2], accurate below the rounding of positions.
 double doubled_area(const PatchGeometry::Shape& shape, const std::array<Parameters, 3>& p) {
     const auto edge = [&](const Parameters& a, const Parameters& b) {
         const double au = a.u, av = a.v, bu = b.u, bv = b.v;

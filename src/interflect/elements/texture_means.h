@@ -9,15 +9,14 @@
 
 namespace interflect::detail {
 
-/// Area-weighted means of a scene's textures over cells of its patches. Where texture coordinates are linear
-/// (triangles, undistorted images on quadrilaterals), a cell's mean is that of its children, to rounding. Elsewhere a
-/// cell is approximated by 32 triangles. Depends on the patch and the cell alone.
+/// Area-weighted means of textures over cells, exact for linear texture coordinates. Other quadrilaterals are
+/// approximated by 32 triangles per cell.
 class TextureMeans {
   public:
-    /// @param scene  Without faults; must outlive this object.
+    /// @param scene  Valid; must outlive this.
     explicit TextureMeans(const Scene& scene);
 
-    /// Mean over `cell` of a patch with texture coordinates. @param texture  Index, or none, which gives 1.
+    /// Returns 1 without a texture (`none`).
     Rgb mean(std::uint32_t texture, const Patch& patch, const PatchGeometry& geometry, const Cell& cell) const;
 
   private:

@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// @throws InputError listing all options out of range and all faults of the scene.
+/// @throws InputError listing all faults.
 void require_solvable(const Scene& scene, const SolveOptions& options);
 
 }  // namespace interflect::detail

@@ -19,7 +19,7 @@ Run::Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster
 void Run::dim_sources() {
     const bool is_dimmed = std::any_of(state.solution.dimming.begin(), state.solution.dimming.end(),
                                        [](float factor) { return factor != 1; });
-    const std::shared_ptr<const Scene> before = scene;  // keep it alive while referenced
+    const std::shared_ptr<const Scene> before = scene;
     scene = is_dimmed ? std::make_shared<const Scene>(dimmed(*undimmed_scene, state.groups, state.solution.dimming))
                       : undimmed_scene;
     set_sources(state, *scene);
@@ -27,18 +27,18 @@ void Run::dim_sources() {
 
 void Run::dim(std::size_t group, float factor) {
     Solution& solution = state.solution;
-    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // the light of a dark group is kept
+    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // a dark group keeps its light
     if (factor > 0) known_dimming[group] = factor;
     solution.dimming[group] = factor;
     for (Rgb& h : solution.groups[group]) h *= change;
     solution.irradiance = sum_of(solution.groups, solution.dimming);
     dim_sources();
-    state.escaped_power_rays = 0;  // unknown until the next iteration ends
+    state.escaped_power_rays = 0;  // unknown until the next iteration
 }
 
 Solution Run::snapshot() {
     Solution copy = state.solution;
-    method->finish(state);  // modifies irradiance
+    method->finish(state);
     std::swap(copy, state.solution);
     std::fill(copy.dimming.begin(), copy.dimming.end(), 1.0f);  // relative to the sources of `scene`
     const auto forest = std::make_shared<ElementForest>(*scene, state.forest->size());

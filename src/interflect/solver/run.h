@@ -16,7 +16,7 @@
 
 namespace interflect::detail {
 
-/// A run of the solver: the scene, the method and their state. See Solver.
+/// Scene, method and state of a Solver.
 struct Run {
     /// @param caster  Of this scene. @throws InputError as Solver does.
     Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster, const SolveOptions& options);
@@ -27,16 +27,15 @@ struct Run {
     SolverState state;
     const std::unique_ptr<IterationMethod> method;
     bool is_prepared = false, is_finished = false;
-    double error = std::numeric_limits<double>::infinity();  // estimate for the current views
+    double error = std::numeric_limits<double>::infinity();  // for the current views
     int iteration = 0;
-    std::vector<float> known_dimming;  // factors for which the stored light was computed
+    std::vector<float> known_dimming;  // factors of the stored light
 
-    std::mutex finishing;              // guards `finished`
-    std::optional<Solution> finished;  // cached solution()
+    std::mutex finishing;  // guards `finished`
+    std::optional<Solution> finished;
 
-    /// Scales the sources of a group and their light.
     void dim(std::size_t group, float factor);
-    /// Returns the current solution with its own copy of the forest, because that of the run grows.
+    /// Copies the growing forest.
     Solution snapshot();
     /// @throws std::runtime_error if the data are inconsistent.
     void archive(StateArchive& archive);
@@ -45,7 +44,7 @@ struct Run {
     void dim_sources();
 };
 
-/// The main loop: continues the run until a limit is reached or the plan is complete. @throws Interrupted
+/// Main loop, until a limit or the end of the plan. @throws Interrupted
 void iterate_until(Run& run, const Limits& limits);
 
 }  // namespace interflect::detail

@@ -32,7 +32,7 @@ void atomically(Run& run, const Work& work) {
     try {
         work();
     } catch (const Interrupted&) {
-        if (run.state.options.method.is_stochastic) {  // finished links are kept
+        if (run.state.options.method.is_stochastic) {  // deterministic methods keep finished links
             start.restore(run.state);
             run.method->discard();
         }
@@ -40,16 +40,16 @@ void atomically(Run& run, const Work& work) {
     }
 }
 
-/// Makes the first estimate of importance (Eq. 7, 8) and the initial mesh (Eq. 14, 15). @throws Interrupted
+/// Estimates importance (Eq. 7, 8) and makes the initial mesh (Eq. 14, 15). @throws Interrupted
 void prepare(Run& run) {
     SolverState& state = run.state;
-    if (!state.options.method.is_stochastic) limit_time(state);  // others always complete it
+    if (!state.options.method.is_stochastic) limit_time(state);  // stochastic methods always complete it
     if (!run.is_prepared) atomically(run, [&] { run.method->prepare(state); });
     run.is_prepared = true;
     limit_time(state);
 }
 
-/// Plans the next iteration; 0 rays if the run is over. @param rays_asked_for  Total number; extends a completed plan.
+/// @param rays_asked_for  In total; extends a completed plan. @return  0 rays if the run is over.
 IterationPlan plan_iteration(Run& run, std::int64_t rays_asked_for) {
     SolverState& state = run.state;
     const IterationPlan next = run.method->plan(state);
@@ -95,7 +95,7 @@ void iterate_until(Run& run, const Limits& limits) {
 }  // namespace detail
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
-    // Non-owning, because the arguments outlive the solver.
+    // Non-owning: both outlive the solver.
     const std::shared_ptr<const Scene> shared_scene(std::shared_ptr<void>(), &scene);
     const std::shared_ptr<const RayCaster> shared_caster(std::shared_ptr<void>(), &ray_caster);
     Solver solver(shared_scene, options, shared_caster);

@@ -11,11 +11,11 @@
 
 namespace interflect::detail {
 
-/// Fixed-point units of contributions. The sum over all rays fits.
+/// Fixed-point units in which the sums over all rays fit.
 struct ContributionUnits {
     FixedPoint power, square, importance;
 
-    /// @param visits  Upper bound of the number of elements that receive the same power by reflection; >= 1.
+    /// @param visits  Upper bound of the elements that receive the same power by reflection; >= 1.
     ContributionUnits(const PayloadTotals& all, double visits)
         : power(channel_sum(all.power) * visits), square(all.square * visits), importance(all.importance) {}
 
@@ -27,7 +27,6 @@ struct ContributionUnits {
         return contribution;
     }
 
-    /// @param transmittance  Product over the panes that the ray has passed.
     Contribution contribution(const RayPlan& plan, const Payload& payload, std::uint32_t source,
                               const Rgb& transmittance = Rgb(1)) const {
         Contribution contribution{};
@@ -38,7 +37,6 @@ struct ContributionUnits {
         return contribution;
     }
 
-    /// Replaces `terms` by the power of each light group in the contribution.
     void add_groups(const RayPlan& plan, const Payload& payload, std::uint32_t source, std::vector<std::int64_t>& terms,
                     const Rgb& transmittance = Rgb(1)) const {
         terms.clear();

@@ -12,25 +12,22 @@
 
 namespace interflect::detail {
 
-/// Contribution of a ray to an element, as integers: three channels of power, squared luminance, importance.
+/// Integers: three channels of power, squared luminance, importance.
 using Contribution = std::array<std::int64_t, 5>;
 inline constexpr std::size_t power_terms = 4, importance_term = 4;
 
-/// Sums of the contributions to each element in a step: three channels of power, squared luminance of each ray's power,
-/// and importance. Fixed-point integers make the order of additions irrelevant. Each thread bins contributions by
-/// region of the forest in its own ScatterBuffer. Full bins are flushed under the lock of their region.
+/// Sums of the contributions to each element in a step. Integers make the order of additions irrelevant. Each thread
+/// bins contributions by region of the forest (ScatterBuffer) and flushes full bins under the region's lock.
 class ContributionSums {
   public:
-    /// Address space per element [bytes].
+    /// Address space [bytes].
     static constexpr std::size_t reserved_per_element(std::size_t groups) {
         return sizeof(Contribution) + 3 * groups * sizeof(std::int64_t);
     }
 
-    /// @param capacity  Maximum number of elements.
     explicit ContributionSums(std::size_t capacity, std::size_t groups = 0)
         : sums_(capacity), group_terms_(3 * groups), group_sums_(capacity * group_terms_) {}
 
-    /// Starts a step. @param elements  Current size of the forest.
     void begin(std::size_t elements);
     void clear(std::size_t elements) {
         for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
@@ -49,8 +46,7 @@ class ContributionSums {
     void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
         for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
     }
-    /// Frees the memory of collected elements. Small forests keep it: clearing new pages takes longer than the
-    /// additions.
+    /// Frees collected memory, unless the forest is small: clearing new pages is slower than the additions.
     void release(std::size_t begin, std::size_t end) {
         if (elements_ <= most_kept) return;
         sums_.release(begin, end);
@@ -61,8 +57,7 @@ class ContributionSums {
       public:
         explicit ScatterBuffer(ContributionSums& sums) : sums_(&sums) {}
 
-        /// @param contribution  Payload of one ray of the source.
-        /// @param of_groups     Its power by light group; empty: 0.
+        /// @param contribution  Payload of one ray. @param of_groups  Its power by light group; empty: 0.
         /// @return Index of the source.
         std::uint32_t add_source(const Contribution& contribution, std::span<const std::int64_t> of_groups = {}) {
             contributions_.push_back(contribution);
@@ -78,11 +73,11 @@ class ContributionSums {
             bin.deposits[bin.count++] = {element, source & (most_sources - 1), power, importance};
             if (bin.count == bin.deposits.size()) flush(region);
         }
-        /// Limits the size of the table of sources. Call while no source index is in use.
+        /// Invalidates the indices of sources.
         void release_sources() {
             if (contributions_.size() >= enough_sources) flush_all();
         }
-        /// Adds all collected contributions to the sums. Source indices start at 0 again.
+        /// Invalidates the indices of sources.
         void flush_all() {
             for (std::size_t region = 0; region < regions; ++region) flush(region);
             contributions_.clear();
@@ -111,7 +106,7 @@ class ContributionSums {
   private:
     static constexpr std::size_t regions = 64;
     static constexpr std::uint32_t most_sources = 1u << 30;  // width of Deposit::source
-    static constexpr std::size_t enough_sources = 8192;  // their contributions fill a quarter of a second-level cache
+    static constexpr std::size_t enough_sources = 8192;      // a quarter of a second-level cache
 
     static constexpr std::size_t most_kept = std::size_t{1} << 20;  // elements
 

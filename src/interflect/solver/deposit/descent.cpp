@@ -81,9 +81,8 @@ void Descent::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, co
     sources_.begin(pairs_, i, path_, rays_[i].reflectance);
 }
 
-/// Moves all rays one level down (Eq. 14, 15, Prikryl et al. 2000). A rejected pair is divided at its larger end. For
-/// an accepted pair, the receiver of power is final, and importance descends to the leaf. No branch depends on the
-/// oracle.
+/// Moves all rays one level down (Eq. 14, 15, Prikryl et al. 2000). A rejected pair is divided at its larger end. An
+/// accepted pair fixes the receiver of power; importance continues to the leaf.
 void Descent::advance() {
     Lanes some;
     for (const std::uint32_t i : open()) look_up_receiver(i);
@@ -127,7 +126,7 @@ inline void Descent::look_up_receiver(std::size_t i) {
         pairs_.importance[i] = step_.oracle.importance[element];
 }
 
-/// Divides the lowest shooter of a path, or a receiver without children. Settles a pair that cannot be divided.
+/// Creates children at the larger end, or settles the pair.
 void Descent::subdivide_on_demand(std::size_t i) {
     const std::uint32_t receiver = pairs_.receiver[i];
     if (pairs_.shooter_area[i] > pairs_.area[i]) {

@@ -20,7 +20,6 @@
 
 namespace interflect::detail {
 
-/// Power and rays that left the scene.
 struct Escaped {
     FixedPoint::Value power{};
     std::int64_t rays = 0;
@@ -32,13 +31,12 @@ struct Escaped {
     }
 };
 
-/// Finds the elements that receive the payload of each ray, for one thread. Structure-of-arrays traversal with lane
-/// refill: many rays descend the quadtrees level by level, and a new ray replaces a finished one in its lane. This
-/// hides memory latency and vectorises.
+/// Finds the elements that receive the payload of each ray; one object per thread. Many rays descend the quadtrees
+/// level by level, as a structure of arrays with lane refill. This hides memory latency and vectorises.
 class Descent {
   public:
-    /// @param old_size  Size of the forest before the step. All other arguments must outlive this.
-    /// @param importance Collects importance found by rays; may be null.
+    /// @param old_size  Size of the forest before the step. @param importance  May be null. Arguments must outlive
+    /// this.
     Descent(const Materials& materials, ElementForest& forest, const TransportStep& step, std::uint32_t old_size,
             ContributionSums& sums, FoundImportance* importance)
         : materials_(materials),
@@ -55,15 +53,15 @@ class Descent {
         pairs_.next.fill(none);
     }
 
-    /// @param source        Leaf, or old_size + luminaire part. Each of its rays carries `contribution`.
-    /// @param of_groups     Power of each light group in `contribution`.
-    /// @param origins       Parameters on the leaf's patch; unused for luminaire parts.
-    /// @param transmitted   Share of found importance that returns to the source.
+    /// @param source       Leaf, or old_size + index of a part of the luminaires' emission (Emission).
+    /// @param contribution Payload of each ray. @param of_groups  Its power by light group.
+    /// @param origins      On the leaf's patch; unused for luminaire parts.
+    /// @param transmitted  Transmittance before the hits; scales found importance.
     void deposit(std::uint32_t source, const Contribution& contribution, std::span<const std::int64_t> of_groups,
                  std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
                  float transmitted = 1);
     void prefetch(const Hit& hit) const;
-    /// Finishes all rays in flight. Call at the end of each task.
+    /// Finishes all rays in flight.
     void finish_batch();
     void deposit_at(std::uint32_t leaf, const Contribution& contribution, std::span<const std::int64_t> of_groups) {
         buffer_.add(leaf, buffer_.add_source(contribution, of_groups), true, false);
@@ -72,18 +70,18 @@ class Descent {
         for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
         ++escaped_.rays;
     }
-    /// Points of the leaves that reflect where they receive, in any order.
+    /// Hit points on leaves that reflect where they receive.
     const std::vector<StartPoint>& start_points() const { return start_points_; }
-    /// Flushes all contributions. @return Escaped power and rays of this thread.
+    /// @return  Escaped power and rays.
     Escaped finish();
 
   private:
     static constexpr std::size_t lanes = RayPairs::lanes;
     struct RayState {
-        std::uint32_t source, patch;  // patch: hit by the ray
-        std::uint32_t left;           // index in left_
-        Parameters start;             // on the source's patch
-        Rgb reflectance{0, 0, 0};     // rho_i
+        std::uint32_t source, patch;
+        std::uint32_t left;
+        Parameters start;
+        Rgb reflectance{0, 0, 0};  // rho_i
     };
 
     using Lanes = std::array<std::uint32_t, lanes>;
@@ -109,10 +107,10 @@ class Descent {
     FoundImportance* found_importance_;
     struct Left {
         std::uint32_t source;
-        double found;  // importance found so far
+        double found;
         float transmitted;
     };
-    std::vector<Left> left_;  // sources of the current task
+    std::vector<Left> left_;
     RayPairs pairs_{};
     std::array<RayState, lanes> rays_;
     Lanes open_;  // lanes in use, then free lanes

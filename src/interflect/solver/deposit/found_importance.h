@@ -11,15 +11,15 @@
 
 namespace interflect::detail {
 
-/// Importance that rays find at their hit points, summed for each source. The mean over a leaf's rays estimates its
-/// transported importance (Eq. 7, Prikryl et al. 2000), even for small lamps that few rays from the view hit.
+/// Importance at the hit points of rays, summed by source. Its mean estimates the transported importance of a leaf (Eq.
+/// 7, Prikryl et al. 2000), even of small lamps that few importance rays hit.
 class FoundImportance {
   public:
-    /// @param most_per_ray  Maximum importance found by one ray. @param sources  Their number.
+    /// @param most_per_ray  Maximum importance found by one ray.
     FoundImportance(double most_per_ray, std::int64_t rays, std::size_t sources)
         : unit_(most_per_ray * static_cast<double>(rays)), sums_(sources) {}
 
-    /// Adds importance found by rays of a source. Thread-safe.
+    /// Thread-safe.
     void add(std::size_t source, double found) { add_concurrently(sums_[source], unit_.from(found)); }
     double sum(std::size_t source) const { return unit_.to_number(sums_[source]); }
 

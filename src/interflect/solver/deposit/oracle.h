@@ -10,20 +10,19 @@
 
 namespace interflect::detail {
 
-/// One end of an interaction, as seen by the oracle.
+/// Element or luminaire part at one end of a pair.
 struct ElementProxy {
     V3f centre{0, 0, 0};  ///< [m]
-    V3f normal{0, 0, 0};  ///< Unit length.
-    float area = 0;       ///< [m^2]
-    /// Minimum cosine, 1 for a source that shines equally in all directions.
+    V3f normal{0, 0, 0};
+    float area = 0;  ///< [m^2]
+    /// Lower bound of the cosine; 1 for an isotropic source.
     float least_cosine = 0;
 };
 
-/// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j), of a disk of the
-/// shooter's area, times the cosines at both ends of the line between the centres. Cosines are at least 2 f, because
-/// parts of close elements face each other more directly.
+/// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j) for a disk, times the
+/// cosines at both ends. Cosines are at least 2 f: parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
-    // By value and without branches, to vectorise.
+    // Branch-free, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
     const auto larger = [](float x, float y) { return x < y ? y : x; };
     const V3f d = receiver.centre - shooter.centre;
@@ -37,22 +36,20 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
     return f * from_shooter * to_receiver;
 }
 
-/// Refinement test for the two elements of a ray. The result depends on the state before the step, never on other rays.
+/// Refinement test. Depends on the state before the step, not on other rays.
 struct Oracle {
-    bool refines = false;  ///< False: the leaves that the ray connects exchange light.
+    bool refines = false;  ///< False: leaves exchange light.
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
     float min_area = 0;  ///< Elements below four times this area are not divided [m^2].
-    /// Maximum size of the forest. Excess elements are dropped at the end of a step, in an order independent of
-    /// threads.
+    /// Excess elements are dropped at the end of a step, in an order independent of threads.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 
-    /// psi of every element before the step; empty unless by_importance.
+    /// psi before the step; empty unless by_importance.
     std::vector<float> importance;
 
-    /// Evaluates Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000, for the largest channel.
-    /// @param reflected  Largest channel of rho_i B_j [lm/m^2 or W/m^2].
-    /// @param psi        psi_i of the receiver; 1 unless by_importance.
+    /// Evaluates Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000.
+    /// @param reflected  Largest channel of rho_i B_j [lm/m^2 or W/m^2]. @param psi  psi_i; 1 unless by_importance.
     bool accepts(const ElementProxy& shooter, const ElementProxy& receiver, float reflected, float psi) const {
         const double power = static_cast<double>(reflected) * receiver.area;
         return power * psi * form_factor_estimate(shooter, receiver) <= threshold;

@@ -11,23 +11,23 @@
 
 namespace interflect::detail {
 
-/// Ancestor paths of the leaves that shot the rays in flight. Each pair uses the element that suits its receiver.
+/// Ancestors of the leaves that shot the rays in flight. Each pair uses the ancestor that matches its receiver in size.
 class SourcePaths {
   public:
-    /// Range of shooters, from the largest to the smallest.
+    /// Range of shooters, root first.
     struct Path {
         std::uint32_t first = 0, last = 0;
     };
 
-    /// Both arguments must outlive this.
+    /// The arguments must outlive this.
     SourcePaths(ElementForest& forest, const TransportStep& step) : forest_(forest), step_(step) {}
 
     Path append_leaf(std::uint32_t leaf);
-    /// Appends a proxy of a luminaire part for one of its rays.
+    /// For one ray of a part of the luminaires' emission (Emission).
     Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void clear() { sources_.clear(); }
 
-    /// Starts with the largest shooter. @param reflectance  rho_i of the patch that was hit.
+    /// @param reflectance  rho_i of the hit patch.
     void begin(RayPairs& pairs, std::size_t i, const Path& path, const Rgb& reflectance) const {
         pairs.lowest_shooter[i] = path.last;
         pairs.shooter_normal.set(i, sources_[path.first].normal);
@@ -41,25 +41,24 @@ class SourcePaths {
         return (shooter > receiver) & (number < lowest);
     }
 
-    /// Selects the largest shooter of the path that is not larger than the receiver, or the lowest. Larger ones give
-    /// the same received power, so the oracle skips them.
+    /// Selects the largest shooter not larger than the receiver, or the lowest. Larger ones would give the same power.
     void choose(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
         while (number < pairs.lowest_shooter[i] && sources_[number].area > pairs.area[i]) ++number;
         take(pairs, i, number, reflectance);
     }
 
-    /// Replaces the lowest shooter of a path by its child at the start of the ray. @return Whether this was possible.
+    /// Replaces the lowest shooter by its child at the ray's origin. @return  False if indivisible.
     bool subdivide(RayPairs& pairs, std::size_t i, const Parameters& start, const Rgb& reflectance, bool may_grow);
 
   private:
     struct Shooter {
-        std::uint32_t element;  // none: luminaire part
+        std::uint32_t element;  // invalid: luminaire part
         Cell cell;
         V3f centre, normal;
         float area;  // [m^2]
         float least_cosine;
-        Rgb radiosity{0, 0, 0};  // new elements inherit it
+        Rgb radiosity{0, 0, 0};
     };
 
     void take(RayPairs& pairs, std::size_t i, std::uint32_t number, const Rgb& reflectance) const {
@@ -75,7 +74,7 @@ class SourcePaths {
     std::vector<Shooter> sources_;
 };
 
-/// Returns the first child, or none. Creates children of a leaf if the forest may grow.
+/// Returns the first child, if any. Creates it on demand if the forest may grow.
 inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t element, bool may_grow) {
     const std::uint32_t child = forest.first_child(element);
     return child == none && may_grow ? forest.subdivide(element) : child;

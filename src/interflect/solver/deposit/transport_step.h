@@ -11,24 +11,24 @@
 
 namespace interflect::detail {
 
-/// One step of transport: the rays of a plan and the receivers of their payload.
+/// The rays of a plan and their receivers.
 struct TransportStep : RayPlan {
     explicit TransportStep(RayPlan plan = {}) : RayPlan(std::move(plan)) {}
 
-    Radiosity known_light;  ///< Radiosity for the oracle, shot or not; empty: `light`.
+    Radiosity known_light;  ///< Radiosity for the oracle; empty: `light`.
     const Radiosity& light_for_oracle() const { return known_light.empty() ? light : known_light; }
-    bool importance_at_patches = false;  ///< Patches receive importance, not leaves.
+    bool importance_at_patches = false;
     Oracle oracle;
-    /// Random walks complete the transport of this power, which no later step reflects (Walks).
+    /// Random walks complete the transport of this power (Walks).
     bool to_the_end = false;
-    /// Nonzero for leaves that reflect where they receive, or empty. Received::start_points contains their points.
+    /// Nonzero for leaves that reflect where they receive (Received::start_points); may be empty.
     std::span<const std::uint8_t> reflecting_where_received;
     bool reflects_where_received(std::uint32_t leaf) const {
         return !reflecting_where_received.empty() && reflecting_where_received[leaf] != 0;
     }
-    /// Buffer to reuse after all rays are traced, such as that of `light`, or null.
+    /// Buffer to reuse after tracing, or null.
     std::vector<Rgb>* spent = nullptr;
-    /// Received values of inner elements stay 0. Not with a refining oracle.
+    /// Inner elements receive 0. Not with a refining oracle.
     bool leaves_only = false;
 };
 

@@ -13,14 +13,13 @@ namespace interflect::detail {
 
 namespace {
 
-/// Bounds of the mean squared difference relative to the next coarser level. It is a quarter where irradiance is
-/// smooth, and a half at edges.
+/// Bounds of the decay of mean squared differences per level: 1/4 for smooth irradiance, 1/2 at edges.
 constexpr double least_decay = 0.25, most_decay = 0.7;
 
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
     double noise_of_patches = 0;  // variance of patch means, part of `noise`
-    double assumed = 0;           // error by the variation within leaves without siblings
+    double assumed = 0;           // by variation within leaves without siblings
 
     ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight, noise += o.noise, bias += o.bias;
@@ -49,7 +48,7 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
     });
 }
 
-/// Returns the squared error by variation within the leaves, extrapolated from that among them.
+/// Extrapolates the variation among siblings to finer levels.
 double error_within_leaves(const RiskCheck& check) {
     if (!(check.weight > 0)) return 0;
     const bool is_known = check.signal > 0 && check.signal_of_parents > 0;
@@ -60,9 +59,8 @@ double error_within_leaves(const RiskCheck& check) {
     return sum / check.weight;
 }
 
-/// Returns the squared error of the differences between siblings. The noise model expects too much noise in hard
-/// shadows, where points are well distributed. Its estimate of the error may then even be negative, and the
-/// measurements of earlier iterations replace it.
+/// Squared error of the differences between siblings. The noise model overestimates noise in hard shadows, where points
+/// are well distributed. A strongly negative bias shows this; measurements then replace the model.
 double error_of_variations(const RiskCheck& check, double noise, double bias) {
     const double expected = noise + bias;
     const bool is_reliable = bias > -noise / 2;
@@ -110,7 +108,7 @@ ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure) {
     const double of_variations = error_of_variations(state.risk_check, sums.noise - sums.noise_of_patches, sums.bias);
     const double all = sums.noise_of_patches + of_variations + error_within_leaves(state.risk_check) + sums.assumed;
     const double discretisation = state.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
-    // Pixels without a surface have no error, but count in the mean.
+    // Pixels without a surface have no error but count in the mean.
     const double shown = measure == ErrorMeasure::surfaces ? 1 : state.view.shown_share();
     const double scale = 1 / (mean * std::sqrt(total_weight * shown));
     return {std::sqrt(sums.noise) * scale, std::sqrt(discretisation) * scale};

@@ -7,21 +7,21 @@
 
 namespace interflect::detail {
 
-/// Mean square errors of every element; bias may be negative.
+/// Mean square errors by element; bias may be negative.
 struct ElementErrors {
     std::vector<float> noise, bias;
     std::vector<float> noise_of_patch;  // variance of the patch mean, part of `noise`
 };
 ElementErrors element_errors(const SolverState& state, ErrorMeasure measure);
 
-/// Estimated errors, relative to error_reference(); see IterationReport.
+/// Relative to error_reference(); see IterationReport.
 struct ErrorEstimate {
     double noise = 0, discretisation = 0;
 
     double total() const;
 };
 
-/// @return Infinite until two iterations have been compared, or if nothing relevant is lit.
+/// Infinite until two iterations have been compared, or if the relevant surfaces are dark.
 ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure);
 inline ErrorEstimate estimate_error(const SolverState& state) { return estimate_error(state, default_measure(state)); }
 

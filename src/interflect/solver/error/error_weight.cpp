@@ -15,7 +15,7 @@ double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_
     if (measure == ErrorMeasure::surfaces) return 1;
     const Rgb rho = state.materials.surface(state.forest->patch(element), element).reflectance;
     Rgb h = state.solution.irradiance[element];
-    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // may be negative as a sum of noisy differences
+    for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // noisy differences may sum to a negative value
     const float all = luminance(h), reflected = luminance(Rgb(rho * h));
     const float factor = all > 0 ? reflected / all : luminance(rho);
     return static_cast<double>(state.solution.view_importance[element]) * factor * factor;
@@ -41,7 +41,7 @@ double error_reference(const SolverState& state, ErrorMeasure measure) {
         }
         return sum;
     });
-    // The view importance of the surfaces that pixels show first sums to 1; those behind panes only add light.
+    // View importance sums to 1 over first hits; surfaces behind panes only add light.
     return of_pictures ? sums.light : sums.light / sums.weight;
 }
 

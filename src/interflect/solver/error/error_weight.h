@@ -6,16 +6,15 @@
 
 namespace interflect::detail {
 
-/// Domain of the error: the pictures of the views, or all surfaces.
+/// Domain of the error: pictures of the views, or all surfaces.
 enum class ErrorMeasure { pictures, surfaces };
-/// Returns pictures if a view shows a surface, else surfaces.
 ErrorMeasure default_measure(const SolverState& state);
 
-/// Weight of the squared error of an element's luminance, per area. Pictures: view importance times squared luminance
-/// of the reflectance. Surfaces: 1.
+/// Weight of the squared luminance error, per area. Pictures: view importance times squared luminance of rho. Surfaces:
+/// 1.
 double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_t element);
 
-/// Weighted mean luminance of reflected light (pictures) or irradiance (surfaces).
+/// Weighted mean luminance: reflected light (pictures) or irradiance (surfaces).
 double error_reference(const SolverState& state, ErrorMeasure measure);
 
 }  // namespace interflect::detail

@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// Completes the solution: shrinks differences of siblings if enabled, and computes errors and ray counts of elements.
+/// Shrinks differences of siblings if enabled; computes errors and ray counts of elements.
 void finish_solution(SolverState& state);
 
 }  // namespace interflect::detail

@@ -13,8 +13,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Averaged differences y of siblings from their parent times new ones, z: the area-weighted mean of the four.
-/// E y z = |d|^2 for true differences d.
+/// Mean of y z over siblings: their averaged difference y and new difference z from the parent. E y z = |d|^2 for true
+/// differences d.
 double measured_signal(const SolverState& state, const Estimate& fresh, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t parent = forest.parent(first);
@@ -30,8 +30,8 @@ double measured_signal(const SolverState& state, const Estimate& fresh, std::uin
     return product / area;
 }
 
-/// Measures squared errors with the next iteration. After shrinkage k, E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z).
-/// Unlike Stein's estimate, this needs no noise model. It measures earlier iterations only.
+/// Measures earlier iterations with the next one: E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z) for shrinkage k. Unlike
+/// Stein's estimate, this needs no noise model.
 RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();
@@ -74,7 +74,7 @@ void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays
     const ErrorMeasure measure = default_measure(state);
     const auto weight = [&](std::uint32_t e) { return error_weight(state, measure, e) * state.forest->area(e); };
     if (uses_shrinkage(state) && state.noise.is_known()) {
-        constexpr double long_enough = 0.25;  // share of the rays averaged before
+        constexpr double long_enough = 0.25;  // of the averaged rays
         const double before = long_enough * static_cast<double>(state.schedule.averaged_rays());
         state.risk_check.add(check_risk(state, fresh),
                              std::min(1.0, static_cast<double>(rays) / std::max(1.0, before)));

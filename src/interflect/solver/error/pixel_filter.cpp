@@ -8,8 +8,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Fraction of the variance of a signal that remains after a box filter of width 1 (a pixel). Steps: independent
-/// constant pieces of length `a`. Pairs: adjacent pieces of length `a` with opposite values.
+/// Share of the variance of a piecewise constant signal after a box filter of width 1; `a` is the length of a piece.
+/// Steps: independent pieces. Pairs: adjacent pieces of opposite values.
 float shown_of_steps(float a) { return a > 1 ? 1 - 1 / (3 * a) : a * (1 - a / 3); }
 float shown_of_pairs(float a) {
     if (a > 1) return 1 - 1 / (2 * a);
@@ -32,7 +32,7 @@ Extents extents_in_pixels(const SolverState& state, std::uint32_t element) {
     return {std::sqrt(pixels * aspect), std::sqrt(pixels / aspect)};
 }
 
-/// The fractions in two dimensions. Differences of four siblings change sign along one side, the other, or both.
+/// Sibling differences change sign along one side, the other, or both.
 float shown_of_patch(const Extents& patch) { return shown_of_steps(patch.u) * shown_of_steps(patch.v); }
 float shown_of_siblings(const Extents& sibling) {
     const float u = shown_of_pairs(sibling.u), v = shown_of_pairs(sibling.v);

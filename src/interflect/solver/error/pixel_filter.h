@@ -9,16 +9,14 @@
 
 namespace interflect::detail {
 
-// Pixels are means over their squares, so pictures show only a share of the variation among small elements. Surfaces
-// show all of it: the results are 1 for ErrorMeasure::surfaces.
+// Shares of variance that pictures show: pixels are means over their squares. 1 for ErrorMeasure::surfaces.
 
-/// Returns the share of the variance of independent patches.
+/// Share for independent patches.
 float shown_of_patch(const SolverState& state, ErrorMeasure measure, std::uint32_t patch);
-/// Returns the share of the variation among the siblings `first` ... `first` + 3.
+/// Share for siblings `first` ... `first` + 3.
 float shown_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first);
-/// Returns the share of the variation among the descendants of a leaf that pictures show, by level. Gradients and edges
-/// of shadows vary along one side only, and continue in the neighbours along the other. The share is small for elements
-/// smaller than a pixel, but not 0, because elements are not aligned with pixels.
+/// Share for the descendants of a leaf, by level. Gradients and shadow edges vary along one side only. Sub-pixel
+/// elements are not aligned with pixels, so a small share remains.
 std::array<float, finer_levels> shown_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf);
 
 }  // namespace interflect::detail

@@ -9,7 +9,7 @@ namespace {
 
 /// Siblings are under-sampled below this fraction of their parent's rays.
 constexpr float under_sampled = 0.125f;
-/// Largest expected squared difference of siblings relative to that of their parent's: at an edge.
+/// Largest expected ratio of a sibling signal to that of the parent's siblings: at an edge.
 constexpr float highest_expected_decay = 0.5f;
 
 }  // namespace
@@ -45,7 +45,7 @@ SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first
         variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
     SiblingVariation variation{spread / area, variance / area};
-    // With few rays, shrinkage would leave more noise than any plausible signal. The parent's siblings bound it.
+    // With few rays, shrinkage leaves more noise than any plausible signal. The parent's siblings bound the signal.
     const std::uint32_t parent = forest.parent(first);
     if (uses_shrinkage(state) && state.history[first] < under_sampled * state.history[parent])
         variation.assumed = parent < forest.patch_count()
@@ -60,14 +60,13 @@ AddedError added_error(const SolverState& state, std::uint32_t first) {
     if (!variation.is_known()) return {};  // the siblings equal their parent
     if (!uses_shrinkage(state)) return {variation.noise, 0};
     const float kept = variation.shrinkage(), noise = kept * kept * variation.noise;
-    // Largest variance of four non-negative numbers. Without this limit, rays with a large weight would dominate the
-    // sum.
+    // Largest variance of four non-negative numbers; else rays with a large weight would dominate.
     const float mean = luminance(state.solution.irradiance[state.forest->parent(first)]), most = 3 * mean * mean;
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }
 
-/// The Wiener filter of each sibling has its own noise. The mean of the siblings does not change: their common loss is
-/// divided in proportion to the remaining variance, as if the parent's mean were another measurement.
+/// Wiener filter with each sibling's own noise. The common loss is divided in proportion to the remaining variance,
+/// which preserves the mean.
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const SiblingVariation variation = sibling_variation(state, first);

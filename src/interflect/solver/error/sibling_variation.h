@@ -9,47 +9,46 @@
 
 namespace interflect::detail {
 
-/// Assumed relative variation of irradiance in an unmeasured leaf.
+/// Assumed relative variation in an unmeasured leaf.
 inline constexpr float assumed_variation = 0.1f;
 
-/// Variation of irradiance among four siblings, in squared luminance [(lm/m^2)^2 or (W/m^2)^2].
+/// Variation of irradiance among siblings, the four children of an element, as squared luminance [(lm/m^2)^2 or
+/// (W/m^2)^2].
 struct SiblingVariation {
-    float spread = 0;  ///< Area-weighted mean square difference from the parent: signal plus noise.
+    float spread = 0;  ///< Mean square difference from the parent: signal (true variation) plus noise.
     float noise = 0;   ///< Expected noise in `spread`; infinite if unknown.
-    /// Assumed signal of under-sampled siblings; negative for all others.
+    /// Assumed signal of under-sampled siblings, else negative.
     float assumed = -1;
 
     bool is_known() const { return noise < std::numeric_limits<float>::infinity(); }
     bool is_under_sampled() const { return assumed >= 0; }
-    /// Unbiased and possibly negative, unless assumed.
+    /// Unbiased, possibly negative, unless assumed.
     float signal() const { return is_under_sampled() ? assumed : spread - noise; }
-    /// Wiener filter with the siblings' own signal: near 1 if it far exceeds the noise, 0 if differences are noise.
+    /// Wiener filter: near 1 if the signal far exceeds the noise, 0 if differences are noise.
     float shrinkage() const;
-    /// Mean square error after shrinkage, in addition to the parent's. Unbiased (Stein 1981, in three dimensions
-    /// because the four differences sum to zero).
+    /// Mean square error after shrinkage, beyond the parent's. Unbiased (Stein 1981, in three dimensions because the
+    /// four differences sum to zero).
     float risk() const;
 };
 
-/// Returns the variation among the siblings `first` ... `first` + 3.
+/// For siblings `first` ... `first` + 3.
 SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first);
 
-/// Whether differences of siblings that are mostly noise are reduced.
 bool uses_shrinkage(const SolverState& state);
 
-/// Mean square errors in addition to the parent's.
+/// Mean square errors beyond the parent's.
 struct AddedError {
     float noise = 0, bias = 0;
 };
 AddedError added_error(const SolverState& state, std::uint32_t first);
 
-/// Factors of the differences of four siblings from their parent, and the remaining noise variance of each, relative to
-/// its area-weighted mean.
+/// Factors of sibling differences, and the remaining noise of each relative to its mean.
 struct Shrinkage {
     std::array<float, 4> kept, noise;
 };
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first);
 
-/// Returns the signal of an element's siblings; 0 if unknown.
+/// Signal among the element's siblings; 0 if unknown.
 float signal_beside(const SolverState& state, std::uint32_t e);
 
 inline std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {

@@ -10,18 +10,18 @@ namespace interflect::detail {
 
 namespace {
 
-/// Share of the next larger neighbourhood in Neighbourhoods::smooth().
+/// Share of the next larger neighbourhood (Neighbourhoods::smooth()).
 constexpr float taken_over = 0.3f;
 
-/// Mean importance in a box of light from outside, and the factor for its parts.
+/// Mean importance in a box of outdoor light (Emission), and the factor of its parts.
 struct BoxImportance {
     PartImportance all;
     float factor = 1;
     double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
 };
 
-/// The exponent allows for few valuable rays among many. Boxes already separate these, so the factor restores the
-/// exponent 1 between boxes. It is 1 for a box of typical importance.
+/// The exponent allows for few valuable rays among many. Boxes already separate these, so the factor restores exponent
+/// 1 between them.
 std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
                                                float exponent) {
     std::vector<BoxImportance> boxes(emission.box_count());
@@ -32,7 +32,7 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
         power[emission.box(i)] += channel_sum(emission.power(i));
     }
     if (boxes.size() == 1) return boxes;
-    double first = 0, second = 0;  // moments of importance
+    double first = 0, second = 0;
     for (std::size_t b = 0; b < boxes.size(); ++b) {
         first += power[b] * boxes[b].mean();
         second += power[b] * boxes[b].mean() * boxes[b].mean();
@@ -43,8 +43,7 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
     return boxes;
 }
 
-/// Computes the importance of parts, and its mean over the parts of an emitter. The mean serves as a prior with the
-/// weight of `rays_of_mean` rays.
+/// The mean of an emitter's parts is a prior of `rays_of_mean` rays.
 void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
                  ImportanceWeights& weights) {
     constexpr std::size_t alike = Emission::parts_per_emitter;
@@ -66,9 +65,8 @@ void weigh_parts(const Emission& emission, const std::vector<PartImportance>& fo
     }
 }
 
-/// @param numbers  >= 0.
 void raise(std::span<float> numbers, float exponent) {
-    if (exponent == 0.75f) {  // the default; square roots vectorise
+    if (exponent == 0.75f) {  // default; square roots vectorise
         for (float& x : numbers) x = std::sqrt(x) * std::sqrt(std::sqrt(x));
     } else {
         for (float& x : numbers) x = std::pow(x, exponent);

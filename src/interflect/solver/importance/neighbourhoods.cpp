@@ -42,9 +42,9 @@ Neighbourhoods::Neighbourhoods(const ElementForest& forest) : patches_(forest.pa
 
 void Neighbourhoods::smooth(const ElementForest& forest, std::span<float> values, float share) const {
     struct Sum {
-        double value = 0, area = 0;  // sums of value times area, and of area
+        double value = 0, area = 0;
     };
-    std::vector<Sum> sums(2 * patches_.size());  // in depth-first order
+    std::vector<Sum> sums(2 * patches_.size());  // depth-first
     std::size_t next = 0;
     const auto add_up = [&](const auto& self, std::size_t first, std::size_t count) -> Sum {
         const std::size_t here = next++;

@@ -8,7 +8,8 @@
 
 namespace interflect::detail {
 
-/// Binary tree of neighbouring patches, split along the longest axis of their centres. 4 bytes per patch.
+/// Binary tree of patches, split along the longest axis of their centres. Its nodes are neighbourhoods. 4 bytes per
+/// patch.
 class Neighbourhoods {
   public:
     Neighbourhoods() = default;
@@ -16,13 +17,12 @@ class Neighbourhoods {
 
     bool empty() const { return patches_.empty(); }
 
-    /// Moves the mean of each neighbourhood by `share` towards that of the next larger one, from the root to the
-    /// patches.
-    /// @param values  Per area, one for each patch. @param share  In [0, 1].
+    /// Moves each neighbourhood's mean towards its parent's by `share`, from the root to the patches.
+    /// @param values  Per area, by patch.
     void smooth(const ElementForest& forest, std::span<float> values, float share) const;
 
   private:
-    std::vector<std::uint32_t> patches_;  // neighbourhoods are ranges, halved recursively
+    std::vector<std::uint32_t> patches_;  // nodes are ranges, halved recursively
 };
 
 }  // namespace interflect::detail

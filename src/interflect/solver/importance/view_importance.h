@@ -14,29 +14,26 @@
 
 namespace interflect::detail {
 
-/// Hit points of camera rays, spread evenly over the pictures. Points take 20 bytes each and are reassigned when the
-/// mesh changes.
+/// Hit points of camera rays, stratified over the pictures and reassigned when the mesh changes; 20 bytes each.
 class ViewImportance {
   public:
     ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)
         : views_(views.begin(), views.end()), seed_(seed) {}
 
-    /// Adds about `rays_per_view` jittered camera rays per view, on all threads.
     void trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
                          int rays_per_view);
 
     bool empty() const { return points_.empty(); }  ///< No view shows a surface.
     std::int64_t rays() const { return rays_; }     ///< Requested for all views.
     std::int64_t views() const { return std::ssize(views_); }
-    /// Returns the share of the pictures that shows surfaces, in [0, 1].
+    /// Share of the pictures that shows surfaces.
     double shown_share() const { return shares_ > 0 ? hit_shares_ / shares_ : 0; }
-    /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element, weighted
-    /// over the views. It sums to 1 over hit surfaces, and surfaces behind panes add their transmitted share. Inner
-    /// elements have the mean of their children.
-    /// @param at_patches  Spread V evenly over each patch.
+    /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element. It sums to 1
+    /// over first hits; surfaces behind panes add their transmitted share.
+    /// @param at_patches  Spreads V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
-    /// Prepares for a forest that loses its elements from `size` on.
+    /// Call before elements from `size` on are removed.
     void shrink(std::uint32_t size);
 
     void archive(StateArchive& archive);
@@ -49,14 +46,14 @@ class ViewImportance {
     struct Point {
         std::uint32_t patch;
         Parameters parameters;
-        float share;         // share of all pictures, times shares_
+        float share;         // of all pictures, times shares_
         std::uint32_t leaf;  // result of the last lookup
     };
     std::vector<WeightedView> views_;
     std::uint64_t seed_;
     std::uint64_t rounds_ = 0;
     std::int64_t rays_ = 0;
-    double shares_ = 0, hit_shares_ = 0;  // total weight of camera rays, and of hits
+    double shares_ = 0, hit_shares_ = 0;  // of all camera rays, and of hits
     std::vector<Point> points_;
 };
 

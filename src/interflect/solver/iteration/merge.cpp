@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Coefficients that scale children to their parent's mean: factor * child + offset.
+/// factor * child + offset: scales children to their parent's mean.
 template <class T>
 struct Scaling {
     T factor, offset;

@@ -7,31 +7,28 @@
 
 namespace interflect::detail {
 
-/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) for each element. Newer children have a
-/// larger tau. It only changes how they share their parent's mean, so no light is lost or counted twice. Equal
-/// histories give Eq. 6 itself.
+/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) per element; its history is the number of
+/// rays in its mean. A larger tau of newer children only redistributes their parent's mean, which preserves power.
 void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
            const IterationPlan& plan);
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
            const IterationPlan& plan);
 
-/// Merges estimates that are not shot again. Siblings are averaged over their own rays; their parent's mean may contain
-/// more rays, and the difference is divided among them in proportion to their noise. So the noise of a bright
-/// sibling does not spread to a dark one. Means may be negative.
+/// Merges estimates that are not shot again; means may be negative. Siblings are averaged over their own rays. The
+/// difference from their parent's mean, which may contain more rays, is divided in proportion to their noise, so noise
+/// does not spread to dark siblings.
 void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                        const IterationPlan& plan);
 
-/// Merges each light group. The stored light of a group dimmed to 0 does not change.
+/// Groups dimmed to 0 do not change.
 void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
 void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
                        const IterationPlan& plan);
 
-/// Averages escaped power by Eq. 6 to match the mean irradiance. The power of one iteration does not match, because it
-/// includes light of the previous one.
+/// Averages escaped power like irradiance (Eq. 6). The power of one iteration includes light of the previous one.
 void merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan);
 
-/// Adds the rays of an iteration. New elements (IterationPlan::old_elements) inherited a mean that is too smooth, so
-/// only `inherited_weight` of their history counts.
+/// New elements keep only `inherited_weight` of their history, because their inherited mean is too smooth.
 void update_history(SolverState& state, const IterationPlan& plan);
 
 }  // namespace interflect::detail

@@ -19,7 +19,7 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t rays_at_once = 1024;
-constexpr std::uint64_t purpose = 0x61696d;  // unique among random streams
+constexpr std::uint64_t purpose = 0x61696d;  // distinct from other streams
 
 struct LineFinder {
     const SolverState& state;
@@ -30,7 +30,7 @@ struct LineFinder {
     std::uint64_t key;
 
     /// Appends the lines of rays that escape, directly or through panes.
-    /// @param importance  Payload of each ray. @param sun  Target of the rays, or none for skies.
+    /// @param importance  Payload of each ray. @param sun  See OutdoorLine.
     void keep_escaping(std::span<const Ray> rays, std::span<const double> importance, std::uint32_t sun,
                        std::vector<OutdoorLine>& lines) const {
         std::vector<Hit> hits(rays.size());
@@ -46,7 +46,6 @@ struct LineFinder {
             if (b.hit.patch == none) keep(b.ray, static_cast<double>(channel_sum(b.transmittance)) / 3);
     }
 
-    /// Finds the lines of light to the origins of rays begin ... end - 1.
     std::vector<OutdoorLine> find(std::size_t begin, std::size_t end) const {
         RayBatch batch;
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
@@ -59,7 +58,7 @@ struct LineFinder {
             }
         std::vector<OutdoorLine> lines;
         if (state.emission.has_sky()) {
-            // Directions have density cos(theta) / pi, so irradiance is pi times the mean radiance.
+            // Directions have density cos(theta) / pi: irradiance is pi times the mean radiance.
             std::vector<double> of_radiance;
             of_radiance.reserve(importance.size());
             for (const double i : importance) of_radiance.push_back(i * std::numbers::pi);
@@ -82,7 +81,7 @@ struct LineFinder {
     }
 };
 
-/// Thins the lines, keeping their total importance.
+/// Preserves the total importance.
 std::vector<OutdoorLine> some_of(const std::vector<OutdoorLine>& lines) {
     constexpr std::size_t enough = 1 << 14;
     const std::size_t stride = (lines.size() + enough - 1) / enough;
@@ -128,7 +127,7 @@ std::vector<Weighed> crossing(const std::vector<Weighed>& lines, const Imath::Bo
     return found;
 }
 
-/// Sums the weights of the lines that cross a box; lines near its centre count more.
+/// Lines near the centre count more.
 double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     const float farthest = (box.size() / 2).length2();
     double sum = 0;
@@ -140,7 +139,7 @@ double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box
     return sum;
 }
 
-/// Returns the part of a box, halved along its long axes, that most lines cross.
+/// Returns the half of a box, along its long axes, with the largest centred weight.
 Imath::Box3f best_half(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     const V3f size = box.size();
     const float widest = std::max({size.x, size.y, size.z});
@@ -169,7 +168,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
                                        const Imath::Box3f& scene_box) {
     constexpr std::size_t most_lines = 4096, fewest_lines = 16;
     static_assert(most_targets % most_places == 0);
-    constexpr double share_of_rest = 0.05;  // minimum share of all weight for another place
+    constexpr double share_of_rest = 0.05;  // minimum share of the weight for another place
     // A quarter of evenly spread lines crosses half a box; all lines of a window do.
     constexpr double worthwhile_share = 0.4;
     // Relative to the scene, whose own parts resolve larger boxes.
@@ -182,7 +181,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     std::vector<Imath::Box3f> targets;
     for (int place = 0; place < most_places && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
          ++place) {
-        // Start at the smallest target that most lines cross.
+        // Smallest target that most lines cross.
         Imath::Box3f box = scene_box;
         std::vector<Weighed> inside = rest;
         for (const Imath::Box3f& target : targets) {
@@ -213,8 +212,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// Returns the light along each line, divided by the square root of its source's total. All lines of a sun are
-/// parallel, so the dimmer sky must locate a window along them.
+/// Light along each line over the square root of its source's total. Lines of a sun are parallel: only the dimmer sky
+/// can locate a window along them.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -230,8 +229,8 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
     return weights;
 }
 
-/// Estimates the importance of the parts from the lines, with the weight of `rays_of_lines` rays. One mean line is
-/// spread over each box, so no part starts with zero.
+/// Estimates importance from the lines, as a prior of `rays_of_lines` rays. Each box also gets a mean line, so no part
+/// starts at zero.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     constexpr double rays_of_lines = 8;
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);
@@ -255,7 +254,7 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 }  // namespace
 
 std::int64_t aim_outdoor_light(SolverState& state) {
-    // A small window transmits little importance. These rays take little time and few of all rays.
+    // Many, because a small window transmits little importance, but few of all rays.
     constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());

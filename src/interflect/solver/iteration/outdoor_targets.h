@@ -10,21 +10,20 @@
 
 namespace interflect::detail {
 
-/// Line along which light from outside the scene would reach a surface.
+/// Line along which outdoor light would reach a surface.
 struct OutdoorLine {
-    Ray light;          ///< Starts at the surface point, in the direction of the light.
-    std::uint32_t sun;  ///< Index of the sun, or none for sky light.
-    double importance;  ///< Times the brightness: received power, weighted by importance.
+    Ray light;          ///< From the surface point, in the direction of the light.
+    std::uint32_t sun;  ///< Index of the sun; `none` for skies.
+    double importance;  ///< Importance-weighted power received per unit of brightness.
 };
 
-/// Finds boxes in which lines converge, such as windows. At each place, every box is half as wide as the previous one.
-/// A line belongs to the last box that it crosses. @param weights  One per line.
+/// Finds boxes in which lines converge, such as windows; at each place, every box is half as wide as the previous one.
+/// A line belongs to the last box that it crosses.
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box);
 
-/// Aims light from outside at places that are important to the views. Traces importance out of the scene, finds targets
-/// (Emission) and estimates the importance of luminaire parts. Requires full importance and light from outside. @return
-/// Number of rays traced.
+/// Aims outdoor light at places important to the views: traces importance out of the scene, finds targets and estimates
+/// the importance of luminaire parts (Emission). @return  Rays traced; 0 without full importance or outdoor light.
 std::int64_t aim_outdoor_light(SolverState& state);
 
 }  // namespace interflect::detail

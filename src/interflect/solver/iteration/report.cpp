@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns the largest fraction of the planned rays, the planned time, and the samples for the target of the error.
+/// Largest fraction of rays, time, or samples for the target error.
 double fraction_done(const Limits& limits, const IterationReport& report) {
     double fraction = static_cast<double>(report.rays) / static_cast<double>(limits.rays);
     fraction = std::max(fraction, report.seconds / limits.time);

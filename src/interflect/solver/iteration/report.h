@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// Appends the state after an iteration to the history of the run, and calls the monitor.
+/// Appends an IterationReport and calls the monitor.
 void report(SolverState& state, int iteration);
 
 }  // namespace interflect::detail

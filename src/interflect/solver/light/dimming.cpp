@@ -16,7 +16,7 @@ using namespace detail;
 
 void dim(Scene& scene, Solution& solution, const std::string& group, float factor) {
     SourceGroups groups = source_groups(scene);
-    // source_groups() does not find a group "other" that is dimmed to 0.
+    // source_groups() omits a group "other" that is dimmed to 0.
     if (!groups.empty()) groups.names = solution.group_names;
     const std::size_t g = groups.index_of(group);
     if (!(factor >= 0 && std::isfinite(factor)))

@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Colours by light group and element, [group][element]. The groups sum to the total. Empty without groups.
+/// Colours [group][element], summing to the total. Empty without groups.
 using GroupLight = std::vector<std::vector<Rgb>>;
 
 inline void inherit(const ElementForest& forest, std::uint32_t first, GroupLight& light) {
@@ -20,22 +20,21 @@ inline void inherit(const ElementForest& forest, std::uint32_t first, GroupLight
 inline void pull(const ElementForest& forest, GroupLight& light) {
     for (std::vector<Rgb>& of_group : light) pull(forest, of_group);
 }
-/// Adds the light of each group; `sum` may be empty.
+/// @param sum  May be empty.
 void accumulate(GroupLight& sum, const GroupLight& more);
 void scale(GroupLight& light, float factor);
 
-/// Sums the groups. @param dimming  Solution::dimming; groups with factor 0 are excluded.
+/// @param dimming  Solution::dimming; excludes groups with factor 0.
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
-/// Radiosity of each source by light group.
 struct GroupRadiosity {
     const SourceGroups* groups = nullptr;  ///< Null: not separated.
     const GroupLight* irradiance = nullptr;
-    const std::vector<float>* dimming = nullptr;  ///< Solution::dimming.
+    const std::vector<float>* dimming = nullptr;
     bool emits = true;
 
     std::size_t size() const { return groups ? groups->size() : 0; }
-    /// Radiosity B of a leaf by one group [lm/m^2 or W/m^2].
+    /// B [lm/m^2 or W/m^2].
     Rgb of(const Materials& materials, const ElementForest& forest, std::uint32_t leaf, std::size_t group) const {
         if ((*dimming)[group] == 0) return Rgb(0);
         const MeanSurface surface = materials.surface(forest.patch(leaf), leaf);

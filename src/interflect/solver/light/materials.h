@@ -12,10 +12,8 @@
 
 namespace interflect::detail {
 
-/// Reflectance, exitance and transmittance by patch and, for textured patches, by element (means of the textures).
-/// Refers to the scene.
-///
-/// If faces coincide, one receives all rays. The exitance of a covered emitter is scaled by its uncovered share
+/// Reflectance, exitance and transmittance by patch and, with textures, by element. Refers to the scene. If faces
+/// coincide, one receives all rays. Covered emitters keep the exitance of their uncovered share
 /// (RayCaster::uncovered_share), so no place emits twice.
 class Materials {
   public:
@@ -27,7 +25,7 @@ class Materials {
     bool has_panes() const { return has_panes_; }
     const Rgb& reflectance(std::uint32_t patch) const { return material(patch).reflectance; }
     const Rgb& exitance(std::uint32_t patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
-    /// Reflectance for importance, a scalar; exact for grey surfaces.
+    /// Exact for grey surfaces.
     float mean_reflectance(std::uint32_t patch) const { return channel_sum(reflectance(patch)) / 3; }
     void prefetch(std::uint32_t patch) const { __builtin_prefetch(&scene_->patches[patch].material); }
     const Material& material(std::uint32_t patch) const {
@@ -45,33 +43,31 @@ class Materials {
         return channel_sum(surface(patch, element).reflectance) / 3;
     }
     bool has_textures() const { return !elements_.empty(); }
-    /// Adds new elements; before this call they have the mean of their patch.
+    /// New elements have their patch's mean until then.
     void grow(const ElementForest& forest) { elements_.grow(forest); }
 
   private:
-    /// @param exitance_share  Factor of each patch's exitance; empty: 1.
     Materials(const Scene& scene, std::vector<float> exitance_share);
 
     const Scene* scene_;
     bool has_panes_;
     TexturedElements elements_;
-    RankedBits has_own_;                   // textured or partly covered patches
-    std::vector<Material> own_materials_;  // one for each of these patches
+    RankedBits has_own_;  // textured or partly covered patches
+    std::vector<Material> own_materials_;
 };
 
 /// Emission lost to coincident faces.
 struct CoveredEmission {
-    std::int64_t wholly = 0, partly = 0;  ///< Number of emitting patches.
-    RgbD power{0, 0, 0};                  ///< Lost power [lm or W]
+    std::int64_t wholly = 0, partly = 0;
+    RgbD power{0, 0, 0};  ///< [lm or W]
 };
-/// @throws InputError if the ray caster belongs to another scene.
+/// @throws InputError if the ray caster is of another scene.
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
-/// Computes B = M + rho H of every element [lm/m^2 or W/m^2]. With textures, B of an inner element is the mean of its
-/// children.
+/// B = M + rho H [lm/m^2 or W/m^2]. With textures, inner elements have the mean of their children.
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
-/// Sums area times value over the roots, in fixed order and double precision.
+/// Sum of area times value over the roots, in fixed order.
 RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values);
 
 }  // namespace interflect::detail

@@ -7,8 +7,7 @@
 
 namespace interflect::detail {
 
-/// Returns the largest channel of M + H of each patch [as H].
-/// @param irradiance  One value per element, patches first.
+/// Largest channel of M + H of each patch. @param irradiance  By element.
 std::vector<float> patch_light(const Scene& scene, std::span<const Rgb> irradiance);
 
 }  // namespace interflect::detail

@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Radiosity B = M + rho H of the elements [lm/m^2 or W/m^2], computed on demand. Refers to its arguments.
+/// Radiosity B = M + rho H [lm/m^2 or W/m^2], computed on demand. Refers to its arguments.
 class Radiosity {
   public:
     Radiosity() = default;
@@ -22,7 +22,7 @@ class Radiosity {
     bool empty() const { return irradiance_.empty(); }
     bool emits() const { return emits_; }
 
-    /// B, or 0 if it is not finite.
+    /// B, or 0 if not finite.
     Rgb of(const ElementForest& forest, std::uint32_t e) const { return of_element(forest.patch(e), e); }
     Rgb of_element(std::uint32_t patch, std::uint32_t e) const {
         const Rgb b = as_it_is(patch, e);
@@ -31,7 +31,7 @@ class Radiosity {
     bool is_lost(const ElementForest& forest, std::uint32_t e) const {
         return !is_finite(as_it_is(forest.patch(e), e));
     }
-    /// Whether B of an inner element may differ from the mean of its children.
+    /// An inner element's B may then differ from its children's mean.
     bool has_textures() const { return materials_->has_textures(); }
 
   private:
@@ -46,7 +46,7 @@ class Radiosity {
     bool emits_ = false;
 };
 
-/// Returns the power of an element [lm or W]; with textures, the sum over its leaves.
+/// [lm or W]; with textures, the sum over the leaves.
 inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::uint32_t e) {
     const std::uint32_t first_child = light.has_textures() ? forest.first_child(e) : none;
     if (first_child == none) return RgbD(light.of(forest, e)) * static_cast<double>(forest.area(e));
@@ -55,7 +55,7 @@ inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::u
     return sum;
 }
 
-/// Returns the power of all patches [lm or W], summed in double precision and fixed order.
+/// [lm or W], summed in fixed order.
 inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) {
     return parallel_sum(forest.patch_count(), elements_at_once, RgbD(0), [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);
@@ -64,7 +64,7 @@ inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) 
     });
 }
 
-/// Importance per area of the elements [1/m^2], the sum of two parts that may be empty.
+/// Importance per area [1/m^2]: sum of two arrays, each possibly empty.
 class Importance {
   public:
     Importance() = default;

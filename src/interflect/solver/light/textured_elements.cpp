@@ -32,7 +32,7 @@ void TexturedElements::grow(const ElementForest& forest) {
     if (empty()) return;
     constexpr std::size_t slots_at_once = 64;
     const auto first_slot = static_cast<std::uint32_t>(surfaces_.size() / 4);
-    std::vector<std::uint32_t> first_children;  // one per new slot
+    std::vector<std::uint32_t> first_children;
     for (auto e = static_cast<std::uint32_t>(patch_count_ + 4 * slot_of_block_.size()); e < forest.size(); e += 4) {
         const bool is_textured = scene_->materials[scene_->patches[forest.patch(e)].material].is_textured();
         slot_of_block_.push_back(is_textured ? static_cast<std::uint32_t>(first_slot + first_children.size()) : none);

@@ -10,31 +10,29 @@
 
 namespace interflect::detail {
 
-/// Mean surface of a patch or an element.
 struct MeanSurface {
     Rgb reflectance{0, 0, 0};
     Rgb exitance{0, 0, 0};  ///< [lm/m^2 or W/m^2]
     Rgb transmittance{0, 0, 0};
 };
 
-/// Mean surfaces of textured elements: 36 bytes for each, and 1 byte for any element. Empty without textures.
+/// Mean surfaces of textured elements: 36 bytes for each, and 1 byte for any element.
 class TexturedElements {
   public:
-    /// @param exitance_share  Factor of each patch's exitance; empty: 1.
+    /// @param exitance_share  By patch; empty: 1.
     explicit TexturedElements(const Scene& scene, std::vector<float> exitance_share = {});
 
     bool empty() const { return !means_; }
 
     MeanSurface of_patch(std::uint32_t patch, const PatchGeometry& geometry) const { return mean(patch, geometry, {}); }
 
-    /// Returns null if the patch is not textured, or before grow(). @param element  Not a patch.
+    /// Null if not textured, or before grow(). Not for roots.
     const MeanSurface* find(std::uint32_t element) const {
         const std::uint32_t block = (element - patch_count_) / 4;
         if (block >= slot_of_block_.size() || slot_of_block_[block] == none) return nullptr;
         return &surfaces_[4 * std::size_t{slot_of_block_[block]} + (element - patch_count_) % 4];
     }
 
-    /// Computes the means of elements created since the last call.
     void grow(const ElementForest& forest);
 
   private:
@@ -44,7 +42,7 @@ class TexturedElements {
     std::vector<float> exitance_share_;
     std::unique_ptr<TextureMeans> means_;
     std::uint32_t patch_count_;
-    std::vector<std::uint32_t> slot_of_block_;  // one per four siblings; none: not textured
+    std::vector<std::uint32_t> slot_of_block_;  // one per block of siblings, if textured
     std::vector<MeanSurface> surfaces_;         // four per slot
 };
 

@@ -7,18 +7,16 @@ namespace interflect::detail {
 
 namespace {
 
-/// Random walks replace the remaining bounces if the next bounce would get fewer rays.
+/// Random walks replace the remaining bounces if the next one would get fewer rays.
 constexpr double fewest_rays_of_bounce = 2;
-/// They also replace bounces that would trace less than this share of the pass, because each bounce takes time for
-/// every element.
+/// They also do if less than this share of the pass remains: each bounce takes time for every element.
 constexpr double least_share_left = 0.05;
-/// Minimum number of random walks; fewer would make the total power of small passes noisy. The rays beyond the plan are
-/// not counted.
+/// Minimum number of random walks; fewer make small passes noisy. Rays beyond the plan are not counted.
 constexpr std::int64_t fewest_walks = 32;
-/// Unshot power, summed over all bounces, relative to the first; used until a pass has measured it.
+/// Unshot power summed over all bounces, relative to the first, until measured.
 constexpr double assumed_bounces = 2;
-/// Expected ratio of the unshot power of successive bounces: for the first bounce; after an increase, which may occur
-/// while light spreads towards the view; and the upper limit.
+/// Expected ratio of unshot power between bounces: first; after an increase, while light spreads towards the view;
+/// maximum.
 constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, highest_decay = 0.99;
 
 }  // namespace
@@ -31,7 +29,7 @@ BounceRays BounceBudget::next(double unshot) {
     const double fall = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
     decay_ = fall < 1 ? std::min(highest_decay, fall) : decay_while_it_grows;
     last_unshot_ = unshot;
-    // Unshot power of this bounce and all later ones: as in the previous pass, or a geometric series.
+    // Unshot power of this and later bounces: as in the previous pass, or a geometric series.
     const double geometric = unshot / (1 - decay_), planned = is_known_ ? bounces_ - unshot_sum_ : geometric;
     // Later bounces keep a tenth, for light that the previous pass did not find.
     const double to_come = is_known_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;

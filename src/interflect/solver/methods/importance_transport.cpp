@@ -12,7 +12,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// The transport ends when at most this share of importance is unshot.
+/// Share of unshot importance at which the transport ends.
 constexpr double negligible_importance = 0.005;
 
 }  // namespace
@@ -21,7 +21,7 @@ void find_importance(SolverState& state, std::int64_t rays) {
     Solution& solution = state.solution;
     std::vector<float> unshot = solution.view_importance;
     BounceBudget budget(rays, 0);
-    double left = 1;  // sum of the importance received in a bounce; initially all of V
+    double left = 1;  // importance received in a bounce; initially all of V
     while (left > negligible_importance && !budget.is_last()) {
         TransportStep step(plan_importance(state.materials, solution, Importance(unshot),
                                            std::max<std::int64_t>(1, budget.next(left).expected)));

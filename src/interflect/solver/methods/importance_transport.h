@@ -6,8 +6,7 @@
 
 namespace interflect::detail {
 
-/// Transports importance from the views bounce by bounce (Eq. 7, 8) with about `rays` rays. Adds each
-/// bounce to the estimate. @throws Interrupted
+/// Transports importance bounce by bounce (Eq. 7, 8) with about `rays` rays. @throws Interrupted
 void find_importance(SolverState& state, std::int64_t rays);
 
 }  // namespace interflect::detail

@@ -4,8 +4,7 @@
 
 namespace interflect::detail {
 
-/// Iterations of one bounce each, as in the paper. The light received from the current estimate is merged with the
-/// running mean (Eq. 6).
+/// Iterations of one bounce each, as in the paper (Eq. 6).
 class OneBounce : public IterationMethod {
   public:
     void update_importance(SolverState& state, IterationPlan& plan) override;

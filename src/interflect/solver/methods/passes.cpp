@@ -22,11 +22,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum number of rays of a run that prepares before its first iteration.
+/// Minimum rays of a run that prepares before its first iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Returns the unshot power of a bounce relative to the first one, partly weighted by importance. Rays are distributed
-/// over the bounces by this number.
+/// Unshot power relative to the first bounce, partly weighted by importance, to distribute rays over the bounces.
 double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -64,30 +63,28 @@ void set_estimate(SolverState& state, Estimate estimate) {
 
 std::int64_t rays_so_far(const SolverState& state) { return state.power_rays + state.importance_rays; }
 
-/// Whether Eq. 14 or 15 refines the mesh during a pass.
+/// By Eq. 14 or 15, during a pass.
 bool refines_by_power(const SolverState& state) {
     return state.options.method.refines && !refines_by_variance(state.options);
 }
 
 }  // namespace
 
-/// A pass while it is traced.
 struct Passes::Pass {
     const std::int64_t rays;
     const bool oracle_refines;
     BounceBudget budget;
     ImportanceWeights weights;
     std::vector<std::uint8_t> reflecting_where_received = {};  ///< leaves_that_blur().
-    bool emits = true;                                         ///< Whether the next bounce is the first.
-    std::vector<Rgb> unshot = {};  ///< Irradiance of the last bounce, which the next one reflects.
+    bool emits = true;                                         ///< The next bounce is the first.
+    std::vector<Rgb> unshot = {};                              ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
-    StartPoints start_points = {};                     ///< Origins of the next bounce.
-    double first_power = 0, first_weighted_power = 0;  ///< See PowerPlan; of the first bounce.
-    Estimate sum = {};                                 ///< Over the bounces.
+    StartPoints start_points = {};
+    double first_power = 0, first_weighted_power = 0;  ///< In the first bounce; see PowerPlan.
+    Estimate sum = {};
 };
 
-/// Traces a pass. @param oracle_refines  Whether Eq. 14 and 15 refine the mesh meanwhile; otherwise the mesh is fixed.
-/// @throws Interrupted
+/// @param oracle_refines  Whether Eq. 14 and 15 refine the mesh meanwhile. @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
     state.payloads = {};
     Pass pass{rays, oracle_refines, BounceBudget(rays, bounces_),
@@ -107,11 +104,11 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     return std::move(sum);
 }
 
-/// Traces one bounce (Eq. 1) and adds it to the pass. Rays start by Eq. 3, 10 or 11. @return Whether it had light to
-/// trace.
+/// Traces one bounce (Eq. 1) and adds it to the pass; rays start by Eq. 3, 10 or 11. @return  False without unshot
+/// light.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     Solution& solution = state.solution;
-    // Only the first bounce, which has the most rays, transports importance.
+    // Only the first bounce, with the most rays, transports importance.
     const bool carries_importance = pass.emits && importance_use(solution) == ImportanceUse::full &&
                                     !state.options.experimental.separate_iterations;
     const Radiosity light(state.materials, pass.unshot, pass.emits);
@@ -168,7 +165,7 @@ void Passes::prepare(SolverState& state) {
     state.importance_rays += aim_outdoor_light(state);
     if (state.options.method.refines)
         for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));
-    state.importance_rays += aim_outdoor_light(state);  // importance is more accurate now
+    state.importance_rays += aim_outdoor_light(state);
     state.schedule.began_with(0, rays_so_far(state));
     if (rays_so_far(state) > 0) report(state, 0);
 }

@@ -9,32 +9,28 @@
 
 namespace interflect::detail {
 
-/// Iterations that are passes. A pass shoots the emitted power, then the received power, bounce by bounce, until little
-/// is left ('incremental shooting', Neumann et al. 1995). Rays are distributed over the bounces in proportion to unshot
-/// power, weighted like the rays (Eq. 3, 10). A pass is an unbiased estimate of all bounces on the current mesh,
-/// independent of earlier passes.
+/// Iterations that are passes. A pass shoots emitted power, then received power, bounce by bounce until little is left
+/// ('incremental shooting', Neumann et al. 1995). Rays are distributed over the bounces by unshot power, weighted like
+/// the rays (Eq. 3, 10). A pass is an unbiased estimate on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
-    /// Estimates importance and, in methods that refine, makes an initial mesh by Eq. 14 and 15 in two small passes.
-    /// The light of the second is the estimate until the first pass is merged; the mean does not include it.
+    /// Estimates importance and the initial mesh (Eq. 14, 15) in small passes, whose light is not in the mean.
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, IterationPlan& plan) override;
-    /// Traces a pass.
     Estimate trace(SolverState& state, IterationPlan& plan) override;
-    /// Merges a pass with the mean of earlier ones (Eq. 6).
+    /// Eq. 6.
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
-    /// Refines the mesh by variance.
     void refine(SolverState& state) override;
-    /// Keeps the averaged light. The next iteration adapts its history to the new views.
+    /// Keeps the averaged light; the next iteration adapts its history to the new views.
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
-    /// Makes a first estimate for other iteration methods: prepare(), then a pass on the resulting mesh.
+    /// Serves other methods: prepare(), then a pass.
     void make_first_estimate(SolverState& state);
 
   protected:
-    /// Traces the rays of one bounce. @throws Interrupted
+    /// @throws Interrupted
     virtual Received trace_step(SolverState& state, TransportStep step) { return run_step(state, std::move(step)); }
 
   private:
@@ -42,7 +38,7 @@ class Passes : public IterationMethod {
     Estimate trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
     bool trace_bounce(SolverState& state, Pass& pass);
 
-    /// Unshot power, summed over the bounces of the last pass, relative to its first bounce; 0: unknown.
+    /// Unshot power summed over the bounces of the last pass, relative to the first; 0: unknown.
     double bounces_ = 0;
     bool finds_importance_ = false;  // before the next iteration, after a change of views
     ViewChange view_change_;

@@ -15,7 +15,6 @@ namespace interflect {
 
 namespace detail {
 
-// Each is defined in the file of its method.
 std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state);
 std::unique_ptr<IterationMethod> make_well_distributed_rays(SolverState& state);
 std::unique_ptr<IterationMethod> make_random_walks(SolverState& state);

@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns the probabilities with which power rays start on the elements; excludes luminaires.
+/// Probabilities with which power rays start on elements.
 std::vector<float> power_sampling(const SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
     const ImportanceWeights weights =
@@ -28,9 +28,8 @@ std::vector<float> patch_importance(const SolverState& state) {
     return values;
 }
 
-/// Returns the ratio of the new to the old variance per ray, as seen by some views. The payloads of a source are
-/// proportional to its power over its share of the rays, and are weighted by its importance.
-/// @param importance Of patches.
+/// Ratio of the new to the old variance per ray, weighted by importance. Payloads are proportional to a source's power
+/// over its share of the rays. @param importance  By patch.
 float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
                   const std::vector<float>& new_q) {
     constexpr double largest = 256;

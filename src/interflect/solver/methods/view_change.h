@@ -7,27 +7,25 @@
 
 namespace interflect::detail {
 
-/// Sampling and importance before the views changed. They give the averaged light its history for the new views: the
-/// number of new rays with the same noise. The history shrinks where the new views increase the ray density and grows
-/// elsewhere.
+/// Sampling and importance before the views changed. They convert the history of the averaged light to the number of
+/// new rays with the same noise: fewer where the new views increase the ray density.
 class ViewChange {
   public:
     bool empty() const { return old_q_.empty(); }
-    /// Records the state before the views change.
+    /// Call before the views change.
     void record(const SolverState& state);
     void clear() { old_q_.clear(), old_importance_.clear(); }
-    /// Returns the factor of each patch's history. The state has the importance of the new views.
+    /// Factor of each patch's history, given the importance of the new views.
     std::vector<float> history_factor(const SolverState& state) const;
 
     void archive(StateArchive& archive);
     bool fits(const SolverState& state) const;
 
   private:
-    std::vector<float> old_q_;           // sampling probability of each element
-    std::vector<float> old_importance_;  // of each patch
+    std::vector<float> old_q_;           // sampling probability, by element
+    std::vector<float> old_importance_;  // by patch
 };
 
-/// Multiplies the history of each patch's elements. @param factor  One for each patch, or empty.
 void scale_history(SolverState& state, const std::vector<float>& factor);
 
 }  // namespace interflect::detail

@@ -9,10 +9,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Decay of earlier iterations, because mesh and sampling weights change.
+/// Decay of earlier iterations, because mesh and sampling change.
 constexpr double memory = 0.75;
 constexpr double largest_scale = 100;
-/// Number of contributions at siblings below which their measured shares of the noise count less than equal shares.
+/// Contributions below which measured noise shares of siblings count less than equal shares.
 constexpr float few_arrivals = 16;
 
 }  // namespace
@@ -56,7 +56,7 @@ void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::sp
                     difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
                 const double w = weight(e);
                 const std::size_t n = rarity(forest, mean, e);
-                // Expected value of the observed difference for independent rays.
+                // Expected from independent rays.
                 const float independent = (rays * per_ray_[e] + m * rays * fresh.variance[e]) / (rays + m);
                 sum.observed[n] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
                 sum.independent[n] += w * static_cast<double>(share_of_own(forest, e) * independent);

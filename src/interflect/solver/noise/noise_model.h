@@ -14,47 +14,43 @@
 
 namespace interflect::detail {
 
-/// Estimate of irradiance by one iteration, before merging.
+/// Estimate of one iteration, before merging.
 struct Estimate {
-    std::vector<Rgb> irradiance = {};    ///< Irradiance H of every element [lm/m^2 or W/m^2].
+    std::vector<Rgb> irradiance = {};    ///< H by element [lm/m^2 or W/m^2].
     std::vector<float> variance = {};    ///< Variance of its luminance, for independent rays.
-    GroupLight groups = {};              ///< Shares of the light groups in `irradiance`.
-    std::vector<float> importance = {};  ///< Importance received with the power; empty if not carried.
+    GroupLight groups = {};              ///< `irradiance` by light group.
+    std::vector<float> importance = {};  ///< Empty if not carried.
     RgbD escaped_power{0, 0, 0};
     double shot_power = 0;  ///< Sum of the channels.
 };
 
-/// Noise of the running mean of irradiance, from the variance of one ray. Few rays suffice to estimate it for
-/// independent rays. Low-discrepancy points reduce it and reflected noise increases it. Differences between iterations
-/// give the factor, which elements with similar numbers of rays share: more points are better distributed. A single ray
-/// with a large weight must not affect elements with many rays.
+/// Noise of the mean irradiance, from the variance of one ray. Low-discrepancy points reduce it and reflected noise
+/// increases it; differences between iterations give the factor. Elements with similar numbers of rays share a factor:
+/// more points are better distributed, and one ray with a large weight must not affect elements with many rays.
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
-    /// Returns the luminance variance of a mean over `rays` rays: of a root, or of another element's difference from
-    /// its parent. @param mean  Running mean of every element.
+    /// Luminance variance of a mean over `rays` rays: of a root, or of another element's difference from its parent.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
     bool is_known() const { return iterations_ > 1; }
 
-    /// Returns the noise variance of the siblings `first` ... `first` + 3 relative to its area-weighted mean. Bright
-    /// siblings are noisier. If few rays arrived at all, one may be dark by chance, so the shares tend to 1.
-    /// @param rays  Rays in the mean of the siblings.
+    /// Noise variance of siblings `first` ... `first` + 3 relative to its mean. With few rays, a sibling may be dark by
+    /// chance, so the shares tend to 1.
     std::array<float, 4> shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
                                 float rays) const;
 
-    /// Initialises new elements (index >= first): a quarter of their parents' rays on a quarter of the area.
+    /// New elements receive a quarter of the rays on a quarter of the area.
     void grow(const ElementForest& forest, std::uint32_t first);
 
-    /// Adds an iteration that has not been merged yet.
-    /// @param history  Rays in the mean, by element; 0: the difference from the parent is unknown.
-    /// @param weight   Weight of an element's squared error; inner elements have the sum of their leaves.
+    /// Call before the iteration is merged.
+    /// @param history  Rays in the mean; 0: the difference from the parent is unknown.
+    /// @param weight   Weight of the squared error; inner elements have the sum of their leaves.
     void add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
-    /// Drops the elements from `size` on.
     void shrink(std::size_t size) { per_ray_.resize(size); }
 
     void scale_by_patch(const ElementForest& forest, std::span<const float> factor) {
@@ -71,14 +67,12 @@ class NoiseModel {
 
   private:
     static constexpr std::size_t rarities = 48;
-    /// Sums of squared differences between iterations and the mean.
     struct Spread {
         std::array<double, rarities> observed{}, independent{};
         Spread& operator+=(const Spread& other);
     };
 
-    /// Returns class n for elements hit by about one in 2^n rays. Siblings share a class, even if one was hit by
-    /// chance.
+    /// Class n of elements hit by about one in 2^n rays. Siblings share a class: one may be hit by chance.
     std::size_t rarity(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
         const std::uint32_t parent = forest.parent(e), known = parent == none ? e : parent;
         const float h = luminance(mean[known]), rays_per_arrival = per_ray_[known] / (h * h);
@@ -86,7 +80,7 @@ class NoiseModel {
         const int n = rays_per_arrival > 1 ? std::ilogb(rays_per_arrival) : 0;
         return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
-    /// Siblings' differences from their mean have three quarters of their independent variance.
+    /// Differences of siblings from their mean have three quarters of the variance.
     static float share_of_own(const ElementForest& forest, std::uint32_t e) {
         return e < forest.patch_count() ? 1.0f : 0.75f;
     }
@@ -96,7 +90,7 @@ class NoiseModel {
 
     std::vector<float> per_ray_;  // [irradiance^2]
     std::array<float, rarities> scale_;
-    Spread spread_;  // decays with each iteration
+    Spread spread_;  // decays per iteration
     int iterations_ = 0;
 };
 

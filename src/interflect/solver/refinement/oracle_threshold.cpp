@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Number of rays at which ExperimentalOptions::epsilon is the threshold.
+/// Rays at which ExperimentalOptions::epsilon is the threshold.
 constexpr double rays_at_epsilon = 20e6;
 
 }  // namespace
@@ -22,7 +22,7 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
     oracle.threshold = so_far.options.experimental.epsilon * fall * reference_power(so_far);
     if (oracle.by_importance) {
-        // An element with underestimated importance would stay coarse.
+        // Underestimated importance would leave elements coarse.
         oracle.importance =
             importance_weight(*so_far.forest, importance_of(so_far), so_far.options.importance.smoothing, 1);
         oracle.threshold *= reference_importance(so_far, oracle.importance);

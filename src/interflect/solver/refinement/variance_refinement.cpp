@@ -16,26 +16,23 @@ namespace interflect::detail {
 
 namespace {
 
-/// Expected squared difference of children relative to siblings: a quarter for linear irradiance, a half at an edge.
+/// Expected ratio of squared differences of children and siblings: 1/4 for linear irradiance, 1/2 at an edge.
 constexpr float expected_decay = 0.3f;
-/// The same relative to squared irradiance, for a leaf without siblings.
+/// The same relative to squared irradiance, for a root.
 constexpr float assumed_square = 0.04f;
-/// Minimum expected signal relative to the children's noise. More rays follow, and shrinkage suppresses noise until
-/// then.
+/// Minimum expected signal (true variation) relative to the children's noise, which shrinkage suppresses at first.
 constexpr float least_signal = 0.12f;
 /// Minimum reduction of the total squared error for which a leaf is split.
 constexpr double negligible_gain = 2e-7;
-/// Minimum share of the light in the pictures, reflected from wrong places, for which a leaf is split. For example,
-/// light escapes less easily from a bright corner of a lamp's housing.
+/// Minimum share of the pictures' light, reflected from wrong places, for which a leaf is split. Example: light from a
+/// bright corner of a lamp's housing escapes less easily.
 constexpr double negligible_misplacement = 3e-7;
-/// Leaves above this share of the light in the pictures reflect where they receive. Then total power is within 0.05% in
-/// rooms with lights 2 cm from a ceiling, and the light behind a slit of 1 cm within 6%. Without this (at 1) the error
-/// is 5% and, behind the slit, many times the light.
+/// Leaves above this share of the pictures' light reflect where they receive. Total power is then within 0.05% with
+/// lights 2 cm below a ceiling (5% without), and light behind a 1 cm slit within 6%.
 constexpr double tolerable_misplacement = 3e-5;
-/// Relative weight of errors on invisible surfaces. Their effect on the view is blurred.
+/// Relative weight of errors on invisible surfaces, whose effect on the view is blurred.
 constexpr double unseen_shape = 0.02;
 
-/// Decides which leaves are split or reflect where they receive.
 class VarianceOracle {
   public:
     explicit VarianceOracle(const SolverState& state)
@@ -63,14 +60,14 @@ class VarianceOracle {
         return blurs || misplaces;
     }
 
-    /// Whether power from wrong places matters; true if unknown.
+    /// True if unknown.
     bool may_misplace(std::uint32_t leaf) const {
         if (state_.history[leaf] == 0 || !state_.noise.is_known()) return true;
         return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > most_misplaced_power_;
     }
 
   private:
-    /// Expected mean squared differences of the children from their leaf.
+    /// Mean squared differences of the children from their leaf.
     struct Expected {
         float signal, noise;
     };
@@ -83,7 +80,6 @@ class VarianceOracle {
         const SiblingVariation variation = sibling_variation(state_, forest_.first_child(forest_.parent(leaf)));
         return {expected_decay * variation.signal(), 4 * variation.noise};
     }
-    /// Returns the weight of the squared luminance error of the leaf's irradiance.
     double weight(std::uint32_t leaf) const {
         double w = error_weight(state_, measure_, leaf);
         if (!psi_.empty()) {
@@ -92,7 +88,7 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    /// Returns the power reflected from wrong places, times importance.
+    /// Times importance.
     double misplaced_power(std::uint32_t leaf, float signal) const {
         const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
@@ -105,7 +101,7 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
-    /// Returns the reference for misplaced power: the light in the pictures or, without a view, all received power.
+    /// Light in the pictures or, without a view, all received power.
     double reference_power() const {
         if (!psi_.empty()) return error_reference(state_, ErrorMeasure::pictures);
         double sum = 0;

@@ -5,13 +5,12 @@
 
 namespace interflect::detail {
 
-/// Splits leaves in which irradiance is expected to vary by more than the noise of children. The variation is
-/// extrapolated from differences of siblings without their noise (detail.h). Leaves with negligible errors and the
-/// smallest elements (ElementFloor) are not split. Only later rays measure the new differences, so splits cause no
-/// bias. Call between iterations.
+/// Splits leaves in which irradiance is expected to vary by more than the children's noise (sibling_variation()),
+/// except those with negligible errors or of minimum size (ElementFloor). Only later rays measure the new differences,
+/// so splits cause no bias. Call between iterations.
 void refine_by_variance(SolverState& state);
 
-/// Marks leaves that reflect where they receive (StartPoints). Empty unless refine_by_variance() makes the mesh.
+/// Marks leaves that reflect where they receive (StartPoints), if refine_by_variance() makes the mesh.
 std::vector<std::uint8_t> leaves_that_blur(const SolverState& state);
 
 }  // namespace interflect::detail

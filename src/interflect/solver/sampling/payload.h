@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// Payload of one ray of each source of a step. From leaf s: power A_s B_s / (N q_s) and importance A_s rho_s psi_s /
-/// (N q_s). From a luminaire part: its power / (N q_s).
+/// Payload of one ray of each source. Leaf s: power A_s B_s / (N q_s), importance A_s rho_s psi_s / (N q_s). Part of
+/// the luminaires' emission (Emission): its power / (N q_s).
 class Payload {
   public:
     Payload(const Materials& materials, const ElementForest& forest, const RayPlan& plan, double q_sum)
@@ -50,19 +50,19 @@ class Payload {
     const Materials& materials_;
     const ElementForest& forest_;
     const RayPlan& plan_;
-    std::uint32_t elements_;  // size of the forest at the start of the step
+    std::uint32_t elements_;  // before the step
     double q_sum_over_rays_;
 };
 
-/// Histogram of ray power, in bins of a quarter of an octave.
+/// Histogram in quarter octaves.
 class PayloadHistogram {
   public:
     /// @param power  Sum of the channels [lm or W].
     void add(double power, std::int64_t rays);
     PayloadHistogram& operator+=(const PayloadHistogram& other);
 
-    double largest_over_mean() const;  ///< Returns 1 if no power was carried.
-    /// Returns the power, relative to the mean, that a share of the rays exceeds; accurate to 19%.
+    double largest_over_mean() const;  ///< 1 without power.
+    /// Power, relative to the mean, that a share of the rays exceeds; accurate to 19%.
     double quantile_over_mean(double share) const;
 
     void archive(StateArchive& archive) {
@@ -74,7 +74,7 @@ class PayloadHistogram {
 
   private:
     static constexpr int bins_per_octave = 4, middle_bin = 512, bins = 2 * middle_bin;
-    std::vector<std::int64_t> rays_;  // by bin; empty before the first ray
+    std::vector<std::int64_t> rays_;
     double power_ = 0, largest_ = 0;
     std::int64_t count_ = 0;
 };
@@ -82,9 +82,9 @@ class PayloadHistogram {
 /// Sums over all rays of a step.
 struct PayloadTotals {
     RgbD power{0, 0, 0};  ///< [lm or W]
-    double square = 0;    ///< Squared luminance of each ray's power.
+    double square = 0;    ///< Squared luminance of power.
     double importance = 0;
-    double importance_square = 0;  ///< Squared importance of each ray.
+    double importance_square = 0;
     PayloadHistogram histogram;
 
     PayloadTotals& operator+=(const PayloadTotals& other) {

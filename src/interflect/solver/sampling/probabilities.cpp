@@ -28,7 +28,6 @@ struct WeightSums {
     }
 };
 
-/// Computes the weights of leaves and sums them in double precision and fixed order.
 WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, StableArray<Weights>& weights) {
     const bool by_power = shares.power > 0 || shares.weighted_power > 0 || shares.power_nearby > 0;
     return parallel_sum(s.forest.size(), elements_at_once, WeightSums(), [&](std::size_t begin, std::size_t end) {
@@ -85,7 +84,7 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     });
     for (std::size_t i = 0; i < sampled.part_count(); ++i) {
         double by_power = for_power;
-        if (sampled.part_importance.empty())  // unknown: use the mean
+        if (sampled.part_importance.empty())  // unknown: the mean
             by_power = factor(shares.power + shares.weighted_power + shares.power_nearby, sums.power);
         else
             by_power += for_driven * sampled.part_importance[i] + for_nearby * sampled.part_nearby[i];

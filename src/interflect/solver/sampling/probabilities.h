@@ -10,17 +10,17 @@
 
 namespace interflect::detail {
 
-/// Unnormalised sampling weights of leaves and luminaire parts (Prikryl et al. 2000).
+/// Unnormalised weights of leaves and luminaire parts (Prikryl et al. 2000).
 struct SamplingWeights {
     const Materials& materials;
     const ElementForest& forest;
     Radiosity light;                              ///< B [lm/m^2 or W/m^2].
     Importance reflected_importance;              ///< psi of Eq. 8 [1/m^2].
     std::span<const float> importance_weight;     ///< psi of Eq. 9 or 10 by element [1/m^2]
-    std::span<const float> nearby = {};           ///< Mean importance of the neighbourhood of each patch.
+    std::span<const float> nearby = {};           ///< Mean of each patch's neighbourhood (Neighbourhoods).
     const Emission* emission = nullptr;           ///< Luminaires that shoot, or null.
     std::span<const float> part_importance = {};  ///< psi of Eq. 10 by luminaire part; empty: unknown.
-    std::span<const float> part_nearby = {};      ///< Mean importance of similar parts.
+    std::span<const float> part_nearby = {};      ///< Mean over the parts of the emitter.
     std::size_t part_count() const { return emission ? emission->part_count() : 0; }
 
     /// Eq. 3: P_s, summed over the channels.
@@ -37,18 +37,17 @@ struct SamplingWeights {
     }
 };
 
-/// Shares of rays for the weights above (Eq. 11). A weight that is 0 everywhere leaves its share to the others.
+/// Shares of rays for these weights (Eq. 11). A weight that is 0 everywhere leaves its share to the others.
 struct MixtureWeights {
     double power = 0, weighted_power = 0, importance = 0;
-    double power_nearby = 0;  ///< Power times neighbourhood importance.
+    double power_nearby = 0;
 };
 
-/// Sampling distribution of the rays.
 struct Mixture {
-    /// Probability of each element (0 for inner ones), then of each luminaire part. Sums to the shares in use.
+    /// Probability by element (0 for inner ones), then by luminaire part. Sums to the shares in use.
     std::vector<float> q;
-    std::int64_t lost_leaves = 0;          ///< Leaves with non-finite radiosity, which are not shot.
-    double power = 0, weighted_power = 0;  ///< Sums of these weights before normalisation.
+    std::int64_t lost_leaves = 0;  ///< Leaves with non-finite radiosity, not shot.
+    double power = 0, weighted_power = 0;
 };
 Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares);
 

@@ -8,18 +8,18 @@
 
 namespace interflect::detail {
 
-/// Systematic allocation of N rays to sources, in order. Source s gets N q_s / sum q rays, rounded up or down; the mean
-/// over `offset` is exact. Stores 16 bytes per 256 sources and recomputes the rest.
+/// Systematic allocation of N rays to sources, in order: N q_s / sum q for source s, rounded up or down, exact in the
+/// mean over `offset`. Stores 16 bytes per 256 sources and recomputes the rest.
 class RayAllocation {
   public:
-    /// @param q       Weights >= 0, not necessarily normalised. Must outlive this.
+    /// @param q       Weights >= 0, not normalised; must outlive this.
     /// @param rays    N > 0. @param offset  Uniform in [0, 1).
     RayAllocation(std::span<const float> q, std::int64_t rays, double offset);
 
-    double q_sum() const { return q_sum_; }  ///< If 0, no rays are allocated.
+    double q_sum() const { return q_sum_; }  ///< 0: no rays.
 
-    /// Calls body(s, first, from, to) for all sources with rays in [begin, end), in order. `first` is the first ray of
-    /// s, and [from, to) are its rays in the range.
+    /// Calls body(s, first, from, to) for the sources of rays [begin, end). `first` is the first ray of s; [from, to)
+    /// are its rays in the range.
     template <class Body>
     void for_each_source(std::int64_t begin, std::int64_t end, const Body& body) const {
         const auto after =
@@ -36,8 +36,8 @@ class RayAllocation {
 
     std::size_t block_count() const { return blocks_.size(); }
     static std::size_t block_of(std::size_t source) { return source / block_sources; }
-    /// Calls body(s, first, next) for all sources of a block with rays [first, next), until it returns false. @return
-    /// The last result, or true.
+    /// Calls body(s, first, next) for the sources of a block, with rays [first, next), until it returns false. @return
+    /// The last result.
     template <class Body>
     bool for_each_in_block(std::size_t block, const Body& body) const {
         const std::size_t begin = block * block_sources, end = std::min(q_.size(), begin + block_sources);
@@ -56,11 +56,11 @@ class RayAllocation {
   private:
     static constexpr std::size_t block_sources = 256;
     struct SourceBlock {
-        double q_before;         // sum over previous blocks
-        std::int64_t first_ray;  // rays of previous blocks
+        double q_before;         // over previous blocks
+        std::int64_t first_ray;  // of previous blocks
     };
-    /// Returns the rays of the sources whose weights sum to `q`. At the end of a block and the start of the next, `q`
-    /// has the same bits.
+    /// Rays of the sources whose weights sum to `q`, which has the same bits at the end of a block and the start of the
+    /// next.
     std::int64_t rays_before(double q) const {
         const double before = q / q_sum_ * static_cast<double>(rays_) + offset_;
         return std::min(rays_, static_cast<std::int64_t>(before));  // N + offset may round up to N + 1

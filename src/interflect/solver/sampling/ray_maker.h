@@ -16,34 +16,33 @@
 
 namespace interflect::detail {
 
-/// Random numbers of a run. The sequence of each leaf continues through all iterations.
+/// Random numbers of a run. Each leaf's sequence continues through all iterations.
 struct SampleStreams {
     SampleStreams(PointSet set, std::uint64_t run_seed) : points(set), seed(run_seed) {}
 
     PointSet points;
     std::uint64_t seed;
-    std::vector<std::uint64_t> used;           ///< Points consumed by each element.
-    std::vector<std::uint64_t> used_by_parts;  ///< Points consumed by each luminaire part.
-    std::uint64_t allocations = 0;             ///< Number of steps so far.
+    std::vector<std::uint64_t> used;  ///< Points consumed.
+    std::vector<std::uint64_t> used_by_parts;
+    std::uint64_t allocations = 0;
 };
 
 /// Generates rays from samples first_sample, first_sample + 1, ... Origins are uniform on the cell, `offset` above the
-/// patch. Directions have density cos(theta) / pi about the normal.
-/// @param key     Key of the point sequence (fill_points).
-/// @param points  Working space.
+/// patch. Directions have density cos(theta) / pi.
+/// @param key     Of the point sequence (fill_points).
 /// @param rays    Output; its size is the number of rays.
-/// @param starts  Points of a leaf to sample as origins (StartPoints::of); empty: uniform origins.
+/// @param starts  Origins to sample (StartPoints::of); empty: uniform.
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
                 std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins,
                 std::span<const StartPoint> starts = {});
 
-/// Rays of one task with the same source: batch.rays[begin ... end - 1].
+/// Rays batch.rays[begin ... end - 1] of one source.
 struct SourceRays {
-    std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part.
+    std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part (Emission).
     std::uint32_t begin, end;
 };
 
-/// Rays of one task; one object per thread, reused.
+/// One object per thread, reused.
 struct RayBatch {
     std::vector<SourceRays> sources;
     std::vector<Ray> rays;
@@ -51,14 +50,14 @@ struct RayBatch {
     PointBlock points;
 };
 
-/// Generates the rays of a plan. Refers to its arguments.
+/// Refers to its arguments.
 class RayMaker {
   public:
     RayMaker(const ElementForest& forest, const RayCaster& ray_caster, const RayPlan& plan,
              const SampleStreams& streams);
 
     const RayAllocation& allocation() const { return allocation_; }
-    std::uint32_t elements() const { return elements_; }  ///< Size of the forest before the step.
+    std::uint32_t elements() const { return elements_; }
 
     void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const;
 

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Share of importance-driven rays that are sampled by neighbourhood importance.
+/// Share of importance-driven rays sampled by neighbourhood importance.
 constexpr double share_of_nearby = 0.2;
 
 /// Shares of the weights in Eq. 3, 9, 10, or Eq. 11 if combined.

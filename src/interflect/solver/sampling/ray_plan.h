@@ -13,17 +13,17 @@
 
 namespace interflect::detail {
 
-/// The rays of a step: their sampling distribution and payload.
+/// Rays of a step: sampling distribution and payload.
 struct RayPlan {
-    /// Weight >= 0 of each element (0 for inner ones), then of each part of `emission`. If all are 0, no rays are shot.
+    /// Weight >= 0 by element (0 for inner ones), then by part of `emission`. All 0: no rays.
     std::vector<float> q;
     std::int64_t rays = 0;               ///< N > 0.
-    Radiosity light;                     ///< Radiosity to shoot; empty: rays carry no power.
+    Radiosity light;                     ///< Light to shoot; empty: no power.
     const Emission* emission = nullptr;  ///< Luminaires that shoot, or null.
-    GroupRadiosity groups;               ///< Light groups whose shares are received separately.
-    /// True: rays carry B_s over the sum of its channels. False: B_s A_s / (N q_s), an unbiased estimate.
+    GroupRadiosity groups;               ///< Light groups received separately.
+    /// True: rays carry B_s over the sum of its channels. False: B_s A_s / (N q_s), unbiased.
     bool equal_payloads = false;
-    Importance importance;                      ///< Importance psi to shoot; empty: rays carry none.
+    Importance importance;                      ///< psi to shoot; empty: no importance.
     const StartPoints* start_points = nullptr;  ///< Origins of `light`; null: uniform.
 
     std::size_t part_count() const { return emission ? emission->part_count() : 0; }
@@ -31,24 +31,22 @@ struct RayPlan {
     bool carries_importance() const { return !importance.empty(); }
 };
 
-/// A plan, with the sums over leaves of P_s (Eq. 3) and of P_s times sampling importance (Eq. 9, 10; 0 if not used).
+/// With the sums over leaves of P_s (Eq. 3) and of P_s psi_s (Eq. 9, 10; 0 if not used).
 struct PowerPlan {
     RayPlan rays;
     double power = 0, weighted_power = 0;
-    std::int64_t lost_leaves = 0;  ///< Leaves with non-finite radiosity, which are not shot.
+    std::int64_t lost_leaves = 0;  ///< Leaves with non-finite radiosity, not shot.
 };
 
 /// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000). The method selects q: by
-/// power (Eq. 3), by direct importance, or by total or indirect importance (Eq. 9, 10). A share beta is sampled by
-/// power alone. Another share is sampled by neighbourhood importance, because underestimated small lamps give rays
-/// large weights.
-/// @param weights   importance_weights(so_far).
-/// @param emission  Luminaires, shot if `light` emits.
-/// @param light     Radiosity to shoot. The plan refers to data of `so_far`, `emission` and `light`.
+/// power (Eq. 3), direct importance, or total or indirect importance (Eq. 9, 10). One share is sampled by power alone
+/// (beta), another by neighbourhood importance, because underestimated small lamps give rays large weights.
+/// @param emission  Shot if `light` emits.
+/// @param light     To shoot. The plan refers to `so_far`, `emission` and `light`.
 PowerPlan plan_power(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);
 
-/// Plans rays that carry importance alone (Eq. 8). @param importance  Importance to reflect; the plan refers to it.
+/// Plans rays that carry importance alone (Eq. 8). Refers to `importance`.
 RayPlan plan_importance(const Materials& materials, const Solution& so_far, const Importance& importance,
                         std::int64_t rays);
 

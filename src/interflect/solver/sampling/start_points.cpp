@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Quantises a number in [0, 1] to the even bits of the result.
+/// Quantises x in [0, 1] to the even bits.
 std::uint32_t spread_bits(float x) {
     auto bits = static_cast<std::uint32_t>(std::clamp(x, 0.0f, 1.0f) * 65535.0f);
     bits = (bits | bits << 8) & 0x00ff00ffu;
@@ -18,7 +18,7 @@ std::uint32_t spread_bits(float x) {
     return (bits | bits << 1) & 0x55555555u;
 }
 
-/// Returns the position along a Morton curve. Successive points are close, so samples stay stratified.
+/// Morton code: successive points are close, so samples stay stratified.
 std::uint32_t position_on_curve(const Parameters& p) { return spread_bits(p.u) | spread_bits(p.v) << 1; }
 
 bool is_before(const StartPoint& a, const StartPoint& b) {

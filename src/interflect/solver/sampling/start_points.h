@@ -11,24 +11,24 @@ namespace interflect::detail {
 /// Point of a leaf that received power.
 struct StartPoint {
     std::uint32_t leaf;
-    float power;    ///< Sum of the channels [any unit]; in StartPoints cumulative over the leaf.
+    float power;    ///< Sum of the channels [any unit]; cumulative over the leaf in StartPoints.
     Parameters at;  ///< On the leaf's patch.
 };
 
 /// Origins of reflected light. Uniform reflection from a partly lit leaf sends light to wrong surfaces, a bias that
-/// only a finer mesh removes. A leaf with points here starts rays at them, in proportion to received power, as in
+/// only a finer mesh removes. Leaves with points here start rays at them, in proportion to received power, as in
 /// particle tracing.
 class StartPoints {
   public:
     StartPoints() = default;
-    /// @param points  Their order changes no bit. Cost: O(n log n) on all threads, 16 bytes per point.
+    /// The order is irrelevant. Cost: O(n log n) on all threads, 16 bytes per point.
     explicit StartPoints(std::vector<StartPoint> points);
 
-    /// Returns the points of a leaf; empty if its rays start uniformly. Cost: O(log n).
+    /// Returns the points of a leaf; empty: uniform origins. Cost: O(log n).
     std::span<const StartPoint> of(std::uint32_t leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 
-    /// @param points  At least one, sampled by power. @param u  In [0, 1).
+    /// Samples a point by power. @param points  Not empty. @param u  In [0, 1).
     static Parameters choose(std::span<const StartPoint> points, float u);
 
   private:

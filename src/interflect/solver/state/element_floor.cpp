@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum cosine. At grazing angles, the surface area of a pixel is long and narrow.
+/// Minimum cosine: at grazing angles, a pixel covers a long, narrow area.
 constexpr float least_cosine = 0.1f;
 
 }  // namespace

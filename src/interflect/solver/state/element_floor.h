@@ -7,19 +7,18 @@
 
 namespace interflect::detail {
 
-/// Minimum area of elements. It depends on the views and on the size of surfaces, not of the world.
+/// Minimum area of elements, from views and surface sizes.
 class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);
 
-    /// Returns the smallest area that a pixel of any view covers [m^2]; infinite without views.
+    /// Smallest area that a pixel of any view covers [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// @param is_seen  Visible to a view: the result is pixel_area(), else unseen().
-    /// @return         [m^2]; RefinementOptions::min_area if given.
+    /// RefinementOptions::min_area if given, else pixel_area() if a view sees the element, else unseen() [m^2].
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
-    /// Minimum area of invisible surfaces [m^2]: default_element_size() squared.
+    /// For invisible surfaces [m^2]: default_element_size() squared.
     float unseen() const { return unseen_; }
 
   private:

@@ -8,12 +8,12 @@
 
 namespace interflect::detail {
 
-/// Copies of all data that an iteration changes before it ends, for discarding an interrupted iteration. The run then
-/// repeats the iteration and has the bits of an uninterrupted run. Memory: 12 bytes per element.
+/// Copies of the data that an iteration changes, to discard an interrupted one. The repeated iteration then has the
+/// bits of an uninterrupted run. 12 bytes per element.
 class IterationStart {
   public:
     explicit IterationStart(const SolverState& state);
-    /// Discards the changes since the constructor. Irradiance and its statistics may only have grown with the mesh.
+    /// Irradiance and its statistics may only have grown with the mesh.
     void restore(SolverState& state) const;
 
   private:

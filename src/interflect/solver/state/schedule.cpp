@@ -37,9 +37,9 @@ void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
     averaged_rays_ = power_rays;
 }
 
-/// Returns the rays that fit into the remaining time at the current speed; 0 if too few to be useful.
+/// Rays that fit into the remaining time at the current speed; 0 if too few to be useful.
 std::int64_t Schedule::affordable_rays(double seconds) {
-    constexpr double share_of_time = 0.85;    // of the remaining time; iterations vary in speed
+    constexpr double share_of_time = 0.85;    // of the remaining time; speed varies
     constexpr double least_share = 1.0 / 32;  // of the rays averaged before
     const double time_left = options_.limits.time - seconds, took = seconds - planned_at_;
     const std::int64_t traced = rays_ - planned_after_;
@@ -66,10 +66,10 @@ IterationPlan Schedule::next(double seconds) {
         rays =
             std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_ - averaged_at_restart_)),
                        smallest_, largest_iteration);
-    // A short iteration precedes a long one, which is lost if interrupted.
+    // An interruption would lose a long iteration, so a short one comes first.
     const bool counts_iterations = options_.experimental.iterations > 0 || options_.experimental.warm_up > 0;
     if (finished_ == 0 && rays > largest_iteration && !counts_iterations) rays = first_rays_;
-    // Absorb a remainder of less than half an iteration.
+    // Absorbs a remainder of less than half an iteration.
     if (left < rays + rays / 2) rays = left;
     if (std::isfinite(options_.limits.time)) rays = std::min(rays, affordable_rays(seconds));
     if (rays <= 0) return {};

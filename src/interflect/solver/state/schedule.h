@@ -8,43 +8,40 @@
 
 namespace interflect::detail {
 
-/// Plan of an iteration, and the number of its rays.
 struct IterationPlan {
-    std::int64_t rays = 0;                ///< Planned, and the weight in the mean; 0: the run is over.
-    std::int64_t traced = 0;              ///< Traced rays; initially those planned.
-    bool warms_up = false;                ///< Not averaged: the next iteration replaces it.
-    bool is_final = false;                ///< Ends the run, even if it traces fewer rays.
-    std::uint32_t old_elements = 0;       ///< Number of elements before the iteration.
-    std::int64_t importance_rays = 0;     ///< Rays of the plan that carry importance alone.
-    std::int64_t rays_for_new_views = 0;  ///< Additional rays after a change of views.
-    /// Factor of each patch's history after a change of views: the new history is the number of new rays with the same
-    /// noise. Empty: 1.
+    std::int64_t rays = 0;  ///< Planned, and the weight in the mean; 0: the run is over.
+    std::int64_t traced = 0;
+    bool warms_up = false;  ///< Not averaged: the next iteration replaces it.
+    bool is_final = false;  ///< Ends the run, even with fewer traced rays.
+    std::uint32_t old_elements = 0;
+    std::int64_t importance_rays = 0;     ///< Rays that carry importance alone.
+    std::int64_t rays_for_new_views = 0;  ///< After a change of views.
+    /// Factor of each patch's history after a change of views (ViewChange). Empty: 1.
     std::vector<float> history_factor = {};
 };
 
-/// Ray counts of the iterations. Iterations are averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al.
-/// 2000; equal counts give the paper's 1/m. Unless their size is given, iterations grow with the rays averaged before.
-/// So early ones, without late bounces and a fine mesh, soon have little weight. A given size above 2^24 applies from
-/// the second iteration on, unless the number of iterations is given too.
+/// Ray counts of the iterations, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000; equal
+/// counts give the paper's 1/m. By default, iterations grow with the rays averaged before, so early ones, without late
+/// bounces and a fine mesh, soon have little weight. A given size above 2^24 applies from the second iteration on,
+/// unless their number is given too.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Rays of each pass before the first iteration: at least one, at most an eighth of all, and few even if iterations
-    /// are long.
+    /// Rays of each pass before the first iteration: at most an eighth of all.
     std::int64_t start_rays() const;
-    /// Records these passes. Rays with power are the first term of the average.
+    /// Records these passes. Power rays are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// Plans the next iteration. It should end within a time limit, because an interrupted iteration is lost.
+    /// The iteration should end within the time limit, because an interrupted one is lost.
     /// @param seconds  Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);
-    /// Makes iterations small again; they grow with the rays averaged from now on.
+    /// Makes iterations small again.
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
-    /// Replaces SolveOptions::limits. The size of the first iterations does not change.
+    /// Keeps the size of the first iterations.
     void set_limits(const Limits& limits);
     void archive(StateArchive& archive);
 
@@ -55,14 +52,14 @@ class Schedule {
     std::int64_t affordable_rays(double seconds);
 
     SolveOptions options_;
-    std::int64_t first_rays_;  // of the first iteration, unless a size is given
-    std::int64_t smallest_;    // size of an iteration [rays]
+    std::int64_t first_rays_;  // unless a size is given
+    std::int64_t smallest_;    // minimum or given size of an iteration [rays]
     std::int64_t rays_ = 0;
     std::int64_t averaged_rays_ = 0;
     std::int64_t averaged_at_restart_ = 0;
-    int finished_ = 0;  // number of finished iterations
+    int finished_ = 0;
     bool is_over_ = false;
-    double planned_at_ = 0;           // of the last iteration [s]
+    double planned_at_ = 0;           // [s], of the last iteration
     std::int64_t planned_after_ = 0;  // rays traced before it
 };
 

@@ -27,20 +27,19 @@
 
 namespace interflect::detail {
 
-/// Limits of SolverState::targets, for all places together. 20 halvings per place reach from 10 km to 1 cm.
+/// Limits of SolverState::targets. 20 halvings at each place reach from 10 km to 1 cm.
 inline constexpr int most_places = 4, most_targets = 80;
 
-/// State of a run that persists between iterations.
 struct SolverState {
     /// @param scene, caster  Must outlive this.
     SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o);
     SolverState(const SolverState&) = delete;
 
     const Scene& scene;
-    const Scene* lit = &scene;  // the same scene with dimmed sources
+    const Scene* lit = &scene;  // with dimmed sources
     Materials materials;
-    std::vector<Imath::Box3f> targets;  // of light from outside, for the current views
-    Emission emission;                  // of the luminaires
+    std::vector<Imath::Box3f> targets;  // of outdoor light, for the current views
+    Emission emission;
     const RayCaster& ray_caster;
     const SourceGroups groups;
     Solution solution;
@@ -49,22 +48,21 @@ struct SolverState {
     ViewImportance view;
     ElementFloor floor;
     Neighbourhoods neighbourhoods;                // empty without a view
-    std::vector<PartImportance> part_importance;  // found for the current views
+    std::vector<PartImportance> part_importance;  // for the current views
     SampleStreams streams;
     ContributionSums contributions;
     Schedule schedule;
-    std::vector<float> history;  // number of rays averaged into each element's mean
+    std::vector<float> history;  // rays averaged into each element's mean
     NoiseModel noise;
     RiskCheck risk_check;
-    PayloadHistogram payloads;  // of the last iteration
+    PayloadHistogram payloads;
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
     std::int64_t rays_of_other_views = 0;  // rays averaged before the views changed
     RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
     double escaped_power_rays = 0;         // rays in this mean
 
-    // The work in progress:
     Monitor monitor;
-    StopRequest stop;  // after a first estimate, the time limit also stops the run
+    StopRequest stop;  // after a first estimate, also by the time limit
     StopRequest::Clock::time_point start;
     double earlier_seconds = 0;
 
@@ -73,39 +71,36 @@ struct SolverState {
     double seconds_of_this_call() const {
         return std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }
-    /// Duration of all work, including earlier calls.
+    /// Includes earlier calls.
     double seconds() const { return earlier_seconds + seconds_of_this_call(); }
 
     /// @throws std::runtime_error if the data are inconsistent.
     void archive(StateArchive& archive);
 };
 
-/// Changes the exitance of the sources. @param lit  The scene with these exitances; must outlive the state.
+/// Changes the exitances to those of `lit`, which must outlive the state.
 void set_sources(SolverState& state, const Scene& lit);
 
-/// Replaces the targets of outdoor light, and resets the importance of luminaire parts.
+/// Resets the importance of luminaire parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
-/// Computes the view importance of every element. Resets the indirect importance.
+/// Resets the indirect importance.
 void compute_view_importance(SolverState& state);
 
-/// Returns the radiosity of each group. Refers to its arguments.
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
 
-/// Returns the power of surfaces and luminaires [lm or W].
 RgbD radiated_power(const SolverState& state);
 
-/// Whether variance refines the mesh between iterations.
 bool refines_by_variance(const SolveOptions& options);
 
-/// Minimum area of an element's children, and area of a pixel at the element [m^2]; see ElementFloor.
+/// Minimum area of an element's children, and area of a pixel at the element [m^2] (ElementFloor).
 float min_area(const SolverState& state, std::uint32_t element);
 float pixel_area(const SolverState& state, std::uint32_t element);
 
 /// Initialises new elements (index >= first) from their parents.
 void grow_with_forest(SolverState& state, std::uint32_t first);
 
-/// Adds camera rays in proportion to the averaged rays, because the mesh becomes finer.
+/// Adds camera rays in proportion to the averaged rays, for the finer mesh.
 void refine_view_importance(SolverState& state);
 
 }  // namespace interflect::detail

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Contributions of a step after new elements (index >= old_size) were renumbered.
+/// Contributions by final index of the element.
 class RenumberedSums {
   public:
     RenumberedSums(ContributionSums& sums, std::uint32_t old_size, std::vector<std::uint32_t> old_numbers)
@@ -33,7 +33,7 @@ class RenumberedSums {
     std::vector<std::uint32_t> old_numbers_;
 };
 
-/// Drops elements beyond the oracle's limit. Their parents receive the contributions.
+/// The parents of dropped elements receive their contributions.
 void drop_excess(ElementForest& forest, RenumberedSums& sums, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
@@ -52,13 +52,12 @@ std::vector<PartImportance> found_by_parts(const RayPlan& plan, const RayAllocat
     return parts;
 }
 
-/// Averages the importance that a leaf received with that gathered by its own rays. A gathering ray has the weight 1,
-/// and received importance the expected effective number of its rays. The weights do not depend on the estimates, so
-/// the mean is unbiased.
+/// Averages the importance that a leaf received with that found by its own rays. A ray that finds importance has weight
+/// 1; received importance has the expected effective number of its rays. These weights do not depend on the estimates,
+/// so the mean is unbiased.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const FoundImportance& found, const PayloadTotals& payload, std::size_t elements,
            std::vector<float>& received) {
-    // Without incoming importance there is no incoming estimate.
     const double rays_per_importance = payload.importance > 0 ? payload.importance / payload.importance_square : 0;
     constexpr std::size_t blocks_at_once = 16;
     parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
@@ -74,10 +73,9 @@ void blend(const ElementForest& forest, const TransportStep& step, const RayAllo
     });
 }
 
-/// Converts sums of contributions to received values per area.
 void convert(const ElementForest& forest, const TransportStep& step, const ContributionUnits& units,
              RenumberedSums& sums, Received& received) {
-    constexpr std::size_t at_once = std::size_t{1} << 16;  // sums fill more than a page of 2 MiB
+    constexpr std::size_t at_once = std::size_t{1} << 16;  // sums fill more than a 2 MiB page
     if (step.carries_power()) received.irradiance.resize(forest.size()), received.variance.resize(forest.size());
     if (step.carries_importance()) received.importance.resize(forest.size());
     received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));

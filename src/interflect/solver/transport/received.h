@@ -16,35 +16,34 @@
 
 namespace interflect::detail {
 
-/// Results of a step by element of the (grown) forest. Inner elements have the mean of their children.
+/// Results of a step by element. Inner elements have the mean of their children.
 struct Received {
     std::vector<Rgb> irradiance;  ///< [lm/m^2 or W/m^2]
     /// Variance of its luminance for independent rays (Poisson).
     std::vector<float> variance;
-    GroupLight groups;              ///< Shares of the light groups in `irradiance`.
-    std::vector<float> importance;  ///< Importance per area; empty if not carried.
-    /// Sum of rho psi at the hit points of each part's rays; empty if the step carries no importance.
+    GroupLight groups;              ///< `irradiance` by light group.
+    std::vector<float> importance;  ///< Per area; empty if not carried.
+    /// Sum of rho psi at the hits of each luminaire part's rays; empty without importance.
     std::vector<PartImportance> part_importance;
-    StartPoints start_points;  ///< Points on the leaves in reflecting_where_received.
+    StartPoints start_points;  ///< Hit points on leaves in reflecting_where_received.
     PayloadHistogram payloads;
-    RgbD shot_power{0, 0, 0};  ///< Received plus escaped power [lm or W].
+    RgbD shot_power{0, 0, 0};  ///< Received plus escaped [lm or W].
     RgbD escaped_power{0, 0, 0};
     std::int64_t escaped_rays = 0;
 };
 
-/// Converts the contributions of a step, which become 0 again, to received values. New elements get their final order,
-/// and those beyond the oracle's limit are dropped: their parents receive the contributions.
+/// Converts the contributions of a step to received values and zeroes them. Sorts new elements and drops those beyond
+/// the oracle's limit, whose parents receive the contributions.
 /// @param old_size    Size of the forest before the step.
-/// @param importance  Importance found by the rays, or null.
+/// @param importance  Found by the rays, or null.
 /// @param step        Its buffers are reused.
 Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_size, const RayAllocation& allocation,
                  const PayloadTotals& payload, const ContributionUnits& units, const FoundImportance* importance,
                  ContributionSums& sums);
 
-/// Returns the result of a step without rays.
 Received nothing_received(const TransportStep& step, std::size_t elements);
 
-/// Computes the variance of area-weighted means of independent elements, from the leaves up.
+/// Variance of area-weighted means of independent elements, from the leaves up.
 inline void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {
         double sum = 0, area = 0;  // squared areas exceed the range of a float

@@ -24,11 +24,11 @@ namespace interflect::detail {
 namespace {
 
 std::uint64_t walk_key(const SampleStreams& streams) {
-    constexpr std::uint64_t purpose = 0x77616c6b;  // unique among random streams
+    constexpr std::uint64_t purpose = 0x77616c6b;  // distinct from other streams
     return mix(mix(streams.seed, purpose), streams.allocations);
 }
 
-/// Rays per task: many enough to amortise it, few enough for the second-level cache.
+/// Rays per task: enough to amortise it, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
 constexpr std::size_t rays_ahead = 32;
 
@@ -47,8 +47,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Upper bound of the visits of a random walk. The expected number is at most 1 / (1 - rho); the factor covers chance
-/// and panes, and leaves 2^49 units for the expected power.
+/// Upper bound of the visits of a random walk: the expected 1 / (1 - rho), times a factor for chance and panes that
+/// leaves 2^49 units for the expected power.
 double most_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
@@ -56,7 +56,6 @@ double most_visits(const Scene& scene) {
     return headroom / (1 - rho);
 }
 
-/// Rays and payloads of a step. Refers to the step.
 struct Shooting {
     Shooting(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
              const TransportStep& step, const SampleStreams& streams)
@@ -73,14 +72,14 @@ struct Shooting {
     Panes panes;
 };
 
-/// Data of one task; one object per thread, reused.
+/// One object per thread, reused.
 struct Batch {
     explicit Batch(const Descent& d) : descent(d) {}
 
     RayBatch shot;
     std::vector<Hit> hits;
     std::vector<Panes::HitBehind> behind;
-    std::vector<std::int64_t> group_terms;  // of one source
+    std::vector<std::int64_t> group_terms;
     Walkers walkers;
     Descent descent;
 };
@@ -90,7 +89,7 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Returns an empty result without importance, or if patches receive it and no luminaire shoots.
+/// Empty without importance, or if patches receive it and no luminaire shoots.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -100,12 +99,10 @@ std::optional<FoundImportance> make_found_importance(const TransportStep& step, 
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
-    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;  // hits per ray
+    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;
     return std::optional<FoundImportance>(std::in_place, hits * *std::max_element(largest.begin(), largest.end()),
                                           step.rays, forest.size() + step.part_count());
 }
-
-// The steps of a batch. Then ContributionSums contain integers that several machines could sum.
 
 void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
     shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
@@ -114,7 +111,6 @@ void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t be
     shooting.panes.trace(batch.shot.rays, batch.hits, batch.behind);
 }
 
-/// Deposits the filtered payload of rays behind panes.
 void deposit_behind(const TransportStep& step, const Shooting& shooting, const SourceRays& rays,
                     std::span<const Panes::HitBehind> behind, Batch& batch) {
     const std::uint32_t source = rays.source;
@@ -127,7 +123,6 @@ void deposit_behind(const TransportStep& step, const Shooting& shooting, const S
     }
 }
 
-/// Deposits the payload of a batch; the oracle may create elements.
 void deposit(const TransportStep& step, const Shooting& shooting, Batch& batch) {
     auto& [shot, hits, all_behind, group_terms, walkers, descent] = batch;
     std::span<const Panes::HitBehind> behind = all_behind;
@@ -149,7 +144,7 @@ void deposit(const TransportStep& step, const Shooting& shooting, Batch& batch) 
     descent.finish_batch();
 }
 
-/// Continues a batch as random walks. @param task  Index of the first ray.
+/// @param task  Index of the first ray.
 void walk(const TransportStep& step, const Shooting& shooting, const Walks& walks, std::uint64_t task, Batch& batch) {
     Walkers& walkers = batch.walkers;
     const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {
@@ -167,7 +162,6 @@ void walk(const TransportStep& step, const Shooting& shooting, const Walks& walk
     walks.follow(task, walkers, batch.descent);
 }
 
-/// Joins the points of all threads, in any order.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());

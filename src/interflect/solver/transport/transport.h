@@ -13,24 +13,23 @@
 
 namespace interflect::detail {
 
-/// Estimates one bounce of power (Eq. 1, Prikryl et al. 2000) and importance (Eq. 7), without form factors. A ray
-/// starts on leaf s with probability q_s / sum q, uniformly, in a cosine-distributed direction, or as its luminaire
-/// emits. It deposits power A_s B_s / (N q_s) at element i and importance A_s rho_s psi_s / (N q_s) at the leaf that it
-/// hits. Without refinement, i is this leaf. With refinement, the larger of two elements, initially the patches, is
-/// divided until the oracle accepts the pair. On a fixed mesh the estimate is unbiased if q > 0 wherever the payload
-/// is.
+/// Estimates one bounce of power (Eq. 1, Prikryl et al. 2000) and importance (Eq. 7) without form factors. A ray starts
+/// on leaf s with probability q_s / sum q, uniformly and cosine-distributed, or as its luminaire emits. It deposits
+/// power A_s B_s / (N q_s) at element i and importance A_s rho_s psi_s / (N q_s) at the hit leaf. Without refinement, i
+/// is this leaf. With refinement, the larger element of a pair, initially of patches, is divided until the oracle
+/// accepts. Unbiased on a fixed mesh if q > 0 wherever the payload is.
 ///
-/// The paper's rays carry B_j, the mean over the accepted shooter j. If B and visibility vary together over j, this
-/// loses or creates energy: 0.4% in a closed box. B_s keeps shot = received + escaped exactly.
-/// @param forest    Grows if the oracle refines; indices of old elements do not change.
-/// @param sums      Zero before and after; has the capacity of the forest.
-/// @param streams   Advanced. The same streams give the same bits for any number of threads.
-/// @throws Interrupted if `stop` is due before the last ray is traced. Forest, streams and sums are then unchanged.
+/// The paper's rays carry B_j, the mean over the accepted shooter j. This loses or creates energy if B and visibility
+/// vary together over j (0.4% in a closed box). With B_s, shot = received + escaped exactly.
+/// @param forest   Grows if the oracle refines; old indices stay valid.
+/// @param sums     Zero before and after; has the capacity of the forest.
+/// @param streams  Advanced. The same streams give the same bits for any number of threads.
+/// @throws Interrupted if `stop` is due before the last ray; forest, streams and sums are then unchanged.
 ///
-/// Cost: O(N (log(patches) + levels)) on all threads; 40 bytes per element while rays are traced, then the results.
+/// Cost: O(N (log(patches) + levels)); 40 bytes per element while rays are traced, then the results.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, ContributionSums& sums, const StopRequest& stop);
-/// The same without a stop request, and with its own ContributionSums.
+/// With its own sums, without a stop request.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 

@@ -46,9 +46,8 @@ void Walks::follow(std::uint64_t task, Walkers& walkers, Descent& descent) const
     descent.finish_batch();
 }
 
-/// Russian roulette: a particle survives with probability p, the reflected share of the power of its ray (all
-/// channels), and its reflected power is divided by p. Systematic sampling reduces the variance of the number of
-/// survivors.
+/// Russian roulette: a particle survives with probability p, the reflected share of its ray's power (all channels), and
+/// its power is divided by p. Systematic sampling reduces the variance of the number of survivors.
 void Walks::survive(double offset, Walkers& walkers) const {
     const std::size_t groups = step_.groups.size();
     walkers.reflected.clear();
@@ -68,7 +67,7 @@ void Walks::survive(double offset, Walkers& walkers) const {
     }
 }
 
-/// Starts each ray at the hit point if the leaf reflects there, else uniformly on the leaf.
+/// At the hit point if the leaf reflects there, else uniformly on the leaf.
 void Walks::shoot(std::uint64_t key, Walkers& walkers) const {
     walkers.rays.resize(walkers.reflected.size());
     for (std::size_t i = 0; i < walkers.rays.size(); ++i) {

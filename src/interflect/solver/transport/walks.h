@@ -18,10 +18,10 @@ struct ReflectedPower {
     std::uint32_t leaf, patch;
     Parameters at;  ///< Where the leaf received it.
     RgbD power;     ///< [lm or W]
-    double of_ray;  ///< Power of the ray that brought it, before any pane, all channels.
+    double of_ray;  ///< Power of its ray before any pane, all channels.
 };
 
-/// Particles of one task; one object per thread, reused.
+/// One object per thread, reused.
 struct Walkers {
     std::vector<ReflectedPower> received, reflected;
     std::vector<RgbD> received_groups, reflected_groups;  ///< [particle][group]
@@ -32,22 +32,20 @@ struct Walkers {
     PointBlock points;
 };
 
-/// Random walks complete the transport of a pass (TransportStep::to_the_end). A particle survives with the probability
-/// of its reflectance, times the transmittance of the panes that it crossed: a ray through panes arrives several times,
-/// and without this factor the number of particles would grow from bounce to bounce. Unlike a bounce, a walk costs no
-/// time for elements that it does not visit.
+/// Random walks that complete a pass (TransportStep::to_the_end). A particle survives with the probability of its
+/// reflectance times the transmittance of the crossed panes. Otherwise rays through panes, which deposit several times,
+/// would multiply the particles. A walk costs no time for elements that it does not visit.
 class Walks {
   public:
-    /// @param elements  Size of the forest before the step. Newer elements receive through ancestors.
+    /// @param elements  Size of the forest before the step; newer elements receive through their ancestors.
     Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
           const TransportStep& step, const ContributionUnits& units, std::uint32_t elements, std::uint64_t key);
 
-    /// Adds a particle at a hit point. The caller appends its power by light group, filtered by the transmittance, to
-    /// `received_groups`.
-    /// @param power  Power of the ray before any pane.
-    /// @param transmittance  Of the panes in front of the hit.
+    /// The caller appends the filtered power by light group to `received_groups`.
+    /// @param power          Before any pane.
+    /// @param transmittance  Of the panes before the hit.
     void add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const;
-    /// Traces particles until they are absorbed or escape. @param task  Key of the random numbers.
+    /// @param task  Key of the random numbers.
     void follow(std::uint64_t task, Walkers& walkers, Descent& descent) const;
 
   private:

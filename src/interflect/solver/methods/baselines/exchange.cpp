@@ -13,7 +13,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// A convex polygon of at most `capacity` corners.
 struct Polygon {
     static constexpr std::size_t capacity = 8;  // clipping at the horizon adds one corner
 
@@ -24,7 +23,7 @@ struct Polygon {
     std::span<const V3d> corners() const { return {corner.data(), count}; }
 };
 
-/// Returns the element's corners, counter-clockwise as seen from its front.
+/// Counter-clockwise from the front.
 Polygon polygon_of(const ElementForest& forest, std::uint32_t e) {
     const PatchGeometry& geometry = forest.geometry(forest.patch(e));
     const Cell cell = forest.cell(e);
@@ -36,8 +35,7 @@ Polygon polygon_of(const ElementForest& forest, std::uint32_t e) {
     return polygon;
 }
 
-/// Returns the part of a polygon above the horizon: the plane through the origin with this normal (Sutherland and
-/// Hodgman 1974).
+/// Clips to the half-space above the plane through the origin (Sutherland and Hodgman 1974).
 Polygon clip_to_horizon(std::span<const V3d> polygon, const V3d& normal) {
     Polygon above;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -50,7 +48,7 @@ Polygon clip_to_horizon(std::span<const V3d> polygon, const V3d& normal) {
     return above;
 }
 
-/// Gaussian quadrature on [0, 1] with 2 or 4 points.
+/// Gauss rule on [0, 1] with 2 or 4 points.
 struct GaussRule {
     std::array<double, 4> node, weight;
 };
@@ -58,11 +56,10 @@ constexpr GaussRule gauss_2{{0.2113248654051871, 0.7886751345948129, 0, 0}, {0.5
 constexpr GaussRule gauss_4{{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263},
                             {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269}};
 
-/// Quadrature points and weights on an element.
 struct Quadrature {
     static constexpr std::size_t capacity = 16;
 
-    double span;  // extent of the points, relative to the element's width
+    double span;  // extent of the points relative to the width
     std::array<V3f, capacity> point;
     std::array<double, capacity> weight;  // sums to 1
     std::size_t count = 0;
@@ -76,7 +73,7 @@ struct Quadrature {
         double sum = 0;
         for (std::size_t i = 0; i < side; ++i)
             for (std::size_t j = 0; j < side; ++j) {
-                // A triangle is a square with one side collapsed to a point (Duffy 1982).
+                // A triangle is a square with one collapsed side (Duffy 1982).
                 const double width = geometry.is_triangle() ? 1 - rule.node[i] : 1;
                 const Parameters p =
                     cell.at(static_cast<float>(rule.node[i]), static_cast<float>(width * rule.node[j]));
@@ -92,10 +89,10 @@ std::uint64_t place(const ElementForest& forest, std::uint32_t e) {
     return std::uint64_t{forest.patch(e)} << 32 | forest.path(e);
 }
 
-/// Unoccluded form factors from the points of one element to another element.
+/// Unoccluded, over an element's points.
 struct FormFactors {
     double mean = 0;
-    double spread = 0;  // largest minus smallest, extrapolated to the element's edges
+    double spread = 0;  // largest minus smallest, extrapolated to the edges
 };
 
 FormFactors form_factors(const ElementForest& forest, const Quadrature& points, std::uint32_t from, std::uint32_t to) {
@@ -119,7 +116,6 @@ FormFactors form_factors(const ElementForest& forest, const Quadrature& points, 
 Rgb smaller(const Rgb& x, const Rgb& y) { return {std::min(x.x, y.x), std::min(x.y, y.y), std::min(x.z, y.z)}; }
 Rgb larger(const Rgb& x, const Rgb& y) { return {std::max(x.x, y.x), std::max(x.y, y.y), std::max(x.z, y.z)}; }
 
-/// Visibility tests along lines between elements, with a counter of rays.
 struct LinesOfSight {
     const ElementForest& forest;
     const RayCaster& ray_caster;
@@ -127,8 +123,7 @@ struct LinesOfSight {
     std::uint64_t seed;
     std::int64_t& rays;
 
-    /// Samples Exchange::transmittance and Exchange::variation along lines from the points of the smaller element. Each
-    /// line is weighted by its unoccluded light.
+    /// Samples visibility along lines from `points` of the smaller element, weighted by unoccluded light.
     void sample(std::uint32_t small, std::uint32_t large, const Quadrature& points, Exchange& exchange) {
         const PatchGeometry& geometry = forest.geometry(forest.patch(large));
         const V3f normal_x = forest.geometry(forest.patch(small)).normal(), normal_y = geometry.normal();
@@ -150,8 +145,8 @@ struct LinesOfSight {
             const float kernel = cosines / (std::numbers::pi_v<float> * d.length2() + disk);
             const double along_line = points.weight[k] * static_cast<double>(kernel);
             all += along_line;
-            // Tests both directions: the back of a one-sided face stops no ray, and only one of two coincident faces is
-            // hit.
+            // Both directions: the back of a one-sided face stops no ray, and rays hit only one of two coincident
+            // faces.
             Rgb line = transmittance(small, x, normal_x, large, y);
             if (line != Rgb(0)) line = smaller(line, transmittance(large, y, normal_y, small, x));
             free += RgbD(line) * along_line;
@@ -162,7 +157,7 @@ struct LinesOfSight {
         exchange.variation = all > 0 ? largest_channel(most - least) : 0;
     }
 
-    /// Transmittance of the panes on a ray between points of two elements; 0 if another surface blocks the ray.
+    /// Transmittance of the panes between two points; 0 if another surface blocks the ray.
     Rgb transmittance(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
         const V3f origin = from + normal * ray_caster.ray_offset(forest.patch(source));
         const Ray ray{origin, (to - origin).normalized()};
@@ -188,7 +183,7 @@ double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V
     double sum = 0;
     for (std::size_t i = 0; i < seen.count; ++i) {
         const V3d &r = seen.corner[i], &s = seen.corner[(i + 1) % seen.count];
-        const V3d across = s.cross(r);  // s x r: a polygon that faces x is counter-clockwise as seen from x
+        const V3d across = s.cross(r);  // s x r: polygons facing x are counter-clockwise from x
         const double length = across.length();
         if (length > 0) sum += std::atan2(length, r.dot(s)) * normal.dot(across) / length;
     }

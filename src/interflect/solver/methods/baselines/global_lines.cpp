@@ -22,14 +22,12 @@ namespace interflect::detail {
 
 namespace {
 
-/// Lines per task; a task finds the next crossing of all its lines at a time.
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
-/// Deposits per line, on average over all lines, at which the sums of a patch overflow. A line crosses a patch once;
-/// more deposits occur through the backs of one-sided faces and through panes.
+/// Deposits per line, on average, at which a patch's sums overflow. Normally one; more through panes and the backs of
+/// one-sided faces.
 constexpr double lines_headroom = 0x1p8;
 
-/// Sphere that contains the scene.
 struct LineDomain {
     V3f centre;
     float radius;
@@ -43,32 +41,31 @@ struct LineDomain {
         constexpr float margin = 1.0001f;  // for rounding
         radius = margin * std::sqrt(square);
     }
-    /// Returns the area of the disk crossed by the lines of one direction [m^2].
+    /// [m^2] of the disk crossed by the lines of one direction.
     double cross_section() const {
         return std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
     }
 };
 
-/// Patch that faces a line, and the patch that it sees in the opposite direction, or `none`.
+/// Patch that faces a line, and the patch that it sees backwards, if any.
 struct LineSegment {
     std::uint32_t front, back;
-    bool is_mutual;  ///< Whether `back` also sees `front`: not through the back of a one-sided face.
+    bool is_mutual;  ///< Whether `back` also sees `front`: false through the back of a one-sided face.
 };
 
-/// Lines of one task that may still cross a patch. Each thread reuses its bundle.
+/// Active lines of a task; one object per thread, reused.
 struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, looking_back;
-    /// Per line: tolerance for a patch to coincide with the last crossed one, along the line [m]; infinite before the
-    /// first crossing.
+    /// Distance within which a patch coincides with the last crossed one [m]; initially infinite.
     std::vector<float> slack;
-    std::vector<std::uint32_t> crossed;  ///< Last patch that each line crossed.
+    std::vector<std::uint32_t> crossed;
     std::vector<Hit> hits, seen;
     std::vector<LineSegment> segments;
-    std::vector<Panes::HitBehind> behind;  ///< Hits through panes, by index of the segment.
+    std::vector<Panes::HitBehind> behind;
 };
 
-/// Generates uniform lines: directions are uniform on the sphere, crossings are uniform on the disk through the centre.
+/// Uniform: directions on the sphere, crossings on the disk through the centre.
 void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::uint64_t first, LineBundle& bundle) {
     fill_points(set, key, first, bundle.lines.size(), bundle.points);
     bundle.slack.assign(bundle.lines.size(), std::numeric_limits<float>::infinity());
@@ -85,11 +82,10 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
     }
 }
 
-/// Finds the next patch that faces each line, and the first patch in the opposite direction with the patches behind
-/// panes. Moves each line behind its patch. Drops lines that hit no patch. Also drops a line that hits the same patch
-/// again, which only rounding can cause: a line crosses a flat patch once.
+/// Advances each line to the next patch that faces it, and traces back from there. Drops lines that hit no patch, or
+/// the same patch again, which only rounding can cause.
 void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
-    constexpr float offsets_apart = 4;  // maximum distance of coincident patches, see RayCaster::ray_offset()
+    constexpr float offsets_apart = 4;  // of coincident patches; see RayCaster::ray_offset()
     bundle.segments.clear();
     bundle.looking_back.clear();
     bundle.hits.resize(bundle.lines.size());
@@ -99,7 +95,7 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
         if (patch == none || patch == bundle.crossed[i]) continue;
         const V3f direction = bundle.lines[i].direction;
         const PatchGeometry& geometry = forest.geometry(patch);
-        // Projects the hit onto the patch, like other ray origins: its error may exceed the ray offset.
+        // Projects the hit onto the patch: its error may exceed the ray offset.
         const V3f x = geometry.point(geometry.parameters_of(bundle.lines[i].origin + distance * direction));
         const V3f offset = ray_caster.ray_offset(patch) * geometry.normal();
         const std::size_t kept = bundle.segments.size();
@@ -121,11 +117,10 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
     }
 }
 
-/// Contributions of the lines of a step, as integers: their sums do not depend on the order of deposits.
+/// Integer sums, independent of the order of deposits.
 class LineSums {
   public:
-    /// @param power_per_radiosity  Power per unit of radiosity that a line carries along a segment, in each direction
-    /// [m^2].
+    /// @param power_per_radiosity  Power along a segment per unit of radiosity [m^2].
     LineSums(const ElementForest& forest, const Radiosity& light, double power_per_radiosity, std::int64_t lines)
         : power_per_radiosity_(power_per_radiosity), power_(0), square_(0) {
         double brightest = 0;
@@ -150,8 +145,7 @@ class LineSums {
         add_concurrently(started_[segment.back], 1);
         carry(segment.back, segment.front, Rgb(1));
     }
-    /// Transmits light through the panes of a segment, in one direction only. Lines of the opposite direction carry the
-    /// opposite light, because a pane may be one-sided.
+    /// Deposits light behind panes, in one direction because a pane may be one-sided.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
         carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
     }
@@ -171,12 +165,10 @@ class LineSums {
         }
         return r;
     }
-    /// Returns the number of segments along which each patch sent light.
     const std::vector<std::int64_t>& started() const { return started_; }
 
   private:
-    /// @param to      A patch, or none if the light escapes.
-    /// @param factor Factor per channel: 2 if the lines of the opposite direction do not carry the same light.
+    /// @param to  `none` if the light escapes. @param factor  2 unless opposite lines carry the same light.
     void carry(std::uint32_t from, std::uint32_t to, const Rgb& factor) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(factor) * power_per_radiosity_;
         if (to == none) {
@@ -196,13 +188,11 @@ class LineSums {
     std::vector<std::int64_t> squares_, started_, escaped_rays_;
 };
 
-/// Passes whose bounces are transported by global lines (Sbert 1993, 1997), see docs/method.md. The lines are uniform
-/// in a sphere of radius R around the scene and independent of the light sources. Every two patches that see each other
-/// along a line exchange light in both directions. Panes transmit it.
+/// Passes with global lines (Sbert 1993, 1997); see docs/method.md. Lines are uniform in a sphere of radius R around
+/// the scene. Every two patches that see each other along a line exchange light.
 ///
-/// With N lines and B_a 4 pi R^2 / (2 N) along each segment, the expected power from a to b is A_a F_ab B_a. A line
-/// costs 1 + 2 h rays on average, where h = sum A / (4 pi R^2); this mean gives the number of lines of a step. Constant
-/// on patches: no refinement. Cost: O(N h log(patches)) time.
+/// With N lines that carry B_a 4 pi R^2 / (2 N), the expected power from a to b is A_a F_ab B_a. A line costs 1 + 2 h
+/// rays on average, h = sum A / (4 pi R^2). Constant on patches. Cost: O(N h log(patches)).
 class GlobalLines final : public Passes {
   public:
     explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {
@@ -216,7 +206,7 @@ class GlobalLines final : public Passes {
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.forest;
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
-        // Each bounce has its own lines: the product of bounces is unbiased only if they are independent.
+        // Each bounce has its own lines: products of dependent bounces would be biased.
         const std::uint64_t key = mix(mix(state.options.seed, line_purpose), state.streams.allocations);
         PerThread<LineBundle> bundles;
         std::atomic<bool> is_cut_short{false};
@@ -250,7 +240,7 @@ class GlobalLines final : public Passes {
     static constexpr std::uint64_t line_purpose = 0x6c696e6573;
     const LineDomain domain_;
     const Panes panes_;
-    double area_ = 0;  // area of the patches that lines can hit [m^2]
+    double area_ = 0;  // area that lines can hit [m^2]
 };
 
 }  // namespace

@@ -17,7 +17,6 @@
 
 namespace interflect::detail {
 
-/// Link whose error bound exceeds the threshold, and the element to subdivide.
 struct RefinementCandidate {
     std::size_t link;
     std::uint32_t divided;
@@ -26,11 +25,11 @@ struct RefinementCandidate {
 
 namespace {
 
-/// Relative change of light in a sweep at which the links are refined, and at which the run ends.
+/// Relative change of light in a sweep below which links are refined, or the run ends.
 constexpr double settled = 1e-2, negligible_change = 1e-6;
-/// Error bound of a link with 16 blocked lines of sight, relative to its unoccluded exchange: a 17th line may be free.
+/// Relative error bound of 16 blocked lines of sight: a 17th may be free.
 constexpr double bound_if_blocked = 1.0 / 16;
-/// Maximum number of rays for the four links that replace one.
+/// Maximum rays of the four links that replace one.
 constexpr std::int64_t rays_per_division = std::int64_t{4} * 2 * 16;
 constexpr std::size_t pairs_per_task = 256, patches_per_task = 8;
 
@@ -48,14 +47,13 @@ Sphere sphere_around(const Scene& scene, const Patch& patch) {
     return sphere;
 }
 
-/// Returns an upper bound of the exchange between surfaces inside two spheres [m^2].
+/// Upper bound for surfaces inside two spheres [m^2].
 double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double area_b) {
     const double gap = std::max(0.0f, (a.centre - b.centre).length() - a.radius - b.radius);
     return area_a * area_b / (std::numbers::pi * gap * gap);
 }
 
-/// Returns the light or importance that each element receives over its links, per unit of area.
-/// @param area_of Link::area or Link::mean_area.
+/// Light or importance received over the links, per area. @param area_of  Link::area or Link::mean_area.
 template <class T>
 std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, const std::vector<T>& leaving,
                       T (Link::*area_of)() const) {
@@ -72,7 +70,7 @@ std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, 
     return received;
 }
 
-/// Returns the radiosity of every element. Non-finite values are counted and set to 0, so they are not gathered.
+/// Counts non-finite values and sets them to 0.
 std::vector<Rgb> present_radiosity(SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
     std::vector<Rgb> b;
@@ -85,7 +83,7 @@ std::vector<Rgb> present_radiosity(SolverState& state) {
     return b;
 }
 
-/// Sum over the elements of area times |new - old|, relative to the sum of area times new.
+/// Sum of area times |new - old|, relative to that of area times new.
 class RelativeChange {
   public:
     void add(double area, double before, double now) {
@@ -127,7 +125,7 @@ void LinkedElements::find_patches_to_link() {
     for (const Patch& patch : state_.scene.patches) spheres.push_back(sphere_around(state_.scene, patch));
     for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) surface += forest_.area(i);
     const auto emits = [&](std::uint32_t i) { return channel_sum(state_.materials.exitance(i)) > 0; };
-    // The exchange is so small that a reflector of average brightness sends at most the threshold over it.
+    // A reflector of average brightness sends at most the threshold over this exchange.
     const auto is_weak = [&](std::uint32_t i, std::uint32_t j) {
         return !emits(i) && !emits(j) &&
                largest_exchange(spheres[i], spheres[j], forest_.area(i), forest_.area(j)) <
@@ -151,7 +149,7 @@ void LinkedElements::find_patches_to_link() {
         candidates_.insert(candidates_.end(), some.begin(), some.end());
 }
 
-/// Turns the candidates into links. Drops pairs whose unoccluded exchange is 0.
+/// Drops pairs without unoccluded exchange.
 void LinkedElements::link_candidates() {
     require_room_for(candidates_.size());
     std::vector<Link> made(candidates_.size());
@@ -179,7 +177,7 @@ RgbD LinkedElements::gather_light() {
         irradiance = Rgb(received[e]);
         const RgbD power = received[e] * static_cast<double>(forest_.area(e));
         if (e < forest_.patch_count()) escaped -= power;
-        // A pane and the surface behind it both receive the transmitted light.
+        // A pane and the surface behind it both receive transmitted light.
         if (forest_.is_leaf(e)) escaped += RgbD(state_.materials.surface(forest_.patch(e), e).transmittance) * power;
     }
     light_change_ = change.value();
@@ -204,7 +202,6 @@ void LinkedElements::gather_importance() {
 
 namespace {
 
-/// Smallest and largest radiosity of the parts of each element.
 struct RadiosityRange {
     std::vector<Rgb> least, most;
 
@@ -219,8 +216,8 @@ struct RadiosityRange {
     }
 };
 
-/// Returns a bound on the error of a link's exchange [m^2]: the variation of the form factor, and the whole unoccluded
-/// exchange to the degree that the lines of sight differ.
+/// Error bound [m^2]: the variation of the form factor, and the unoccluded exchange to the degree that lines of sight
+/// differ.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
     if (transmittance == 0) return exchange.area * bound_if_blocked;
@@ -229,10 +226,9 @@ double error_bound(const Exchange& exchange, float spread) {
 
 }  // namespace
 
-/// Returns the links whose error bound exceeds the threshold, after Smits et al. 1992. A link from j to i treats the
-/// received light as constant over i. Over i, it varies by the spread of the form factor times B_j. Over j, it varies
-/// by the spread times the difference between the brightest and the darkest part of j. Each bound belongs to the
-/// element whose subdivision reduces it. The larger bound of the two directions counts.
+/// Returns the links whose error bound exceeds the threshold (Smits et al. 1992). A link from j to i takes received
+/// light as constant. Over i, it varies by B_j times the variation of the form factor; over j, by this variation times
+/// the range of radiosity in j. Each bound belongs to the element whose division reduces it.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const Solution& solution = state_.solution;
     const std::vector<Rgb> b = radiosity(state_.materials, forest_, solution.irradiance);
@@ -265,7 +261,7 @@ bool LinkedElements::may_divide(std::uint32_t element) const {
     return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.unseen());
 }
 
-/// Keeps the candidates that the limit of rays allows, those with the largest bounds first.
+/// Keeps the largest bounds within the limit of rays.
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
     const std::int64_t rays = std::max<std::int64_t>(0, state_.options.limits.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);
@@ -277,7 +273,6 @@ void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidate
     candidates.resize(affordable);
 }
 
-/// Initialises new elements (index >= first) from their parents, until the next sweep.
 void LinkedElements::describe_new_elements(std::uint32_t first) {
     Solution& solution = state_.solution;
     inherit(forest_, first, solution.irradiance);

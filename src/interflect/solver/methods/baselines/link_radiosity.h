@@ -11,17 +11,16 @@
 
 namespace interflect::detail {
 
-/// Default limit of links: 4.5 GiB at 36 bytes each.
+/// Default limit of links: 4.5 GiB.
 inline constexpr std::size_t most_links = std::size_t{1} << 27;
 
-/// Two elements that exchange light.
 struct Link {
     ElementPair ends;
     Exchange exchange;
 
     /// Exchange with occlusion, A_a F_ab = A_b F_ba [m^2].
     RgbD area() const { return RgbD(exchange.transmittance) * static_cast<double>(exchange.area); }
-    /// Mean of area() over the channels, for importance.
+    /// Mean over the channels, for importance.
     double mean_area() const { return channel_sum(area()) / 3; }
 };
 
@@ -32,45 +31,29 @@ struct LinkCandidate {
 
 struct RefinementCandidate;
 
-/// Deterministic solver of Eq. 1 of Prikryl et al. 2000: hierarchical radiosity (Hanrahan, Salzman and Aupperle 1991).
-/// Elements that face each other are linked and gather light over their links. Form factors are integrals (exchange.h);
-/// only visibility is sampled. A link is replaced by four links to the children of one of its elements if its error
-/// bound exceeds epsilon times the reference power (transport_steps.h). The bound is rho_i B_j A_i times a bound on the
-/// error of F_ij. In Hanrahan's 'BF refinement', the latter is F_ij itself. Here, after Smits, Arvo and Salesin 1992,
-/// it is the variation of F_ij over an element, or F_ij if the pair is partly occluded. Each sweep gathers one bounce
-/// over all links and ends with push-pull. Links are refined only when light has settled, so no mesh is made for
-/// incomplete light.
+/// Hierarchical radiosity (Hanrahan et al. 1991), a deterministic solver of Eq. 1, Prikryl et al. 2000, to check the
+/// Monte Carlo methods. A sweep gathers one bounce over the links between elements and ends with push-pull. Form
+/// factors are integrals (exchange.h); only visibility is sampled.
 ///
-/// Each link has the transmittance of its panes. If it varies by v between the lines of sight, the error bound includes
-/// the share v of the unoccluded exchange.
+/// Four links to the children of one end replace a link if its error bound exceeds epsilon times the reference power
+/// (oracle_threshold.h). The bound is rho_i B_j A_i times the variation of F_ij over an element (Smits et al. 1992),
+/// including partial occlusion. Links are refined only when light has settled. With importance, psi is transported
+/// backwards over the same links, and bounds are weighted by psi_i / psi_max (Eq. 15).
 ///
-/// With importance (Smits et al.), psi is transported backwards over the same links, so sum v P = sum psi W on any
-/// mesh. The error bound is weighted by psi_i / psi_max as in Eq. 15.
-///
-/// An independent check of the Monte Carlo methods, with discretisation error and, from sampled visibility, little
-/// noise. The error is largest in the smallest elements along edges where surfaces meet, because the errors of many
-/// good links have the same sign there. Intended for a few thousand patches: all pairs are tested.
-///
-/// The run ends when a sweep changes almost nothing and no link needs refinement. Refinement stays within
-/// options.limits.rays, max_elements and min_area; the first links may exceed the limit of rays.
-/// options.experimental.iterations, if not 0, and seconds limit the sweeps. Options of random sampling, and `until`,
-/// have no effect. IterationReport has one entry per sweep; its `rays` are visibility rays. `escaped_power` is the
-/// power that left the surfaces and reached no other. In a closed scene it is the error of the sum of form factors, of
-/// either sign. Solution::standard_error, ::discretisation_error and ::rays are 0. The same seed gives the same bits
-/// for any number of threads. Cost: O(patches^2 + links) time.
+/// The run ends when light has settled and no link needs refinement. It stays within limits.rays (except for the first
+/// links), max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
+/// escaped_power is the error of the form factors. The same seed gives the same bits for any number of threads. Cost:
+/// O(patches^2 + links).
 class LinkedElements : public IterationMethod {
   public:
-    /// @param state Must outlive this object.
-    /// @param link_limit Maximum number of links at a time.
+    /// The state must outlive this. @param link_limit  Maximum number of links.
     explicit LinkedElements(SolverState& state, std::size_t link_limit = most_links);
 
-    /// Links all patches that face each other. @throws InputError if there are too many links.
+    /// Links all patches that face each other. @throws InputError for too many links.
     void prepare(SolverState& state) override;
     bool is_fulfilled(const SolverState& state) const override;
-    /// Plans another sweep until light and links have settled.
     IterationPlan plan(SolverState& state) override;
-    /// Performs a sweep: refines the links if light had settled, then transports light and importance by one bounce.
-    /// @throws InputError like prepare().
+    /// Refines links if light has settled, then gathers one bounce. @throws InputError like prepare().
     Estimate trace(SolverState& state, IterationPlan& plan) override;
     void merge(SolverState&, const Estimate&, const IterationPlan&) override {}  // a sweep replaces the light
     void finish(SolverState& state) const override;
@@ -96,11 +79,11 @@ class LinkedElements : public IterationMethod {
     ExchangeEstimator estimator_;
     std::size_t link_limit_;
     std::vector<Link> links_;
-    std::vector<LinkCandidate> candidates_;            // not linked yet
+    std::vector<LinkCandidate> candidates_;
     double light_change_ = 0, importance_change_ = 0;  // of the last sweep
     std::int64_t rays_ = 0;
     int sweeps_ = 0;
-    bool refines_ = false;  // links may need refinement once light has settled
+    bool refines_ = false;
     bool refines_next_ = false, is_settled_ = false;
 };
 

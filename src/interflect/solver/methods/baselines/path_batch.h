@@ -21,14 +21,12 @@
 
 namespace interflect::detail {
 
-/// Paths per task of a PathBatch, which traces one bounce of all of them at a time. Large enough for long Embree
-/// batches.
+/// Paths per task; enough for long Embree batches.
 inline constexpr std::size_t paths_per_task = 4096;
-/// Maximum number of copies of a particle at a hit. If importance rises further, later hits split it again.
+/// Maximum copies of a particle at a hit. Later hits may split it again.
 inline constexpr double most_copies = 8;
-/// Ratio of received to expected power at which the sums of a batch overflow; leaves 2^45 units for the expected power.
+/// Received over expected power at which sums overflow; leaves 2^45 units for the expected power.
 inline constexpr double sum_headroom = 0x1p16;
-/// Keys of the random numbers, one per purpose.
 enum class WalkPurpose : std::uint64_t {
     light = 1,
     importance,
@@ -44,31 +42,31 @@ constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uin
     return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
 }
 
-/// WalkSource of the particles. Every vector has an entry per patch; `emitted` and `density` continue with the parts of
-/// emitting luminaires. Importance (Eq. 7) is emitted by the cameras. A patch first emits the reflected part of the
-/// importance that it received from them, equal in all channels.
+/// Source of particles: light, or importance (Eq. 7). Entries by patch; `emitted` and `density` continue with the parts
+/// of the luminaires' emission (Emission). Cameras emit importance, so a patch first emits its reflected view
+/// importance, equal in all channels.
 struct WalkSource {
     std::vector<Rgb> emitted;      ///< Initial power of a source: W [lm or W], or rho V.
     std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
-    std::vector<float> density;    ///< Particles per unit of power that leaves the patch, times a constant; >= 0.
-    bool is_grey = false;          ///< Importance: panes transmit the mean of their channels.
+    std::vector<float> density;    ///< Particles per unit of leaving power, times a constant; >= 0.
+    bool is_grey = false;          ///< Panes transmit the mean of their channels.
 };
 
-/// Contributions of a batch of paths, as integers: their sums do not depend on the order of deposits.
+/// Integer sums, independent of the order of deposits.
 struct PathSums {
     FixedPoint unit;
-    std::vector<FixedPoint::Value> received;  ///< Power received by each patch.
+    std::vector<FixedPoint::Value> received;
     FixedPoint::Value escaped{};
-    std::vector<std::int64_t> started;  ///< Number of rays that left each patch.
+    std::vector<std::int64_t> started;  ///< Rays that left each patch.
     std::int64_t rays = 0, escaped_rays = 0;
 
-    /// @param hits Maximum number of hits of a ray: more than one if it passes through panes.
+    /// @param hits  Maximum per ray; more than 1 with panes.
     PathSums(const WalkSource& payload, double hits)
         : unit(sum_headroom * hits * most_expected(payload)),
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
 
-    /// Returns an upper bound of the expected received power in any channel: emitted power over 1 - rho.
+    /// Upper bound of the expected received power: emitted power / (1 - rho).
     static double most_expected(const WalkSource& payload) {
         double power = 0, rho = 0;
         for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
@@ -77,13 +75,13 @@ struct PathSums {
     }
 };
 
-/// Power about to leave a patch or a part of the luminaires.
+/// Power about to leave a patch or luminaire part.
 struct Particle {
     std::uint32_t patch;
     Rgb power;
 };
 
-/// Active particles of one task. Each thread reuses its wavefront.
+/// One object per thread, reused.
 struct Wavefront {
     std::vector<Particle> particles, reflected;
     std::vector<Ray> rays;
@@ -99,11 +97,8 @@ struct Wavefront {
     }
 };
 
-/// Batch of paths, each traced from its emission to its end.
 class PathBatch {
   public:
-    /// @param paths > 0.
-    /// @param key Key of the batch's random numbers.
     PathBatch(const SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key)
         : forest_(*state.forest),
           emission_(state.emission),
@@ -149,8 +144,7 @@ class PathBatch {
         }
     }
 
-    /// Starts the paths begin ... end - 1. A path of source s carries W_s / (N q_s). The paths of a source are
-    /// consecutive points of its sequence.
+    /// A path of source s carries W_s / (N q_s). A source's paths are consecutive points of its sequence.
     void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
         w.particles.resize(static_cast<std::size_t>(end - begin));
         w.make_room_for_rays();
@@ -172,8 +166,7 @@ class PathBatch {
         allocation_->for_each_source(begin, end, emit_some);
     }
 
-    /// Deposits the power of every particle at the first patch that it hits, and the filtered power at the patches
-    /// behind panes. Lists the power that each of these patches reflects.
+    /// Deposits power at first hits and, filtered, behind panes. Lists the power to reflect.
     void score(Wavefront& w) {
         FixedPoint::Value escaped{};
         std::int64_t escaped_rays = 0;
@@ -203,9 +196,9 @@ class PathBatch {
         add_concurrently(sums_.escaped_rays, escaped_rays);
     }
 
-    /// Applies Russian roulette and splitting: reflected power continues as a random number of copies with mean n, each
-    /// with 1/n of the power. With n = power * density / unit_power_, a copy carries the power of a particle emitted
-    /// there. One random number samples the copies of a wavefront systematically, so their total hardly varies.
+    /// Russian roulette and splitting: reflected power continues as a random number of copies with mean n, each with
+    /// 1/n of the power. With n = power * density / unit_power_, a copy carries the power of a particle emitted there.
+    /// One random number samples all copies systematically.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;
@@ -219,7 +212,6 @@ class PathBatch {
         }
     }
 
-    /// Generates the rays of the reflected particles.
     void reflect(std::uint64_t key, Wavefront& w) const {
         w.make_room_for_rays();
         for (std::size_t i = 0; i < w.particles.size(); ++i)
@@ -238,8 +230,8 @@ class PathBatch {
     std::int64_t paths_;
     std::uint64_t key_;
     PathSums sums_;
-    double unit_power_ = 0;  // power of a particle where the density is 1, summed over the channels
-    std::vector<float> q_;   // share of the paths that start on each source
+    double unit_power_ = 0;  // power of a particle at density 1, sum of the channels
+    std::vector<float> q_;
     std::optional<RayAllocation> allocation_;
 };
 

@@ -16,30 +16,26 @@ namespace interflect::detail {
 
 namespace {
 
-/// A step shoots all patches whose sampling weight is at least this share of the largest.
+/// A step shoots the patches whose weight is at least this share of the largest.
 constexpr float share_of_largest = 0.5f;
-/// The last step shoots the rest: if less than this share of the initial amount is unshot, or if a step would get fewer
-/// rays.
+/// The last step shoots the rest: below this unshot share, or if a step would get fewer rays.
 constexpr double negligible_rest = 0.01;
 constexpr std::int64_t fewest_rays_of_step = 16;
-/// Sum of the weights of all steps, until a series of steps has measured it.
+/// Sum of the weights of all steps, until measured.
 constexpr double assumed_shots = 2;
 
-/// Distribution of rays over one series of steps, from darkness until little is left to shoot. Weights are relative to
-/// the initially unshot amount.
+/// Rays of a series of steps, from darkness to little unshot power. Weights are relative to the initial amount.
 struct ShotBudget {
-    std::int64_t left;  ///< Rays.
-    double expected;    ///< Sum of the weights of all steps.
-    double shot = 0;    ///< Sum of the weights so far.
+    std::int64_t left;
+    double expected;  ///< Sum of the weights of all steps.
+    double shot = 0;
 
-    /// Returns the expected sum for the next series.
     double measured() const { return shot > 0 ? shot : expected; }
-    /// @param weight Amount selected for a step.
-    /// @param unshot Total unshot amount. Later reflections are expected in proportion to it.
+    /// @param weight  Amount selected for a step. @param unshot  Total.
     std::int64_t share(double weight, double unshot) const {
         return std::llround(std::min(1.0, weight / (expected * unshot)) * static_cast<double>(left));
     }
-    /// Returns the number of random walks for the remaining rays: a walk shoots its power `expected` times.
+    /// A walk shoots its power `expected` times.
     std::int64_t walks() const {
         return std::max<std::int64_t>(1, std::llround(static_cast<double>(left) / std::max(1.0, expected)));
     }
@@ -49,7 +45,6 @@ struct ShotBudget {
     }
 };
 
-/// Keeps the sampling weights that are at least share_of_largest times the largest; sets the others to 0.
 void choose_largest(std::vector<float>& q) {
     const float least = share_of_largest * *std::max_element(q.begin(), q.end());
     for (float& weight : q)
@@ -62,7 +57,6 @@ double sum_of(const std::vector<float>& q) {
     return sum;
 }
 
-/// Removes the amounts that were shot and adds the received ones.
 template <class T>
 void replace_shot(std::vector<T>& unshot, const std::vector<float>& chosen, const std::vector<T>& arrived) {
     for (std::size_t i = 0; i < unshot.size(); ++i) unshot[i] = (chosen[i] > 0 ? T(0) : unshot[i]) + arrived[i];
@@ -70,24 +64,22 @@ void replace_shot(std::vector<T>& unshot, const std::vector<float>& chosen, cons
 
 double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 
-/// A series of steps of importance.
 struct ImportanceSeries {
     ShotBudget budget;
-    std::vector<float> unshot, fresh;  ///< The latter summed over the steps.
-    double first = 0;                  ///< Unshot before the first step.
+    std::vector<float> unshot, fresh;  ///< fresh: summed over the steps
+    double first = 0;
 };
 
-/// A series of steps of power.
 struct PowerSeries {
     ShotBudget budget;
     ImportanceWeights weights;
-    std::vector<Rgb> unshot;                           ///< Irradiance.
-    Estimate fresh;                                    ///< Sum of the steps.
-    bool emits = true;                                 ///< Whether the next step is the first.
-    double first_power = 0, first_weighted_power = 0;  ///< See PowerStep; before the first step.
+    std::vector<Rgb> unshot;
+    Estimate fresh;
+    bool emits = true;                                 ///< The next step is the first.
+    double first_power = 0, first_weighted_power = 0;  ///< Before the first step; see PowerPlan.
 };
 
-/// Performs one step. @return Whether another follows.
+/// @return  Whether another step follows.
 bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
     const ElementForest& forest = *state.forest;
     double unshot = 0;
@@ -114,7 +106,6 @@ bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
     return !is_last;
 }
 
-/// Performs one step. @return Whether another follows.
 bool shoot_some_power(SolverState& state, PowerSeries& series) {
     const Radiosity light(state.materials, series.unshot, series.emits);
     auto [plan, power, weighted_power, lost] =
@@ -126,13 +117,13 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     const double unshot =
         beta * ratio(power, series.first_power) + (1 - beta) * ratio(weighted_power, series.first_weighted_power);
     std::vector<float> chosen = step.q;
-    if (series.emits)  // all emitters, and all parts of the luminaires
+    if (series.emits)
         for (std::uint32_t i = 0; i < state.forest->size(); ++i)
             chosen[i] = channel_sum(state.materials.exitance(i)) > 0 ? chosen[i] : 0;
     else
         choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
-    // Unweighted power: unimportant power may reach important patches when it is shot.
+    // Unweighted: unimportant power may reach important patches later.
     const bool is_last = power < negligible_rest * series.first_power || series.budget.is_last(weight, unshot);
     if (is_last) chosen = step.q, weight = unshot * series.budget.expected;
     step.q = chosen;
@@ -155,16 +146,14 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     return !is_last;
 }
 
-/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995) with rays in place of form factors, see
-/// docs/method.md. Each step shoots the patches with the most unshot power, weighted by importance if there is a view.
-/// The first step shoots the emitters. Importance is computed by the same steps in dual order. A step is a batch of all
-/// patches with at least half of the largest amount, so transport() traces long batches.
+/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995) with rays in place of form factors; see
+/// docs/method.md. The first step shoots the emitters. Later steps shoot all patches with at least half of the largest
+/// unshot power, weighted by importance. Importance is computed by the same steps in dual order.
 ///
-/// An iteration is a solution from darkness. Random walks complete its last step of power, and carry most of the power
-/// if rays are few. Constant on patches: no refinement. The same seed gives the same bits for any number of threads.
+/// An iteration is a solution from darkness. Random walks complete its last step. Constant on patches. The same seed
+/// gives the same bits for any number of threads.
 class ProgressiveRefinement final : public IterationMethod {
   public:
-    /// Computes importance, which guides the first power rays.
     void prepare(SolverState& state) override {
         current_.importance_history = 0;
         shoot_importance(state,
@@ -184,19 +173,18 @@ class ProgressiveRefinement final : public IterationMethod {
 
     struct Numbers {
         double importance_shots = assumed_shots, power_shots = assumed_shots;  // see ShotBudget::expected
-        std::int64_t importance_history = 0;                                   // number of rays in the mean
+        std::int64_t importance_history = 0;                                   // rays in the mean
     };
-    Numbers current_, before_;  // the latter before the iteration
+    Numbers current_, before_;
 };
 
-/// Returns the number of rays that importance lacks of its share alpha of `planned` rays in total.
+/// Rays that importance lacks of its share alpha of `planned` rays.
 std::int64_t ProgressiveRefinement::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));
     return std::max<std::int64_t>(0, share - current_.importance_history);
 }
 
-/// Transports importance from the views and merges the result with the mean.
 void ProgressiveRefinement::shoot_importance(SolverState& state, std::int64_t rays) {
     if (rays <= 0) return;
     ImportanceSeries series{{rays, current_.importance_shots}, state.solution.view_importance, {}};
@@ -232,7 +220,7 @@ Estimate ProgressiveRefinement::trace(SolverState& state, IterationPlan& plan) {
         current_.power_shots = series.budget.measured();
         plan.traced += state.power_rays - rays_before;
     }
-    // Rays stay unused if no surface reflects the importance or the light.
+    // Rays stay unused if no surface reflects importance or light.
     plan.traced = std::max<std::int64_t>(1, plan.traced);
     return std::move(series.fresh);
 }

@@ -14,16 +14,15 @@ namespace interflect::detail {
 
 namespace {
 
-/// Paths of the pilot, which measures the length of paths; minimum rays of the batch per pilot path.
+/// Paths of the pilot, which measures the path length; minimum rays of a batch per pilot path.
 constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
 
 struct BatchResult {
-    std::vector<Rgb> irradiance;  ///< Per patch; importance is per area too.
+    std::vector<Rgb> irradiance;  ///< By patch; or importance per area.
     RgbD escaped{0, 0, 0};
     std::int64_t rays = 0;
 };
 
-/// Traces this number of paths and updates the counts of rays.
 BatchResult follow_paths(SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key) {
     PathBatch batch(state, payload, paths, key);
     const PathSums& sums = batch.follow();
@@ -39,7 +38,7 @@ BatchResult follow_paths(SolverState& state, const WalkSource& payload, std::int
     return arrived;
 }
 
-/// Estimates the noise, assuming equal, independent contributions.
+/// Assumes equal, independent contributions.
 Estimate independent_contributions(const SolverState& state, const BatchResult& batch) {
     const double power = luminance(integral(*state.forest, batch.irradiance));
     Estimate estimate{.irradiance = batch.irradiance, .escaped_power = batch.escaped};
@@ -49,9 +48,8 @@ Estimate independent_contributions(const SolverState& state, const BatchResult& 
     return estimate;
 }
 
-/// Traces enough paths for about this number of rays.
 BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t rays, PathSeries& series) {
-    if (series.pilot_rays == 0) {  // the pilot's result is discarded: a batch must not choose its own size
+    if (series.pilot_rays == 0) {  // discarded: a batch must not choose its own size
         const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
         series.pilot_rays = follow_paths(state, payload, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
         series.rays_per_path = static_cast<double>(series.pilot_rays) / static_cast<double>(paths);
@@ -65,8 +63,7 @@ BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t ray
     return arrived;
 }
 
-/// Returns the importance that guides particles: that of Eq. 10, or on request of Eq. 9. The power that leaves a patch
-/// is important for its destination, hence Eq. 10.
+/// Importance that guides particles. Leaving power is important for its destination: hence Eq. 10, or on request Eq. 9.
 std::vector<float> leading_importance(const Solution& so_far) {
     switch (importance_use(so_far)) {
         case ImportanceUse::off:
@@ -79,8 +76,8 @@ std::vector<float> leading_importance(const Solution& so_far) {
     return so_far.options.experimental.total_importance ? total_importance(so_far) : so_far.indirect_importance;
 }
 
-/// Returns beta + (1 - beta) psi, with psi relative to its mean over the emitted power. Thus power alone starts the
-/// share beta of the paths.
+/// beta + (1 - beta) psi, with psi relative to its mean over emitted power: power alone starts the share beta of the
+/// paths.
 std::vector<float> particle_density(const Solution& so_far, const std::vector<Rgb>& emitted) {
     std::vector<float> density = leading_importance(so_far);
     double power = 0, important = 0;
@@ -104,7 +101,7 @@ WalkSource light(const SolverState& state) {
     payload.density = particle_density(state.solution, payload.emitted);
     for (std::size_t i = 0; i < state.emission.part_count(); ++i) {
         payload.emitted.emplace_back(state.emission.power(i));
-        payload.density.push_back(1);  // the mean: the importance of parts is unknown
+        payload.density.push_back(1);  // the mean: their importance is unknown
     }
     return payload;
 }
@@ -133,7 +130,7 @@ void RandomWalks::prepare(SolverState& state) {
     state.schedule.began_with(0, state.importance_rays);
 }
 
-/// Returns the number of rays that importance lacks of its share alpha of `planned` rays in total.
+/// Rays that importance lacks of its share alpha of `planned` rays.
 std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));
@@ -166,7 +163,7 @@ Estimate RandomWalks::trace(SolverState& state, IterationPlan& plan) {
         plan.traced += batch.rays;
         estimate = independent_contributions(state, batch);
     }
-    if (plan.traced == 0) plan.traced = plan.rays;  // no visible surface reflects, and the plan is used up
+    if (plan.traced == 0) plan.traced = plan.rays;  // no visible surface reflects
     return estimate;
 }
 

@@ -34,13 +34,12 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/total", total_);
 }
 
-/// Sets the weights of the plan to the rays that each source lacks of its share of `all` rays. A leaf may have shot
-/// more than its share, by chance or because of a poor early estimate. Other leaves of its patch then shoot less, so
-/// the patch keeps its share.
+/// Sets the weights to the rays that each source lacks of its share of `all` rays. If a leaf has shot more than its
+/// share, other leaves of its patch shoot less.
 /// @param plan  Its weights are the shares on entry.
 void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const {
     struct Balance {
-        double lacks = 0, lacking = 0;  // missing rays, with and without the surplus of other leaves
+        double lacks = 0, lacking = 0;  // rays, with and without the surplus of other leaves
     };
     std::vector<Balance> patches(forest.patch_count());
     const auto lacks = [&](std::uint32_t e) { return static_cast<double>(all) * plan.q[e] - shot_[e]; };
@@ -71,7 +70,7 @@ Estimate WellDistributedRays::trace(SolverState& state, IterationPlan& plan) {
     TransportStep step(std::move(power.rays));
     step.equal_payloads = true;
     step.groups = group_radiosity(state, state.solution.groups);
-    // These methods have no importance: the weights are the leaves' shares of all power.
+    // Without importance, the weights are shares of all power.
     const double all_power = channel_sum(radiated_power(state));
     keep_lacking_rays(forest, total_ + plan.rays, step);
     const std::int64_t rays = plan.rays = plan.traced = step.rays;

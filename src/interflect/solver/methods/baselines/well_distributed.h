@@ -10,21 +10,17 @@
 
 namespace interflect::detail {
 
-/// Iterations that keep every ray: all rays so far represent the current estimate as a well-distributed ray set
-/// (Neumann, Neumann and Bekaert 1997; with refinement, Bekaert et al. 1998). Leaf i has shot n_i = N P_i / sum P rays
-/// with the payload sum P / N. When the estimate of P or N changes, an iteration shoots the rays that each leaf lacks,
-/// and old hits count with the new payload. A leaf with more rays than its share shoots again when N has grown enough.
-/// Until then, N is slightly larger than planned, so all rays together carry sum P. A ray keeps the colour that it had
-/// when shot.
+/// Keeps every ray: all rays so far are a well-distributed ray set of the current estimate (Neumann, Neumann and
+/// Bekaert 1997; with refinement, Bekaert et al. 1998). Leaf i has shot n_i = N P_i / sum P rays of payload sum P / N.
+/// When P or N changes, an iteration shoots the rays that each leaf lacks, and old hits count with the new payload. A
+/// leaf beyond its share pauses; N is then slightly larger than planned, so all rays together carry sum P. A ray keeps
+/// its colour.
 class WellDistributedRays : public IterationMethod {
   public:
     explicit WellDistributedRays(const SolverState& state);
 
-    /// Makes a first estimate by a complete pass, unless iterations are single bounces.
     void prepare(SolverState& state) override;
-    /// Increases N by plan.rays.
     Estimate trace(SolverState& state, IterationPlan& plan) override;
-    /// Computes the irradiance from all rays so far.
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override {
@@ -40,13 +36,13 @@ class WellDistributedRays : public IterationMethod {
   private:
     void keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const;
 
-    Passes passes_;                      // used before the first iteration
-    std::vector<double> shot_;           // rays shot by each leaf
-    std::vector<double> shot_by_parts_;  // rays shot by each part of the luminaires
-    std::vector<Rgb> received_;          // received payloads per area of each element, per channel [1/m^2]
-    GroupLight received_groups_;         // shares of the light groups in received_
+    Passes passes_;
+    std::vector<double> shot_;           // rays, by leaf
+    std::vector<double> shot_by_parts_;  // rays, by luminaire part
+    std::vector<Rgb> received_;          // payloads per area, by element and channel [1/m^2]
+    GroupLight received_groups_;         // received_ by light group
     RgbD escaped_{0, 0, 0};              // payloads that escaped
-    std::int64_t total_ = 0;             // N: rays of all leaves
+    std::int64_t total_ = 0;             // N
 };
 
 }  // namespace interflect::detail
