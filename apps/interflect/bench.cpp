@@ -76,7 +76,7 @@ struct Workload {
         const Radiosity light(materials, solution.irradiance);
         const ImportanceWeights weights = importance_weights(solution, Neighbourhoods(*forest));
         step = TransportStep(
-            plan_power(materials, Emission(), solution, light, weights, combined, options.limits.rays).rays);
+            plan_power(materials, Emission(), solution, light, weights, combined, options.limits.rays).plan);
         step.importance_at_patches = options.experimental.importance_at_patches;
         if (options.method.refines && !refines_by_variance(options))
             step.oracle = make_oracle(solution, options.limits.rays, options.refinement.min_area);

@@ -63,7 +63,7 @@ TEST_F(Weights, OfWhatIsNotFiniteAreZeroAndItIsReported) {
     irradiance_[5].x = std::nanf("");
     const Radiosity light(materials_, irradiance_);
     EXPECT_THAT(of_leaves(&SamplingWeights::power), ElementsAre(6, 0, 0, 3, 0));
-    for (std::uint32_t e = 0; e < 6; ++e) EXPECT_EQ(light.is_lost(forest_, e), e == 2 || e == 5) << e;
+    for (std::uint32_t e = 0; e < 6; ++e) EXPECT_EQ(light.is_not_finite(forest_, e), e == 2 || e == 5) << e;
 }
 
 TEST_F(Weights, OfPowerAreFiniteForEveryFiniteRadiosity) {
@@ -107,7 +107,7 @@ TEST_F(Weights, ThatAre0EverywhereLeaveTheirShareToTheOthers) {
 TEST_F(Weights, CountTheLeavesOfWhichNothingFiniteCanBeShot) {
     irradiance_[0].x = irradiance_[2].y = irradiance_[4].z = std::numeric_limits<float>::infinity();
     const Mixture mixed = mixture(sampled(), {.power = 1});
-    EXPECT_EQ(mixed.lost_leaves, 2) << "and the inner element is none";
+    EXPECT_EQ(mixed.non_finite_leaves, 2) << "and the inner element is none";
     EXPECT_EQ(mixed.q[2], 0);
     EXPECT_EQ(mixed.q[4], 0);
 }

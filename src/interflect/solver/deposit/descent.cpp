@@ -9,8 +9,8 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution, st
                       std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
                       float transmitted) {
     const std::uint32_t payload = buffer_.add_source(contribution, of_groups);
-    left_.push_back({source, 0, transmitted});
-    const auto left = static_cast<std::uint32_t>(left_.size() - 1);
+    sources_in_task_.push_back({source, 0, transmitted});
+    const auto left = static_cast<std::uint32_t>(sources_in_task_.size() - 1);
     bool path_is_known = !refines_;
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
@@ -19,7 +19,7 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution, st
             buffer_.add(hits[r].patch, payload, true, true);
             if (step_.reflects_where_received(hits[r].patch)) {
                 const V3f point = rays[r].origin + hits[r].distance * rays[r].direction;
-                note_start_point(hits[r].patch, forest_.geometry(hits[r].patch).parameters_of(point), contribution);
+                add_start_point(hits[r].patch, forest_.geometry(hits[r].patch).parameters_of(point), contribution);
             }
             if (found_importance_) find_importance(left, hits[r].patch, hits[r].patch);
         } else {
@@ -47,9 +47,9 @@ void Descent::finish_batch() {
     sources_.clear();
     buffer_.release_sources();
     if (found_importance_)
-        for (const auto& [source, found, transmitted] : left_)
+        for (const auto& [source, found, transmitted] : sources_in_task_)
             found_importance_->add(source, found * double{transmitted});
-    left_.clear();
+    sources_in_task_.clear();
 }
 
 Escaped Descent::finish() {
@@ -97,7 +97,7 @@ void Descent::advance() {
     const auto arrived = open_lanes_if(some, [&](std::size_t i) { return pairs_.goes_on[i] == 0; });
     Lanes on_their_way;
     const auto others = open_lanes_if(on_their_way, [&](std::size_t i) { return pairs_.goes_on[i] != 0; });
-    for (const std::uint32_t i : arrived) send(i);
+    for (const std::uint32_t i : arrived) deposit_ray(i);
     std::copy(arrived.begin(), arrived.end(), std::copy(others.begin(), others.end(), open_.begin()));
     open_count_ = others.size();
     pairs_.go_down();
@@ -140,7 +140,7 @@ void Descent::subdivide_on_demand(std::size_t i) {
     if (pairs_.goes_on[i]) pairs_.next[i] = pairs_.children[i];
 }
 
-void Descent::send(std::size_t i) {
+void Descent::deposit_ray(std::size_t i) {
     const auto& [source, patch, left, start, reflectance] = rays_[i];
     std::uint32_t leaf = pairs_.receiver[i];
     while (leaf >= old_size_) leaf = forest_.parent(leaf);
@@ -151,16 +151,17 @@ void Descent::send(std::size_t i) {
     if (!step_.carries_power() || !together) buffer_.add(of_importance, source, false, true);
     if (found_importance_) find_importance(left, patch, leaf);
     if (step_.reflects_where_received(leaf))
-        note_start_point(leaf, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(source));
+        add_start_point(leaf, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(source));
 }
 
-void Descent::note_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution) {
+void Descent::add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution) {
     const auto power = static_cast<float>(contribution[0] + contribution[1] + contribution[2]);
     if (power > 0) start_points_.push_back({leaf, power, at});
 }
 
 inline void Descent::find_importance(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf) {
-    left_[left].found += static_cast<double>(materials_.mean_reflectance(patch, leaf) * step_.importance[leaf]);
+    sources_in_task_[left].found +=
+        static_cast<double>(materials_.mean_reflectance(patch, leaf) * step_.importance[leaf]);
 }
 
 }  // namespace interflect::detail

@@ -92,8 +92,8 @@ class Descent {
     void advance();
     void look_up_receiver(std::size_t i);
     void subdivide_on_demand(std::size_t i);
-    void send(std::size_t i);
-    void note_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution);
+    void deposit_ray(std::size_t i);
+    void add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution);
     void find_importance(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf);
 
     const Materials& materials_;
@@ -105,12 +105,12 @@ class Descent {
     Escaped escaped_;
     std::vector<StartPoint> start_points_;
     FoundImportance* found_importance_;
-    struct Left {
+    struct SourceInTask {
         std::uint32_t source;
         double found;
         float transmitted;
     };
-    std::vector<Left> left_;
+    std::vector<SourceInTask> sources_in_task_;
     RayPairs pairs_{};
     std::array<RayState, lanes> rays_;
     Lanes open_;  // lanes in use, then free lanes

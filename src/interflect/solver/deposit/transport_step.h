@@ -20,14 +20,14 @@ struct TransportStep : RayPlan {
     bool importance_at_patches = false;
     Oracle oracle;
     /// Random walks complete the transport of this power (Walks).
-    bool to_the_end = false;
+    bool completes_by_walks = false;
     /// Nonzero for leaves that reflect where they receive (Received::start_points); may be empty.
     std::span<const std::uint8_t> reflecting_where_received;
     bool reflects_where_received(std::uint32_t leaf) const {
         return !reflecting_where_received.empty() && reflecting_where_received[leaf] != 0;
     }
     /// Buffer to reuse after tracing, or null.
-    std::vector<Rgb>* spent = nullptr;
+    std::vector<Rgb>* reusable_buffer = nullptr;
     /// Inner elements receive 0. Not with a refining oracle.
     bool leaves_only = false;
 };

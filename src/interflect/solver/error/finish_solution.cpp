@@ -33,7 +33,7 @@ void finish_solution(SolverState& state) {
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        const float within = std::max(0.0f, signal_beside(state, e)) / 3;  // 1/4 + 1/16 + ... of the signal
+        const float within = std::max(0.0f, signal_among_siblings(state, e)) / 3;  // 1/4 + 1/16 + ... of the signal
         solution.standard_error[e] = std::sqrt(errors.noise[e]);
         solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
     }

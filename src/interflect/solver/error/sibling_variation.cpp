@@ -83,7 +83,7 @@ Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
     return s;
 }
 
-float signal_beside(const SolverState& state, std::uint32_t e) {
+float signal_among_siblings(const SolverState& state, std::uint32_t e) {
     if (e < state.forest->patch_count()) return 0;
     const SiblingVariation variation = sibling_variation(state, first_sibling(*state.forest, e));
     return variation.is_known() ? variation.signal() : 0;

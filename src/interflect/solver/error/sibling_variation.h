@@ -49,7 +49,7 @@ struct Shrinkage {
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first);
 
 /// Signal among the element's siblings; 0 if unknown.
-float signal_beside(const SolverState& state, std::uint32_t e);
+float signal_among_siblings(const SolverState& state, std::uint32_t e);
 
 inline std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {
     return forest.first_child(forest.parent(e));

@@ -65,7 +65,7 @@ void weigh_parts(const Emission& emission, const std::vector<PartImportance>& fo
     }
 }
 
-void raise(std::span<float> numbers, float exponent) {
+void pow_each(std::span<float> numbers, float exponent) {
     if (exponent == 0.75f) {  // default; square roots vectorise
         for (float& x : numbers) x = std::sqrt(x) * std::sqrt(std::sqrt(x));
     } else {
@@ -120,7 +120,7 @@ std::vector<float> importance_weight(const ElementForest& forest, const Importan
     });
     if (power == 1) return weights;
     parallel_for_ranges(weights.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
-        raise(std::span(weights).subspan(begin, end - begin), power);
+        pow_each(std::span(weights).subspan(begin, end - begin), power);
     });
     return weights;
 }

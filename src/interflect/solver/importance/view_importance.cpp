@@ -58,9 +58,9 @@ void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaste
             if (patch == none) continue;
             const V3f y = rays[r].origin + hits[r].distance * rays[r].direction;
             points_.push_back({patch, forest.geometry(patch).parameters_of(y), share, patch});
-            hit_shares_ += static_cast<double>(share);
+            hit_weight_ += static_cast<double>(share);
         }
-        shares_ += static_cast<double>(share) * static_cast<double>(rays.size());
+        total_weight_ += static_cast<double>(share) * static_cast<double>(rays.size());
         add_points_behind(forest, panes, rays, hits, share);
         rays_ += rays_per_view;
     }
@@ -76,8 +76,8 @@ void ViewImportance::archive(StateArchive& archive) {
     archive("view/points", points_);
     archive("view/rounds", rounds_);
     archive("view/rays", rays_);
-    archive("view/shares", shares_);
-    archive("view/hit_shares", hit_shares_);
+    archive("view/shares", total_weight_);
+    archive("view/hit_shares", hit_weight_);
 }
 
 bool ViewImportance::fits(const ElementForest& forest) const {
@@ -94,7 +94,7 @@ std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at
         });
     std::vector<float> v(forest.size(), 0.0f);
     for (const Point& p : points_) v[at_patches ? p.patch : p.leaf] += p.share;
-    const double per_share = 1 / hit_shares_;
+    const double per_share = 1 / hit_weight_;
     parallel_for_ranges(v.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             v[e] = static_cast<float>(v[e] * per_share / forest.area(e));

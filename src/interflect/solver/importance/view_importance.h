@@ -27,7 +27,7 @@ class ViewImportance {
     std::int64_t rays() const { return rays_; }     ///< Requested for all views.
     std::int64_t views() const { return std::ssize(views_); }
     /// Share of the pictures that shows surfaces.
-    double shown_share() const { return shares_ > 0 ? hit_shares_ / shares_ : 0; }
+    double shown_share() const { return total_weight_ > 0 ? hit_weight_ / total_weight_ : 0; }
     /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element. It sums to 1
     /// over first hits; surfaces behind panes add their transmitted share.
     /// @param at_patches  Spreads V evenly over each patch.
@@ -46,14 +46,14 @@ class ViewImportance {
     struct Point {
         std::uint32_t patch;
         Parameters parameters;
-        float share;         // of all pictures, times shares_
+        float share;         // of all pictures, times total_weight_
         std::uint32_t leaf;  // result of the last lookup
     };
     std::vector<WeightedView> views_;
     std::uint64_t seed_;
     std::uint64_t rounds_ = 0;
     std::int64_t rays_ = 0;
-    double shares_ = 0, hit_shares_ = 0;  // of all camera rays, and of hits
+    double total_weight_ = 0, hit_weight_ = 0;  // of all camera rays, and of hits
     std::vector<Point> points_;
 };
 

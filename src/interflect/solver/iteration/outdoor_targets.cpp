@@ -82,7 +82,7 @@ struct LineFinder {
 };
 
 /// Preserves the total importance.
-std::vector<OutdoorLine> some_of(const std::vector<OutdoorLine>& lines) {
+std::vector<OutdoorLine> thinned(const std::vector<OutdoorLine>& lines) {
     constexpr std::size_t enough = 1 << 14;
     const std::size_t stride = (lines.size() + enough - 1) / enough;
     std::vector<OutdoorLine> some;
@@ -109,7 +109,7 @@ std::vector<OutdoorLine> outdoor_lines(const SolverState& state, std::int64_t ra
     });
     std::vector<OutdoorLine> lines;
     for (const std::vector<OutdoorLine>& some : found) lines.insert(lines.end(), some.begin(), some.end());
-    return some_of(lines);
+    return thinned(lines);
 }
 
 struct Weighed {

@@ -25,17 +25,17 @@ class Radiosity {
     /// B, or 0 if not finite.
     Rgb of(const ElementForest& forest, std::uint32_t e) const { return of_element(forest.patch(e), e); }
     Rgb of_element(std::uint32_t patch, std::uint32_t e) const {
-        const Rgb b = as_it_is(patch, e);
+        const Rgb b = unchecked(patch, e);
         return is_finite(b) ? b : Rgb(0);
     }
-    bool is_lost(const ElementForest& forest, std::uint32_t e) const {
-        return !is_finite(as_it_is(forest.patch(e), e));
+    bool is_not_finite(const ElementForest& forest, std::uint32_t e) const {
+        return !is_finite(unchecked(forest.patch(e), e));
     }
     /// An inner element's B may then differ from its children's mean.
     bool has_textures() const { return materials_->has_textures(); }
 
   private:
-    Rgb as_it_is(std::uint32_t patch, std::uint32_t e) const {
+    Rgb unchecked(std::uint32_t patch, std::uint32_t e) const {
         const MeanSurface surface = materials_->surface(patch, e);
         const Rgb reflected = surface.reflectance * irradiance_[e];
         return emits_ ? surface.exitance + reflected : reflected;

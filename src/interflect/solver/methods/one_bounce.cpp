@@ -42,13 +42,13 @@ Estimate OneBounce::trace(SolverState& state, IterationPlan& plan) {
     const ImportanceWeights weights =
         importance_weights(solution, state.neighbourhoods, state.emission, state.part_importance);
     PowerPlan power = plan_power(state.materials, state.emission, solution, light, weights, combined, rays);
-    TransportStep step(std::move(power.rays));
+    TransportStep step(std::move(power.plan));
     step.groups = group_radiosity(state, solution.groups);
     const bool is_deferred = state.options.experimental.defer_refinement && plan.warms_up;
     if (state.options.method.refines && !is_deferred)
         step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.unseen());
     Received received = run_step(state, std::move(step));
-    state.solution.non_finite += power.lost_leaves;
+    state.solution.non_finite += power.non_finite_leaves;
     return {.irradiance = std::move(received.irradiance),
             .variance = std::move(received.variance),
             .groups = std::move(received.groups),

@@ -75,7 +75,7 @@ struct Passes::Pass {
     const bool oracle_refines;
     BounceBudget budget;
     ImportanceWeights weights;
-    std::vector<std::uint8_t> reflecting_where_received = {};  ///< leaves_that_blur().
+    std::vector<std::uint8_t> reflecting_where_received = {};  ///< leaves_reflecting_where_received().
     bool emits = true;                                         ///< The next bounce is the first.
     std::vector<Rgb> unshot = {};                              ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
@@ -91,7 +91,7 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
               importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance)};
     pass.unshot.assign(state.forest->size(), Rgb(0));
     pass.unshot_groups.assign(state.groups.size(), pass.unshot);
-    if (!oracle_refines) pass.reflecting_where_received = leaves_that_blur(state);
+    if (!oracle_refines) pass.reflecting_where_received = leaves_reflecting_where_received(state);
     while (!pass.budget.is_last() && trace_bounce(state, pass)) {
     }
     bounces_ = pass.budget.bounces();
@@ -114,38 +114,24 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     const Radiosity light(state.materials, pass.unshot, pass.emits);
     PowerPlan bounce =
         plan_power(state.materials, state.emission, solution, light, pass.weights, carries_importance, 0);
-    solution.non_finite += bounce.lost_leaves;
+    solution.non_finite += bounce.non_finite_leaves;
     if (pass.emits) pass.first_power = bounce.power, pass.first_weighted_power = bounce.weighted_power;
     const double weight =
         unshot_weight(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(weight) : BounceRays();
     if (rays.expected == 0) return false;
 
-    TransportStep step(std::move(bounce.rays));
-    step.rays = rays.started;
-    step.groups = group_radiosity(state, pass.unshot_groups, pass.emits);
-    step.start_points = &pass.start_points;
-    step.known_light = Radiosity(state.materials, solution.irradiance);
-    step.to_the_end = pass.budget.is_last();  // random walks complete a pass in every method
-    step.reflecting_where_received = pass.reflecting_where_received;
-    step.leaves_only = !pass.oracle_refines;
-    if (pass.oracle_refines)
-        step.oracle = make_oracle(solution, state.schedule.averaged_rays() + pass.rays, state.floor.unseen());
-    step.spent = &pass.unshot;
+    bounce.plan.rays = rays.started;
+    TransportStep step = make_step(state, pass, std::move(bounce.plan));
     const std::uint32_t old_elements = state.forest->size();
-    Received received = step.to_the_end ? run_step(state, std::move(step)) : trace_step(state, std::move(step));
+    Received received = step.completes_by_walks ? run_step(state, std::move(step)) : trace_step(state, std::move(step));
 
     const double share = carries_importance ? state.options.experimental.alpha : 0;
     const std::int64_t for_importance = std::llround(share * static_cast<double>(rays.expected));
     state.importance_rays += for_importance;
     state.power_rays += rays.expected - for_importance;
     state.payloads += received.payloads;
-    if (!pass.sum.irradiance.empty()) {
-        inherit(*state.forest, old_elements, pass.sum.irradiance);
-        inherit(*state.forest, old_elements, pass.sum.variance);
-        inherit(*state.forest, old_elements, pass.sum.groups);
-    }
-    if (!pass.weights.elements.empty()) inherit(*state.forest, old_elements, pass.weights.elements);
+    grow_pass(*state.forest, old_elements, pass);
     add(pass.sum, received);
     if (carries_importance)
         detail::merge(state, solution.indirect_importance, received.importance, IterationPlan{.rays = rays.expected});
@@ -154,6 +140,30 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     pass.unshot = std::move(received.irradiance);
     pass.unshot_groups = std::move(received.groups);
     return true;
+}
+
+TransportStep Passes::make_step(const SolverState& state, Pass& pass, RayPlan plan) {
+    TransportStep step(std::move(plan));
+    step.groups = group_radiosity(state, pass.unshot_groups, pass.emits);
+    step.start_points = &pass.start_points;
+    step.known_light = Radiosity(state.materials, state.solution.irradiance);
+    step.completes_by_walks = pass.budget.is_last();  // in every method
+    step.reflecting_where_received = pass.reflecting_where_received;
+    step.leaves_only = !pass.oracle_refines;
+    if (pass.oracle_refines)
+        step.oracle = make_oracle(state.solution, state.schedule.averaged_rays() + pass.rays, state.floor.unseen());
+    step.reusable_buffer = &pass.unshot;
+    return step;
+}
+
+/// Initialises the data of new elements (index >= first) from their parents.
+void Passes::grow_pass(const ElementForest& forest, std::uint32_t first, Pass& pass) {
+    if (!pass.sum.irradiance.empty()) {
+        inherit(forest, first, pass.sum.irradiance);
+        inherit(forest, first, pass.sum.variance);
+        inherit(forest, first, pass.sum.groups);
+    }
+    if (!pass.weights.elements.empty()) inherit(forest, first, pass.weights.elements);
 }
 
 void Passes::prepare(SolverState& state) {
@@ -179,7 +189,7 @@ void Passes::make_first_estimate(SolverState& state) {
 
 void Passes::update_importance(SolverState& state, IterationPlan& plan) {
     if (importance_use(state.solution) != ImportanceUse::full) return;
-    if (finds_importance_) {
+    if (needs_importance_) {
         const std::int64_t rays_before = rays_so_far(state);
         find_importance(state, state.schedule.start_rays());
         state.importance_rays += aim_outdoor_light(state);
@@ -207,7 +217,7 @@ Estimate Passes::trace(SolverState& state, IterationPlan& plan) {
 void Passes::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
     state.schedule.count_other_rays(plan.rays_for_new_views);
     scale_history(state, plan.history_factor);
-    finds_importance_ = false;
+    needs_importance_ = false;
     view_change_.clear();
     if (estimate.irradiance.empty()) return;
     estimate_noise(state, estimate, plan.rays);
@@ -226,13 +236,13 @@ void Passes::change_views(SolverState& state) {
         state.schedule.averaged_rays() > 0 && importance_use(state.solution) == ImportanceUse::full;
     if (keeps_light && view_change_.empty()) view_change_.record(state);
     IterationMethod::change_views(state);
-    finds_importance_ = !state.solution.iterations.empty() && importance_use(state.solution) == ImportanceUse::full;
-    if (!finds_importance_) view_change_.clear();
+    needs_importance_ = !state.solution.iterations.empty() && importance_use(state.solution) == ImportanceUse::full;
+    if (!needs_importance_) view_change_.clear();
 }
 
 void Passes::archive(StateArchive& archive) {
     archive("passes/bounces", bounces_);
-    archive("passes/finds_importance", finds_importance_);
+    archive("passes/finds_importance", needs_importance_);
     view_change_.archive(archive);
 }
 

@@ -37,10 +37,12 @@ class Passes : public IterationMethod {
     struct Pass;
     Estimate trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
     bool trace_bounce(SolverState& state, Pass& pass);
+    static TransportStep make_step(const SolverState& state, Pass& pass, RayPlan plan);
+    static void grow_pass(const ElementForest& forest, std::uint32_t first, Pass& pass);
 
     /// Unshot power summed over the bounces of the last pass, relative to the first; 0: unknown.
     double bounces_ = 0;
-    bool finds_importance_ = false;  // before the next iteration, after a change of views
+    bool needs_importance_ = false;  // before the next iteration, after a change of views
     ViewChange view_change_;
 };
 

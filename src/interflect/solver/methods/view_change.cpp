@@ -16,7 +16,7 @@ std::vector<float> power_sampling(const SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
     const ImportanceWeights weights =
         importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
-    std::vector<float> q = plan_power(state.materials, state.emission, state.solution, light, weights, false, 0).rays.q;
+    std::vector<float> q = plan_power(state.materials, state.emission, state.solution, light, weights, false, 0).plan.q;
     q.resize(state.forest->size());
     return q;
 }

@@ -38,8 +38,10 @@ std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<c
     if (!(variance > 0) || !(rays > 0)) return shares;
     variance /= area;
     const float h = luminance(mean[forest.parent(first)]);
-    const float contributions = 4 * rays * h * h / variance, trust = contributions / (contributions + few_arrivals);
-    for (std::uint32_t k = 0; k < 4; ++k) shares[k] = trust * per_ray_[first + k] / variance + (1 - trust);
+    const float contributions = 4 * rays * h * h / variance,
+                weight_of_measured = contributions / (contributions + few_arrivals);
+    for (std::uint32_t k = 0; k < 4; ++k)
+        shares[k] = weight_of_measured * per_ray_[first + k] / variance + (1 - weight_of_measured);
     return shares;
 }
 

@@ -10,19 +10,9 @@
 #include "interflect/base/state_archive.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/solver/light/group_light.h"
+#include "interflect/solver/noise/estimate.h"
 
 namespace interflect::detail {
-
-/// Estimate of one iteration, before merging.
-struct Estimate {
-    std::vector<Rgb> irradiance = {};    ///< H by element [lm/m^2 or W/m^2].
-    std::vector<float> variance = {};    ///< Variance of its luminance, for independent rays.
-    GroupLight groups = {};              ///< `irradiance` by light group.
-    std::vector<float> importance = {};  ///< Empty if not carried.
-    RgbD escaped_power{0, 0, 0};
-    double shot_power = 0;  ///< Sum of the channels.
-};
 
 /// Noise of the mean irradiance, from the variance of one ray. Low-discrepancy points reduce it and reflected noise
 /// increases it; differences between iterations give the factor. Elements with similar numbers of rays share a factor:

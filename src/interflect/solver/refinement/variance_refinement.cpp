@@ -120,7 +120,7 @@ class VarianceOracle {
 
 }  // namespace
 
-std::vector<std::uint8_t> leaves_that_blur(const SolverState& state) {
+std::vector<std::uint8_t> leaves_reflecting_where_received(const SolverState& state) {
     if (!refines_by_variance(state.options)) return {};
     const VarianceOracle oracle(state);
     std::vector<std::uint8_t> blurs(state.forest->size(), 0);

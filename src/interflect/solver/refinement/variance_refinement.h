@@ -11,6 +11,6 @@ namespace interflect::detail {
 void refine_by_variance(SolverState& state);
 
 /// Marks leaves that reflect where they receive (StartPoints), if refine_by_variance() makes the mesh.
-std::vector<std::uint8_t> leaves_that_blur(const SolverState& state);
+std::vector<std::uint8_t> leaves_reflecting_where_received(const SolverState& state);
 
 }  // namespace interflect::detail

@@ -37,7 +37,7 @@ WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, 
             Weights w;
             if (by_power) {
                 w.power = s.power(e);
-                sums.lost += w.power == 0 && s.light.is_lost(s.forest, e);
+                sums.lost += w.power == 0 && s.light.is_not_finite(s.forest, e);
             }
             if (shares.importance > 0) w.importance = s.importance(e);
             sums.power += w.power;

@@ -33,12 +33,12 @@ PowerPlan plan_power(const Materials& materials, const Emission& emission, const
     plan.light = light;
     if (light.emits() && emission.part_count() > 0) plan.emission = &emission;
     if (combined) plan.importance = importance_of(so_far);
-    auto [q, lost_leaves, power, weighted_power] =
+    auto [q, non_finite_leaves, power, weighted_power] =
         mixture({materials, *so_far.forest, light, plan.importance, weights.elements, weights.nearby, plan.emission,
                  weights.parts, weights.parts_nearby},
                 shares_of(so_far, combined, !weights.nearby.empty()));
     plan.q = std::move(q);
-    return {std::move(plan), power, weighted_power, lost_leaves};
+    return {std::move(plan), power, weighted_power, non_finite_leaves};
 }
 
 RayPlan plan_importance(const Materials& materials, const Solution& so_far, const Importance& importance,

@@ -33,9 +33,9 @@ struct RayPlan {
 
 /// With the sums over leaves of P_s (Eq. 3) and of P_s psi_s (Eq. 9, 10; 0 if not used).
 struct PowerPlan {
-    RayPlan rays;
+    RayPlan plan;
     double power = 0, weighted_power = 0;
-    std::int64_t lost_leaves = 0;  ///< Leaves with non-finite radiosity, not shot.
+    std::int64_t non_finite_leaves = 0;  ///< Leaves with non-finite radiosity, not shot.
 };
 
 /// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000). The method selects q: by

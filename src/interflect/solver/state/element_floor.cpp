@@ -21,13 +21,13 @@ ElementFloor::ElementFloor(const Scene& scene, const SolveOptions& options)
     unseen_ = static_cast<float>(is_given_ ? options.refinement.min_area : std::pow(default_element_size(scene), 2));
     for (const WeightedView& w : options.views) {
         const double height = 2 * std::tan(0.5 * static_cast<double>(w.view.fov) * std::numbers::pi / 180);
-        eyes_.push_back({V3f(w.view.eye - scene.origin), static_cast<float>(height / w.pixel_rows)});
+        cameras_.push_back({V3f(w.view.eye - scene.origin), static_cast<float>(height / w.pixel_rows)});
     }
 }
 
 float ElementFloor::pixel_area(const V3f& centre, const V3f& normal) const {
     float smallest = std::numeric_limits<float>::infinity();
-    for (const auto& [eye, pixel] : eyes_) {
+    for (const auto& [eye, pixel] : cameras_) {
         const V3f d = centre - eye;
         const float width = pixel * d.length();
         const float along_normal = std::abs(normal.dot(d)) / std::max(d.length(), std::numeric_limits<float>::min());
@@ -37,7 +37,7 @@ float ElementFloor::pixel_area(const V3f& centre, const V3f& normal) const {
 }
 
 float ElementFloor::min_area(const V3f& centre, const V3f& normal, bool is_seen) const {
-    return !is_seen || is_given_ || eyes_.empty() ? unseen_ : pixel_area(centre, normal);
+    return !is_seen || is_given_ || cameras_.empty() ? unseen_ : pixel_area(centre, normal);
 }
 
 }  // namespace interflect::detail

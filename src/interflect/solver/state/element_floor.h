@@ -22,11 +22,11 @@ class ElementFloor {
     float unseen() const { return unseen_; }
 
   private:
-    struct Eye {
+    struct ViewPoint {
         V3f position;
         float pixel;  // width at distance 1
     };
-    std::vector<Eye> eyes_;
+    std::vector<ViewPoint> cameras_;
     float unseen_;
     bool is_given_;
 };

@@ -124,7 +124,7 @@ Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_s
     Received received;
     step.oracle.importance = std::vector<float>();
     if (!importance) step.q = std::vector<float>();
-    if (step.spent) received.irradiance = std::move(*step.spent);
+    if (step.reusable_buffer) received.irradiance = std::move(*step.reusable_buffer);
     convert(forest, step, units, sums, received);
     if (importance && !step.importance_at_patches)
         blend(forest, step, allocation, *importance, payload, old_size, received.importance);

@@ -62,7 +62,7 @@ struct Shooting {
         : rays(forest, ray_caster, step, streams),
           payload(materials, forest, step, rays.allocation().q_sum()),
           all(total_payload(step, rays.allocation(), payload)),
-          units(all, step.to_the_end ? most_visits(materials.scene()) : 1),
+          units(all, step.completes_by_walks ? most_visits(materials.scene()) : 1),
           panes(materials.scene(), ray_caster) {}
 
     RayMaker rays;
@@ -189,7 +189,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
                                 Batch& batch = batches.local();
                                 trace(shooting, ray_caster, begin, end, batch);
                                 deposit(step, shooting, batch);
-                                if (step.to_the_end) walk(step, shooting, walks, begin, batch);
+                                if (step.completes_by_walks) walk(step, shooting, walks, begin, batch);
                             });
     } catch (const Interrupted&) {
         sums.clear(forest.size());

@@ -32,9 +32,9 @@ struct Walkers {
     PointBlock points;
 };
 
-/// Random walks that complete a pass (TransportStep::to_the_end). A particle survives with the probability of its
-/// reflectance times the transmittance of the crossed panes. Otherwise rays through panes, which deposit several times,
-/// would multiply the particles. A walk costs no time for elements that it does not visit.
+/// Random walks that complete a pass (TransportStep::completes_by_walks). A particle survives with the probability of
+/// its reflectance times the transmittance of the crossed panes. Otherwise rays through panes, which deposit several
+/// times, would multiply the particles. A walk costs no time for elements that it does not visit.
 class Walks {
   public:
     /// @param elements  Size of the forest before the step; newer elements receive through their ancestors.

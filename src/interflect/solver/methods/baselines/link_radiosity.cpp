@@ -77,7 +77,7 @@ std::vector<Rgb> present_radiosity(SolverState& state) {
     b.reserve(state.forest->size());
     for (std::uint32_t e = 0; e < state.forest->size(); ++e) {
         b.push_back(light.of(*state.forest, e));
-        state.solution.non_finite += light.is_lost(*state.forest, e);
+        state.solution.non_finite += light.is_not_finite(*state.forest, e);
     }
     if (state.materials.has_textures()) pull(*state.forest, b);
     return b;

@@ -128,7 +128,7 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     if (is_last) chosen = step.q, weight = unshot * series.budget.expected;
     step.q = chosen;
     const std::int64_t rays = is_last ? series.budget.left : series.budget.share(weight, unshot);
-    step.to_the_end = is_last;
+    step.completes_by_walks = is_last;
     step.rays = is_last ? series.budget.walks() : rays;
     const Received received = run_step(state, std::move(step));
     state.power_rays += rays;

@@ -67,7 +67,7 @@ Estimate WellDistributedRays::trace(SolverState& state, IterationPlan& plan) {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, state.solution.irradiance);
     PowerPlan power = plan_power(state.materials, state.emission, state.solution, light, {}, false, plan.rays);
-    TransportStep step(std::move(power.rays));
+    TransportStep step(std::move(power.plan));
     step.equal_payloads = true;
     step.groups = group_radiosity(state, state.solution.groups);
     // Without importance, the weights are shares of all power.
@@ -81,7 +81,7 @@ Estimate WellDistributedRays::trace(SolverState& state, IterationPlan& plan) {
     used_before.resize(plan.old_elements, 0);
     const Received received = run_step(state, std::move(step));
     total_ += rays;
-    state.solution.non_finite += power.lost_leaves;
+    state.solution.non_finite += power.non_finite_leaves;
     for (std::uint32_t e = 0; e < plan.old_elements; ++e)
         shot_[e] += static_cast<double>(state.streams.used[e] - used_before[e]);
     for (std::size_t i = 0; i < shot_by_parts_.size(); ++i)

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/solver/light/group_light.h"
+
+namespace interflect::detail {
+
+/// Estimate of one iteration, before merging.
+struct Estimate {
+    std::vector<Rgb> irradiance = {};    ///< H by element [lm/m^2 or W/m^2].
+    std::vector<float> variance = {};    ///< Variance of its luminance, for independent rays.
+    GroupLight groups = {};              ///< `irradiance` by light group.
+    std::vector<float> importance = {};  ///< Empty if not carried.
+    RgbD escaped_power{0, 0, 0};
+    double shot_power = 0;  ///< Sum of the channels.
+};
+
+}  // namespace interflect::detail
