@@ -2,7 +2,7 @@
 
 A copy of the sources is built in which each of these constants is multiplied by a factor from the environment. Three
 scenes, which served no other measurement, are then solved with every constant halved and doubled. The table has the
-squared error of the picture and the time of the run, both over those with the constants as they are.
+squared error of the picture and the number of elements, both over those with the constants as they are.
 """
 
 import hashlib
@@ -211,7 +211,8 @@ def measure_all() -> None:
     references = bench.references()
     todo = [run for run in runs() if (run.scene, run.constant, run.factor, run.seed) not in known]
     for i, run in enumerate(todo):
-        print(f"\r{i + 1} of {len(todo)}: {run.scene}, {run.constant or 'as they are'} x {run.factor:g}        ", end="", file=sys.stderr, flush=True)
+        if sys.stderr.isatty():
+            print(f"\r{i + 1} of {len(todo)}: {run.scene}, {run.constant} x {run.factor:g}        ", end="", file=sys.stderr, flush=True)
         rows.append(bench.measure(run, *references[run.scene]) | {"build": build})
         if i % 20 == 0 or i + 1 == len(todo):
             results.write_csv(TABLE, rows, list(rows[0]))
@@ -223,12 +224,12 @@ def write_page() -> None:
     base = {
         (scene, quantity): [log(quantity, row) for row in rows if row["scene"] == scene and not row["constant"]]
         for scene in SCENES
-        for quantity in ("error", "seconds", "elements")
+        for quantity in ("error", "elements")
     }
     ratios: dict = defaultdict(list)
     for row in rows:
         if row["constant"]:
-            for quantity in ("error", "seconds", "elements"):
+            for quantity in ("error", "elements"):
                 ratios[row["constant"], row["factor"], quantity].append(log(quantity, row) - np.mean(base[row["scene"], quantity]))
     spread = np.mean([np.std(base[scene, "error"], ddof=1) for scene in SCENES])
     noise = spread / math.sqrt(len(SCENES) * SEEDS)
@@ -237,12 +238,12 @@ def write_page() -> None:
         for name in names.split():
             cells = [f"`{name}`", f"`{file}`"]
             for factor in FACTORS:
-                by = {q: math.exp(np.mean(ratios[name, factor, q])) for q in ("error", "seconds", "elements")}
+                by = {q: math.exp(np.mean(ratios[name, factor, q])) for q in ("error", "elements")}
                 strong = abs(math.log(by["error"])) > 3 * noise
                 error = f"**{by['error']:.2f}**" if strong else f"{by['error']:.2f}"
-                cells += [error, f"{by['seconds']:.2f}", f"{by['elements']:.2f}"]
+                cells += [error, f"{by['elements']:.2f}"]
             lines.append(cells)
-    header = ["constant", "file", *(f"{what}, {change}" for change in ("halved", "doubled") for what in ("squared error", "time", "elements"))]
+    header = ["constant", "file", *(f"{what}, {change}" for change in ("halved", "doubled") for what in ("squared error", "elements"))]
     results.write_table(PAGE, header, lines)
     print(f"standard error of a squared error in the table: {noise:.1%}; bold: more than three of them from 1")
 

@@ -37,8 +37,8 @@ struct ContributionUnits {
         return contribution;
     }
 
-    void add_groups(const RayPlan& plan, const Payload& payload, std::uint32_t source, std::vector<std::int64_t>& terms,
-                    const Rgb& transmittance = Rgb(1)) const {
+    void fill_groups(const RayPlan& plan, const Payload& payload, std::uint32_t source,
+                     std::vector<std::int64_t>& terms, const Rgb& transmittance = Rgb(1)) const {
         terms.clear();
         for (std::size_t g = 0; g < plan.groups.size(); ++g) {
             const FixedPoint::Value of_group = power.from(payload.power(source, g) * RgbD(transmittance));

@@ -10,8 +10,8 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution, st
                       float transmitted) {
     const std::uint32_t payload = buffer_.add_source(contribution, of_groups);
     sources_in_task_.push_back({source, 0, transmitted});
-    const auto left = static_cast<std::uint32_t>(sources_in_task_.size() - 1);
-    bool path_is_known = !refines_;
+    const auto source_in_task = static_cast<std::uint32_t>(sources_in_task_.size() - 1);
+    bool needs_path = refines_;  // from the patch to the leaf; serves all rays of the leaf
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
             count_escaped(contribution);
@@ -21,14 +21,14 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution, st
                 const V3f point = rays[r].origin + hits[r].distance * rays[r].direction;
                 add_start_point(hits[r].patch, forest_.geometry(hits[r].patch).parameters_of(point), contribution);
             }
-            if (found_importance_) find_importance(left, hits[r].patch, hits[r].patch);
+            if (found_importance_) add_found_importance(source_in_task, hits[r].patch, hits[r].patch);
         } else {
             while (open_count_ == lanes) advance();
             if (refines_ && source >= old_size_)
                 path_ = sources_.append_part(source - old_size_, rays[r], hits[r]);
-            else if (!std::exchange(path_is_known, true))
+            else if (std::exchange(needs_path, false))
                 path_ = sources_.append_leaf(source);
-            begin(payload, left, rays[r], origins[r], hits[r]);
+            begin(payload, source_in_task, rays[r], origins[r], hits[r]);
         }
     }
 }
@@ -57,12 +57,13 @@ Escaped Descent::finish() {
     return std::exchange(escaped_, {});
 }
 
-void Descent::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start, const Hit& hit) {
+void Descent::begin(std::uint32_t payload, std::uint32_t source_in_task, const Ray& ray, const Parameters& start,
+                    const Hit& hit) {
     const std::size_t i = open_[open_count_++];
     const PatchGeometry& geometry = forest_.geometry(hit.patch);
     const PatchGeometry::Shape& shape = geometry.shape();
     const Parameters p = geometry.parameters_of(ray.origin + hit.distance * ray.direction);
-    rays_[i] = {source, hit.patch, left, start};
+    rays_[i] = {payload, hit.patch, source_in_task, start};
     pairs_.origin.set(i, shape.origin);
     pairs_.edge_u.set(i, shape.edge_u);
     pairs_.edge_v.set(i, shape.edge_v);
@@ -81,12 +82,14 @@ void Descent::begin(std::uint32_t source, std::uint32_t left, const Ray& ray, co
     sources_.begin(pairs_, i, path_, rays_[i].reflectance);
 }
 
-/// Moves all rays one level down (Eq. 14, 15, Prikryl et al. 2000). A rejected pair is divided at its larger end. An
-/// accepted pair fixes the receiver of power; importance continues to the leaf.
+/// Takes one step with all rays in flight. A pair of shooter and receiver that the oracle rejects is divided at its
+/// larger end (Eq. 14, 15, Prikryl et al. 2000). An accepted pair fixes the receiver of power; if importance is for
+/// leaves, the ray continues to the leaf. Rays that have arrived deposit their payload.
 void Descent::advance() {
     Lanes some;
     for (const std::uint32_t i : open()) look_up_receiver(i);
     if (refines_) {
+        // A shooter larger than the receiver gives the same power as its child: the oracle is not asked.
         for (const std::uint32_t i : open_lanes_if(some, [&](auto i) { return SourcePaths::is_too_large(pairs_, i); }))
             sources_.choose(pairs_, i, rays_[i].reflectance);
         pairs_.evaluate_oracle(step_.oracle);
@@ -98,13 +101,15 @@ void Descent::advance() {
     Lanes on_their_way;
     const auto others = open_lanes_if(on_their_way, [&](std::size_t i) { return pairs_.goes_on[i] != 0; });
     for (const std::uint32_t i : arrived) deposit_ray(i);
+    // The lanes of the arrived rays are free now.
     std::copy(arrived.begin(), arrived.end(), std::copy(others.begin(), others.end(), open_.begin()));
     open_count_ = others.size();
     pairs_.go_down();
     for (const std::uint32_t i : open()) {
         const std::uint32_t element = pairs_.receiver[i];
         forest_.prefetch(element);
-        if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[element]);
+        if (step_.oracle.by_importance)
+            __builtin_prefetch(step_.oracle.importance.data() + element);  // or past its end
     }
 }
 
@@ -135,23 +140,23 @@ void Descent::subdivide_on_demand(std::size_t i) {
         pairs_.next[i] = children_on_demand(forest_, receiver, may_grow_);
         if (pairs_.next[i] != none) return;
     }
-    pairs_.settled[i] = true;
+    pairs_.settled[i] = true;  // accepted, since it cannot be divided; importance continues in the old mesh
     pairs_.goes_on[i] = needs_leaf_ && receiver < old_size_ && pairs_.children[i] < old_size_;
     if (pairs_.goes_on[i]) pairs_.next[i] = pairs_.children[i];
 }
 
 void Descent::deposit_ray(std::size_t i) {
-    const auto& [source, patch, left, start, reflectance] = rays_[i];
-    std::uint32_t leaf = pairs_.receiver[i];
+    const auto& [payload, patch, source_in_task, start, reflectance] = rays_[i];
+    std::uint32_t leaf = pairs_.receiver[i];  // importance and start points belong to the mesh before the step
     while (leaf >= old_size_) leaf = forest_.parent(leaf);
-    const std::uint32_t of_power = refines_ ? pairs_.of_power[i] : leaf;
-    const std::uint32_t of_importance = step_.importance_at_patches ? patch : leaf;
-    const bool together = of_power == of_importance || !step_.carries_importance();
-    if (step_.carries_power()) buffer_.add(of_power, source, true, together);
-    if (!step_.carries_power() || !together) buffer_.add(of_importance, source, false, true);
-    if (found_importance_) find_importance(left, patch, leaf);
+    const std::uint32_t power_receiver = refines_ ? pairs_.of_power[i] : leaf;
+    const std::uint32_t importance_receiver = step_.importance_at_patches ? patch : leaf;
+    const bool together = power_receiver == importance_receiver || !step_.carries_importance();
+    if (step_.carries_power()) buffer_.add(power_receiver, payload, true, together);
+    if (!step_.carries_power() || !together) buffer_.add(importance_receiver, payload, false, true);
+    if (found_importance_) add_found_importance(source_in_task, patch, leaf);
     if (step_.reflects_where_received(leaf))
-        add_start_point(leaf, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(source));
+        add_start_point(leaf, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(payload));
 }
 
 void Descent::add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution) {
@@ -159,8 +164,8 @@ void Descent::add_start_point(std::uint32_t leaf, const Parameters& at, const Co
     if (power > 0) start_points_.push_back({leaf, power, at});
 }
 
-inline void Descent::find_importance(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf) {
-    sources_in_task_[left].found +=
+inline void Descent::add_found_importance(std::uint32_t source_in_task, std::uint32_t patch, std::uint32_t leaf) {
+    sources_in_task_[source_in_task].found +=
         static_cast<double>(materials_.mean_reflectance(patch, leaf) * step_.importance[leaf]);
 }
 

@@ -31,8 +31,8 @@ struct Escaped {
     }
 };
 
-/// Finds the elements that receive the payload of each ray; one object per thread. Many rays descend the quadtrees
-/// level by level, as a structure of arrays with lane refill. This hides memory latency and vectorises.
+/// Finds the elements that receive the payload of each ray, and adds it there; one object per thread. Many rays descend
+/// the quadtrees level by level, as a structure of arrays with lane refill. This hides memory latency and vectorises.
 class Descent {
   public:
     /// @param old_size  Size of the forest before the step. @param importance  May be null. Arguments must outlive
@@ -55,13 +55,13 @@ class Descent {
 
     /// @param source       Leaf, or old_size + index of a part of the luminaires' emission (Emission).
     /// @param contribution Payload of each ray. @param of_groups  Its power by light group.
-    /// @param origins      On the leaf's patch; unused for luminaire parts.
+    /// @param origins      On the leaf's patch; of luminaire parts: any values.
     /// @param transmitted  Transmittance before the hits; scales found importance.
     void deposit(std::uint32_t source, const Contribution& contribution, std::span<const std::int64_t> of_groups,
                  std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
                  float transmitted = 1);
     void prefetch(const Hit& hit) const;
-    /// Finishes all rays in flight.
+    /// Finishes all rays in flight. Call at the end of each task.
     void finish_batch();
     void deposit_at(std::uint32_t leaf, const Contribution& contribution, std::span<const std::int64_t> of_groups) {
         buffer_.add(leaf, buffer_.add_source(contribution, of_groups), true, false);
@@ -78,8 +78,8 @@ class Descent {
   private:
     static constexpr std::size_t lanes = RayPairs::lanes;
     struct RayState {
-        std::uint32_t source, patch;
-        std::uint32_t left;
+        std::uint32_t payload, patch;  // index in buffer_; the patch that was hit
+        std::uint32_t source_in_task;  // index in sources_in_task_
         Parameters start;
         Rgb reflectance{0, 0, 0};  // rho_i
     };
@@ -88,13 +88,14 @@ class Descent {
     std::span<const std::uint32_t> open() const { return std::span(open_).first(open_count_); }
     template <class Condition>
     std::span<const std::uint32_t> open_lanes_if(Lanes& found, const Condition& condition) const;
-    void begin(std::uint32_t source, std::uint32_t left, const Ray& ray, const Parameters& start, const Hit& hit);
+    void begin(std::uint32_t payload, std::uint32_t source_in_task, const Ray& ray, const Parameters& start,
+               const Hit& hit);
     void advance();
     void look_up_receiver(std::size_t i);
     void subdivide_on_demand(std::size_t i);
     void deposit_ray(std::size_t i);
     void add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution);
-    void find_importance(std::uint32_t left, std::uint32_t patch, std::uint32_t leaf);
+    void add_found_importance(std::uint32_t source_in_task, std::uint32_t patch, std::uint32_t leaf);
 
     const Materials& materials_;
     ElementForest& forest_;
@@ -107,7 +108,7 @@ class Descent {
     FoundImportance* found_importance_;
     struct SourceInTask {
         std::uint32_t source;
-        double found;
+        double found;  // importance at the hits of its rays
         float transmitted;
     };
     std::vector<SourceInTask> sources_in_task_;

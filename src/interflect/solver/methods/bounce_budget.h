@@ -4,11 +4,13 @@
 
 namespace interflect::detail {
 
+/// Rays of one bounce.
 struct BounceRays {
-    std::int64_t started = 0;
+    std::int64_t started = 0;   ///< To start.
     std::int64_t expected = 0;  ///< Traced rays, including random walks.
 };
 
+/// Distributes the rays of a pass over its bounces.
 class BounceBudget {
   public:
     BounceBudget() = default;
@@ -18,7 +20,8 @@ class BounceBudget {
     /// @param unshot  Relative to the first bounce. @return  Rays of the next bounce; random walks complete the last
     /// one.
     BounceRays next(double unshot);
-    bool is_last() const { return is_last_ || left_ == 0; }
+    /// Whether next() has returned the last bounce.
+    bool has_ended() const { return is_last_ || left_ == 0; }
     /// Unshot power summed over the bounces, relative to the first, extrapolated by a geometric series.
     double bounces() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
 

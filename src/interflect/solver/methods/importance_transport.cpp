@@ -22,7 +22,7 @@ void find_importance(SolverState& state, std::int64_t rays) {
     std::vector<float> unshot = solution.view_importance;
     BounceBudget budget(rays, 0);
     double left = 1;  // importance received in a bounce; initially all of V
-    while (left > negligible_importance && !budget.is_last()) {
+    while (left > negligible_importance && !budget.has_ended()) {
         TransportStep step(plan_importance(state.materials, solution, Importance(unshot),
                                            std::max<std::int64_t>(1, budget.next(left).expected)));
         state.importance_rays += step.rays;

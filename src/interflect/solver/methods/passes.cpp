@@ -25,7 +25,8 @@ namespace {
 /// Minimum rays of a run that prepares before its first iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Unshot power relative to the first bounce, partly weighted by importance, to distribute rays over the bounces.
+/// Returns the unshot power relative to the first bounce: beta times plain power plus (1 - beta) times power weighted
+/// by importance. The rays of a pass are distributed over its bounces by this number.
 double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -39,6 +40,7 @@ Estimate darkness(const SolverState& state) {
     return dark;
 }
 
+/// Moves the variance; the irradiance remains, as unshot light.
 void add(Estimate& sum, Received& received) {
     sum.escaped_power += received.escaped_power;
     accumulate(sum.groups, received.groups);
@@ -63,21 +65,23 @@ void set_estimate(SolverState& state, Estimate estimate) {
 
 std::int64_t rays_so_far(const SolverState& state) { return state.power_rays + state.importance_rays; }
 
-/// By Eq. 14 or 15, during a pass.
-bool refines_by_power(const SolverState& state) {
+/// Whether the oracle (Eq. 14, 15) refines the mesh while a pass is traced.
+bool oracle_refines_passes(const SolverState& state) {
     return state.options.method.refines && !refines_by_variance(state.options);
 }
 
 }  // namespace
 
+/// A pass while it is traced.
 struct Passes::Pass {
     const std::int64_t rays;
     const bool oracle_refines;
     BounceBudget budget;
     ImportanceWeights weights;
-    std::vector<std::uint8_t> reflecting_where_received = {};  ///< leaves_reflecting_where_received().
-    bool emits = true;                                         ///< The next bounce is the first.
-    std::vector<Rgb> unshot = {};                              ///< Irradiance that the next bounce reflects.
+    /// Nonzero for leaves whose light starts at its hit points, not uniformly. Empty while the oracle refines.
+    std::vector<std::uint8_t> reflecting_where_received = {};
+    bool emits = true;             ///< The next bounce is the first.
+    std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
     StartPoints start_points = {};
     double first_power = 0, first_weighted_power = 0;  ///< In the first bounce; see PowerPlan.
@@ -86,26 +90,26 @@ struct Passes::Pass {
 
 /// @param oracle_refines  Whether Eq. 14 and 15 refine the mesh meanwhile. @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
-    state.payloads = {};
+    state.payloads = {};  // the report shows those of the last pass
     Pass pass{rays, oracle_refines, BounceBudget(rays, bounces_),
               importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance)};
     pass.unshot.assign(state.forest->size(), Rgb(0));
     pass.unshot_groups.assign(state.groups.size(), pass.unshot);
     if (!oracle_refines) pass.reflecting_where_received = leaves_reflecting_where_received(state);
-    while (!pass.budget.is_last() && trace_bounce(state, pass)) {
+    while (!pass.budget.has_ended() && trace_bounce(state, pass)) {
     }
     bounces_ = pass.budget.bounces();
     Estimate& sum = pass.sum;
     if (sum.irradiance.empty()) sum = darkness(state);  // no power to shoot
-    if (!oracle_refines) {
+    if (!oracle_refines) {                              // TransportStep::leaves_only: inner elements are still empty
         pull(*state.forest, sum.irradiance), pull_variance(*state.forest, sum.variance);
         pull(*state.forest, sum.groups);
     }
     return std::move(sum);
 }
 
-/// Traces one bounce (Eq. 1) and adds it to the pass; rays start by Eq. 3, 10 or 11. @return  False without unshot
-/// light.
+/// Traces one bounce (Eq. 1, Prikryl et al. 2000) and adds it to the pass. Rays start by Eq. 3, 10 or 11.
+/// @return  False if no unshot light or no rays are left.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     Solution& solution = state.solution;
     // Only the first bounce, with the most rays, transports importance.
@@ -113,17 +117,19 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
                                     !state.options.experimental.separate_iterations;
     const Radiosity light(state.materials, pass.unshot, pass.emits);
     PowerPlan bounce =
-        plan_power(state.materials, state.emission, solution, light, pass.weights, carries_importance, 0);
+        plan_power(state.materials, state.emission, solution, light, pass.weights, carries_importance, /*rays=*/0);
     solution.non_finite += bounce.non_finite_leaves;
     if (pass.emits) pass.first_power = bounce.power, pass.first_weighted_power = bounce.weighted_power;
     const double weight =
         unshot_weight(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
+    // A random walk that completes the pass counts as its expected number of rays.
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(weight) : BounceRays();
     if (rays.expected == 0) return false;
 
     bounce.plan.rays = rays.started;
     TransportStep step = make_step(state, pass, std::move(bounce.plan));
     const std::uint32_t old_elements = state.forest->size();
+    // Subclasses replace all bounces but the last, which random walks complete in every method.
     Received received = step.completes_by_walks ? run_step(state, std::move(step)) : trace_step(state, std::move(step));
 
     const double share = carries_importance ? state.options.experimental.alpha : 0;
@@ -133,7 +139,7 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     state.payloads += received.payloads;
     grow_pass(*state.forest, old_elements, pass);
     add(pass.sum, received);
-    if (carries_importance)
+    if (carries_importance)  // at once: it guides the next bounces
         detail::merge(state, solution.indirect_importance, received.importance, IterationPlan{.rays = rays.expected});
     pass.emits = false;
     pass.start_points = std::move(received.start_points);
@@ -146,13 +152,13 @@ TransportStep Passes::make_step(const SolverState& state, Pass& pass, RayPlan pl
     TransportStep step(std::move(plan));
     step.groups = group_radiosity(state, pass.unshot_groups, pass.emits);
     step.start_points = &pass.start_points;
-    step.known_light = Radiosity(state.materials, state.solution.irradiance);
-    step.completes_by_walks = pass.budget.is_last();  // in every method
+    step.known_light = Radiosity(state.materials, state.solution.irradiance);  // for the oracle
+    step.completes_by_walks = pass.budget.has_ended();
     step.reflecting_where_received = pass.reflecting_where_received;
     step.leaves_only = !pass.oracle_refines;
     if (pass.oracle_refines)
         step.oracle = make_oracle(state.solution, state.schedule.averaged_rays() + pass.rays, state.floor.unseen());
-    step.reusable_buffer = &pass.unshot;
+    step.reusable_buffer = &pass.unshot;  // free once all rays are traced
     return step;
 }
 
@@ -173,10 +179,10 @@ void Passes::prepare(SolverState& state) {
     set_estimate(state, darkness(state));  // an interrupted preparation may have left light
     if (importance_use(state.solution) == ImportanceUse::full) find_importance(state, rays);
     state.importance_rays += aim_outdoor_light(state);
-    if (state.options.method.refines)
+    if (state.options.method.refines)  // the oracle needs an estimate of the light, so the first pass does without it
         for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));
     state.importance_rays += aim_outdoor_light(state);
-    state.schedule.began_with(0, rays_so_far(state));
+    state.schedule.began_with(/*power_rays=*/0, rays_so_far(state));  // the mean does not include these passes
     if (rays_so_far(state) > 0) report(state, 0);
 }
 
@@ -209,15 +215,16 @@ void Passes::update_importance(SolverState& state, IterationPlan& plan) {
 Estimate Passes::trace(SolverState& state, IterationPlan& plan) {
     if (plan.rays <= plan.importance_rays) return {};
     const std::int64_t rays_before = rays_so_far(state);
-    Estimate estimate = trace_pass(state, plan.rays - plan.importance_rays, refines_by_power(state));
-    plan.rays = plan.traced = std::max<std::int64_t>(1, plan.importance_rays + rays_so_far(state) - rays_before);
+    Estimate estimate = trace_pass(state, plan.rays - plan.importance_rays, oracle_refines_passes(state));
+    plan.rays = plan.traced =  // the weight in the mean, at least 1
+        std::max<std::int64_t>(1, plan.importance_rays + rays_so_far(state) - rays_before);
     return estimate;
 }
 
 void Passes::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
     state.schedule.count_other_rays(plan.rays_for_new_views);
     scale_history(state, plan.history_factor);
-    needs_importance_ = false;
+    needs_importance_ = false;  // not before: an interrupted iteration starts over
     view_change_.clear();
     if (estimate.irradiance.empty()) return;
     estimate_noise(state, estimate, plan.rays);

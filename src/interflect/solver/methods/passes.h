@@ -10,15 +10,16 @@
 namespace interflect::detail {
 
 /// Iterations that are passes. A pass shoots emitted power, then received power, bounce by bounce until little is left
-/// ('incremental shooting', Neumann et al. 1995). Rays are distributed over the bounces by unshot power, weighted like
-/// the rays (Eq. 3, 10). A pass is an unbiased estimate on the current mesh, independent of earlier passes.
+/// ('incremental shooting', Neumann et al. 1995). Rays are distributed over the bounces by unshot power, weighted by
+/// importance as their sampling is (Eq. 3, 10, Prikryl et al. 2000). A pass is an unbiased estimate on the current
+/// mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
     /// Estimates importance and the initial mesh (Eq. 14, 15) in small passes, whose light is not in the mean.
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
-    /// Eq. 6.
+    /// Merges the pass with the mean of earlier ones (Eq. 6).
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
     void refine(SolverState& state) override;
     /// Keeps the averaged light; the next iteration adapts its history to the new views.
@@ -26,11 +27,11 @@ class Passes : public IterationMethod {
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
-    /// Serves other methods: prepare(), then a pass.
+    /// Makes a first estimate for other methods: prepare(), then a pass on the resulting mesh.
     void make_first_estimate(SolverState& state);
 
   protected:
-    /// @throws Interrupted
+    /// Traces the rays of a bounce. @throws Interrupted
     virtual Received trace_step(SolverState& state, TransportStep step) { return run_step(state, std::move(step)); }
 
   private:

@@ -30,6 +30,7 @@ std::uint64_t walk_key(const SampleStreams& streams) {
 
 /// Rays per task: enough to amortise it, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
+/// Hits whose elements are prefetched before their deposit.
 constexpr std::size_t rays_ahead = 32;
 
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
@@ -47,8 +48,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Upper bound of the visits of a random walk: the expected 1 / (1 - rho), times a factor for chance and panes that
-/// leaves 2^49 units for the expected power.
+/// Visits of a random walk for which the fixed-point sums have room: the expected 1 / (1 - rho), times 2^12 for chance
+/// and panes. Of the 2^61 units of a sum, 2^49 remain for the expected power.
 double most_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
@@ -56,18 +57,19 @@ double most_visits(const Scene& scene) {
     return headroom / (1 - rho);
 }
 
-struct Shooting {
-    Shooting(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
+/// Data that all batches of a step share.
+struct StepData {
+    StepData(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
              const TransportStep& step, const SampleStreams& streams)
         : rays(forest, ray_caster, step, streams),
           payload(materials, forest, step, rays.allocation().q_sum()),
-          all(total_payload(step, rays.allocation(), payload)),
-          units(all, step.completes_by_walks ? most_visits(materials.scene()) : 1),
+          total(total_payload(step, rays.allocation(), payload)),
+          units(total, step.completes_by_walks ? most_visits(materials.scene()) : 1),
           panes(materials.scene(), ray_caster) {}
 
     RayMaker rays;
     Payload payload;
-    PayloadTotals all;
+    PayloadTotals total;
     ContributionUnits units;
     Panes panes;
 };
@@ -85,11 +87,12 @@ struct Batch {
 };
 
 void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
-    forest.put_in_order(old_size);
+    forest.put_in_order(old_size);  // parents before children
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Empty without importance, or if patches receive it and no luminaire shoots.
+/// Makes the sums of the importance that rays find at their hits, by source. They serve the leaves and the parts of
+/// luminaires: empty if importance is for patches and no luminaire shoots, or if the step carries none.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -99,31 +102,32 @@ std::optional<FoundImportance> make_found_importance(const TransportStep& step, 
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
-    const double hits = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;
-    return std::optional<FoundImportance>(std::in_place, hits * *std::max_element(largest.begin(), largest.end()),
+    const double most_hits_per_ray = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;
+    return std::optional<FoundImportance>(std::in_place,
+                                          most_hits_per_ray * *std::max_element(largest.begin(), largest.end()),
                                           step.rays, forest.size() + step.part_count());
 }
 
-void trace(const Shooting& shooting, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
-    shooting.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
+void trace(const StepData& data, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
+    data.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
     batch.hits.resize(batch.shot.rays.size());
     ray_caster.trace(batch.shot.rays, batch.hits);
-    shooting.panes.trace(batch.shot.rays, batch.hits, batch.behind);
+    data.panes.trace(batch.shot.rays, batch.hits, batch.behind);
 }
 
-void deposit_behind(const TransportStep& step, const Shooting& shooting, const SourceRays& rays,
+void deposit_behind(const TransportStep& step, const StepData& data, const SourceRays& rays,
                     std::span<const Panes::HitBehind> behind, Batch& batch) {
     const std::uint32_t source = rays.source;
     for (const auto& [ray, transmittance, hit] : behind) {
-        shooting.units.add_groups(step, shooting.payload, source, batch.group_terms, transmittance);
-        batch.descent.deposit(source, shooting.units.contribution(step, shooting.payload, source, transmittance),
+        data.units.fill_groups(step, data.payload, source, batch.group_terms, transmittance);
+        batch.descent.deposit(source, data.units.contribution(step, data.payload, source, transmittance),
                               batch.group_terms, std::span(batch.shot.rays).subspan(ray, 1),
                               std::span(batch.shot.origins).subspan(ray, 1), std::span(&hit, 1),
                               channel_sum(transmittance) / 3);
     }
 }
 
-void deposit(const TransportStep& step, const Shooting& shooting, Batch& batch) {
+void deposit(const TransportStep& step, const StepData& data, Batch& batch) {
     auto& [shot, hits, all_behind, group_terms, walkers, descent] = batch;
     std::span<const Panes::HitBehind> behind = all_behind;
     std::size_t fetched = 0;
@@ -131,27 +135,28 @@ void deposit(const TransportStep& step, const Shooting& shooting, Batch& batch) 
         const auto [source, first, last] = rays;
         const std::size_t fetch = std::min<std::size_t>(last + rays_ahead, hits.size()), count = last - first;
         for (; fetched < fetch; ++fetched) descent.prefetch(hits[fetched]);
-        shooting.units.add_groups(step, shooting.payload, source, group_terms);
-        descent.deposit(source, shooting.units.contribution(step, shooting.payload, source), group_terms,
+        data.units.fill_groups(step, data.payload, source, group_terms);
+        descent.deposit(source, data.units.contribution(step, data.payload, source), group_terms,
                         std::span(shot.rays).subspan(first, count), std::span(shot.origins).subspan(first, count),
                         std::span(hits).subspan(first, count));
         const auto of_others =
             std::find_if(behind.begin(), behind.end(), [last = last](const auto& b) { return b.ray >= last; });
         const auto own = static_cast<std::size_t>(of_others - behind.begin());
-        deposit_behind(step, shooting, rays, behind.first(own), batch);
+        deposit_behind(step, data, rays, behind.first(own), batch);
         behind = behind.subspan(own);
     }
     descent.finish_batch();
 }
 
-/// @param task  Index of the first ray.
-void walk(const TransportStep& step, const Shooting& shooting, const Walks& walks, std::uint64_t task, Batch& batch) {
+/// Follows the light reflected at the hits of a batch to its end, by random walks.
+/// @param first_ray  Of the batch; key of the random numbers.
+void walk(const TransportStep& step, const StepData& data, const Walks& walks, std::uint64_t first_ray, Batch& batch) {
     Walkers& walkers = batch.walkers;
     const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {
         if (hit.patch == none) return;
-        walks.add(batch.shot.rays[ray], hit, shooting.payload.power(source), transmittance, walkers);
+        walks.add(batch.shot.rays[ray], hit, data.payload.power(source), transmittance, walkers);
         for (std::size_t g = 0; g < step.groups.size(); ++g)
-            walkers.received_groups.push_back(shooting.payload.power(source, g) * RgbD(transmittance));
+            walkers.received_groups.push_back(data.payload.power(source, g) * RgbD(transmittance));
     };
     auto behind = batch.behind.begin();
     for (const auto [source, first, last] : batch.shot.sources) {
@@ -159,9 +164,10 @@ void walk(const TransportStep& step, const Shooting& shooting, const Walks& walk
         for (; behind != batch.behind.end() && behind->ray < last; ++behind)
             add(source, behind->ray, behind->hit, behind->transmittance);
     }
-    walks.follow(task, walkers, batch.descent);
+    walks.follow(first_ray, walkers, batch.descent);
 }
 
+/// Joins the points of all threads; StartPoints sorts them.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
@@ -173,23 +179,23 @@ StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threa
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, ContributionSums& sums, const StopRequest& stop) {
     assert(step.q.size() == forest.size() + step.part_count() && step.rays > 0);
-    const Shooting shooting(materials, forest, ray_caster, step, streams);
+    const StepData data(materials, forest, ray_caster, step, streams);
     const std::uint32_t old_size = forest.size();
-    if (!(shooting.rays.allocation().q_sum() > 0)) return nothing_received(step, old_size);
+    if (!(data.rays.allocation().q_sum() > 0)) return nothing_received(step, old_size);
 
     sums.begin(old_size);
-    std::optional<FoundImportance> importance = make_found_importance(step, materials, forest);
-    const Walks walks(materials, forest, ray_caster, shooting.panes, step, shooting.units, old_size, walk_key(streams));
+    std::optional<FoundImportance> found_importance = make_found_importance(step, materials, forest);
+    const Walks walks(materials, forest, ray_caster, data.panes, step, data.units, old_size, walk_key(streams));
     PerThread<Batch> batches([&] {
-        return Batch({materials, forest, step, old_size, sums, importance ? &*importance : nullptr});
+        return Batch({materials, forest, step, old_size, sums, found_importance ? &*found_importance : nullptr});
     });
     try {
         parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, stop,
                             [&](std::size_t begin, std::size_t end) {
                                 Batch& batch = batches.local();
-                                trace(shooting, ray_caster, begin, end, batch);
-                                deposit(step, shooting, batch);
-                                if (step.completes_by_walks) walk(step, shooting, walks, begin, batch);
+                                trace(data, ray_caster, begin, end, batch);
+                                deposit(step, data, batch);
+                                if (step.completes_by_walks) walk(step, data, walks, begin, batch);
                             });
     } catch (const Interrupted&) {
         sums.clear(forest.size());
@@ -202,14 +208,14 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
         escaped += batch.descent.finish();
         start_points.push_back(batch.descent.start_points());
     }
-    const RayAllocation& allocation = shooting.rays.allocation();
+    const RayAllocation& allocation = data.rays.allocation();
     advance(streams, allocation, old_size, step.part_count());
-    Received received = collect(step, forest, old_size, allocation, shooting.all, shooting.units,
-                                importance ? &*importance : nullptr, sums);
+    Received received = collect(step, forest, old_size, allocation, data.total, data.units,
+                                found_importance ? &*found_importance : nullptr, sums);
     received.start_points = start_points_of(start_points);
     received.escaped_rays = escaped.rays;
-    received.escaped_power = shooting.units.power.to_colour(escaped.power);
-    if (step.emission) {
+    received.escaped_power = data.units.power.to_colour(escaped.power);
+    if (step.emission) {  // targets emit the same light again
         received.shot_power -= step.emission->repeated_power();
         received.escaped_power -= step.emission->repeated_power();
     }
