@@ -41,8 +41,7 @@ struct SolvedMaze {
     ElementForest& forest = const_cast<ElementForest&>(*solution.forest);  // does not grow further, see step()
 
     SolveOptions options() const {
-        SolveOptions o{.method = find_method("srr")};
-        o.method = find_method("ihsrr");
+        SolveOptions o{.method = find_method("ihsrr")};
         o.limits.rays = 2'000'000;
         o.views.push_back({scene.views.at(4)});
         return o;

@@ -70,14 +70,14 @@ constexpr bool needs_tone_mapping(ImageFormat format) {
 
 /// Content and origin of an image. OpenEXR files store it in the attributes interflect.view, .eye, .look_at (both in
 /// world coordinates, double precision), .up, .fov or .extent, .quantity, .scene, .exposure, .seed (text, since it has
-/// 64 bits) and .version; names are escaped() (base/escapes.h).
+/// 64 bits) and .version; control characters in names are escaped.
 struct ImageMetadata {
     View view;
     std::string quantity = "radiance [cd/m^2]";  ///< With its unit.
     std::string scene;                           ///< Source file.
     std::string version;                         ///< Version of this program.
     std::uint64_t seed = 0;
-    float exposure = 0;  ///< Suggested for display [stops]: see exposure in tone_map.h.
+    float exposure = 0;  ///< Suggested for display [stops]: see tone_map().
 };
 
 /// An additional layer of an OpenEXR file.
@@ -134,7 +134,7 @@ inline constexpr float usual_display_luminance = 100;
 /// others, to exclude visible lamps and dark windows. 0 for a picture without light.
 float automatic_exposure(const Image& image);
 
-/// Maps a picture to display values in [0, 1] (linear; image_files.h encodes it as sRGB). Black and non-finite pixels
+/// Maps a picture to display values in [0, 1] (linear; write_image() encodes them as sRGB). Black and non-finite pixels
 /// are unchanged.
 /// @param image     Radiance. [cd/m^2] if is_absolute(curve): a picture in W/(m^2 sr) then looks too dark.
 /// @param exposure  [stops]; one more doubles the brightness. Curves receive values times 2^exposure: at 0 a luminance

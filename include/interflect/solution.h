@@ -22,7 +22,7 @@ class ElementForest;
 
 /// State of a run after an iteration. Counts since the start.
 struct IterationReport {
-    int iteration = 0;  ///< 0 is the incremental start, if any.
+    int iteration = 0;  ///< 0 is the preparation of the run, if any.
     double seconds = 0;
     std::int64_t rays = 0;             ///< Sum of the two below; in a combined iteration every ray carries both.
     std::int64_t power_rays = 0;       ///< For power, by the sampling distribution.
@@ -95,8 +95,7 @@ struct PowerBalance {
     double relative_difference() const;
 };
 
-/// Power balance of a solution of the scene. The difference contains the noise of averaged iterations and the power
-/// left unshot by the last pass. O(elements).
+/// Power balance of a solution of the scene. The difference contains the noise of averaged iterations. O(elements).
 PowerBalance power_balance(const Scene& scene, const Solution& solution);
 
 /// Scales the sources of a light group and all of its light, without tracing rays; the result equals a solution of the
@@ -114,7 +113,7 @@ struct SolvedScene {
 };
 
 /// Writes scene and solution as one HDF5 file (layout in docs/solution-file.md), with a report of every iteration and
-/// checksums of every byte. Equal input gives equal bytes. Use with PendingFile.
+/// checksums of every byte. Equal input gives equal bytes.
 /// @throws std::runtime_error if the file cannot be written; before writing, if the scene has a fault, or a quantity is
 ///         negative, not finite or not one per element. Every written file is therefore readable.
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution);

@@ -33,8 +33,7 @@ std::string contents(const fs::path& path) {
 void write_small_solution(const fs::path& path) {
     Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(1)}});
     scene.views = {{"inside", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}, {0, 0, 1}, 60}};
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("isrr");
+    SolveOptions options{.method = find_method("isrr")};
     options.limits.rays = 1000;
     options.views = {{scene.views[0]}};
     write_solution(path, scene, solve(scene, RayCaster(scene), options));

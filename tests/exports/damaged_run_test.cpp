@@ -35,8 +35,7 @@ class DamagedRun : public testing::Test {
   protected:
     DamagedRun() {
         Scene scene = closed_box({1, 2, 3}, 2, {{"wall", Rgb(0.5f), Rgb(1)}});
-        SolveOptions options{.method = find_method("srr")};
-        options.method = find_method("ihsrr");
+        SolveOptions options{.method = find_method("ihsrr")};
         options.views = {{{"inside", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}, {0, 0, 1}, 60}}};
         options.limits.rays = 20'000;
         options.importance.camera_rays = 1000;

@@ -73,8 +73,7 @@ Scene open_room_with_lights() {
 std::vector<Case> cases() {
     std::vector<Case> all;
     const auto add = [&](const std::string& name, const std::string& method, const auto& change) {
-        SolveOptions options{.method = find_method("srr")};
-        options.method = find_method(method);
+        SolveOptions options{.method = find_method(method)};
         if (options.method.importance != ImportanceUse::off) options.views = {{into_the_room}};
         options.limits.rays = 60'000;
         options.importance.camera_rays = 2000;
@@ -216,8 +215,7 @@ View turned(double degrees) {
 }
 
 Solver solver_of_a_view(const std::string& method = "ihsrr", std::uint64_t seed = 1) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     options.views = {{into_the_room}};
     options.limits.rays = 200'000;
     options.importance.camera_rays = 2000;
@@ -263,8 +261,7 @@ TEST(ChangeOfViews, NeedsFewRaysAfterATurn) {
 // In a closed box of grey walls that all emit, H = M / (1 - rho) everywhere, for all previous views. The mean over the
 // walls of 24 runs has a standard error below 0.3%, so an error of 1.8% is detected; false alarm 1e-9.
 TEST(ChangeOfViews, StaysUnbiased) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("ihsrr");
+    SolveOptions options{.method = find_method("ihsrr")};
     options.limits.rays = 20'000;
     const View views[] = {{"a", {0.3f, 0.4f, 0.5f}, {0.9f, 1.9f, 2.9f}}, {"b", {0.3f, 1.4f, 2.5f}, {0.9f, 0.1f, 0.1f}}};
     const Scene scene = closed_box({1, 2, 3}, 3, {{"wall", Rgb(0.6f), Rgb(2)}});
@@ -308,8 +305,7 @@ TEST(ChangeOfViews, HasTheSameBitsWhenSavedAndOpenedOnTheWay) {
 /// A run with few rays whose views change after some iterations. With a file, it is saved and opened after each later
 /// iteration.
 Solution changed_after(int iterations, RefinementCriterion criterion, const fs::path& file) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("ihsrr");
+    SolveOptions options{.method = find_method("ihsrr")};
     options.views = {{into_the_room}};
     options.refinement.criterion = criterion;
     options.limits.rays = 50'000;
@@ -371,8 +367,7 @@ TEST(DimmedRun, IsDimmedOnceHoweverItIsWritten) {
 }
 
 TEST(Solver, GoesOnBeyondItsPlanWhenAskedTo) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("hsrr");
+    SolveOptions options{.method = find_method("hsrr")};
     options.limits.rays = 50'000;
     Solver solver(open_room(), options);
     EXPECT_TRUE(solver.advance({}).is_finished);
@@ -382,8 +377,7 @@ TEST(Solver, GoesOnBeyondItsPlanWhenAskedTo) {
 }
 
 TEST(Solver, EndsAtTheErrorThatIsAskedFor) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("hsrr");
+    SolveOptions options{.method = find_method("hsrr")};
     options.limits.rays = 10'000'000;
     Solver solver(open_room(), options);
     const AdvanceReport report = solver.advance({.until = 0.3});

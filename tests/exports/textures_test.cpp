@@ -25,8 +25,7 @@ namespace {
 using namespace testing_support;
 
 SolveOptions refining() {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("hsrr");
+    SolveOptions options{.method = find_method("hsrr")};
     options.limits.rays = 200'000;
     return options;
 }

@@ -43,8 +43,7 @@ WeightedView view(bool shows_lamp) {
 }
 
 SolveOptions options_for(const char* method, bool shows_lamp, std::int64_t rays, std::uint64_t seed) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     options.views = {view(shows_lamp)};
     options.limits.rays = rays;
     options.seed = seed;
@@ -173,8 +172,7 @@ TEST(ErrorEstimateOfABlackView, IsInfiniteAndNeverEndsARun) {
                               {"grey", Rgb(0.5f), Rgb(0)},
                               {"grey", Rgb(0.5f), Rgb(0)},
                               {"lamp", Rgb(0.5f), Rgb(10)}});
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("ihsrr");
+    SolveOptions options{.method = find_method("ihsrr")};
     options.views = {{View{"black", {2, 1.5, 1.2}, {0, 1.5, 1.2}, {0, 0, 1}, 30}}};
     options.limits.rays = 100'000;
     options.limits.until = 0.99;

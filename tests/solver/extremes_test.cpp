@@ -20,8 +20,7 @@ namespace {
 using namespace testing_support;
 
 SolveOptions options_of(const char* method) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     options.limits.rays = 80'000;
     options.views = {{into_the_corner}};
     return options;

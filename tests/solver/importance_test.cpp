@@ -28,8 +28,7 @@ Scene grey_box() {
 }
 
 SolveOptions options_for(const char* method, std::uint64_t seed) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     options.views = {{into_the_corner}};
     options.limits.rays = 200'000;
     options.seed = seed;

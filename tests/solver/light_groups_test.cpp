@@ -48,8 +48,7 @@ Scene lit_room() {
 }
 
 SolveOptions options_of(const std::string& method, std::int64_t rays = 400'000) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     options.limits.rays = rays;
     options.importance.camera_rays = 1 << 13;
     if (options.method.importance != ImportanceUse::off) options.views = {{into_the_room}};

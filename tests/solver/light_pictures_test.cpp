@@ -43,8 +43,7 @@ TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
     scene.luminaires.push_back({"sun", 0, DirectionalLight{{2, 0.3f, -1}, {2000, 1900, 1500}}});
     const RayCaster ray_caster(scene);
     const View view{"room", {4.7, 3.7, 1.6}, {0.5, 1.2, 0.9}, {0, 0, 1}, 70};
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(GetParam().method);
+    SolveOptions options{.method = find_method(GetParam().method)};
     options.refinement.criterion = GetParam().criterion;
     options.views = {{view, 1, 1.5f, 48}};
     options.limits.rays = 4'000'000;

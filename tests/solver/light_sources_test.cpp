@@ -56,8 +56,7 @@ double mean_over(const Scene& scene, std::uint32_t patch, const std::function<do
 View view_of_floor() { return {"floor", {-3, -4, 3}, {1, 0.5, 0.5}, {0, 0, 1}, 40}; }
 
 SolveOptions options_of(const std::string& method, std::uint64_t seed) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     options.method.refines = false;
     options.experimental.points = PointSet::random;
     options.limits.rays = 60'000;

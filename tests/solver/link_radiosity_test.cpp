@@ -46,8 +46,7 @@ const Method with_importance = [] {
 }();
 
 SolveOptions refined_to(double epsilon) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = without_importance;
+    SolveOptions options{.method = without_importance};
     options.experimental.epsilon = epsilon;
     return options;
 }

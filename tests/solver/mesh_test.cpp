@@ -61,8 +61,7 @@ struct Leaves {
 
 Leaves leaves_of(const char* method, const Room& room) {
     const Scene scene = scene_of(room);
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     const V3f eye(0.5f, 0.5f, 1.5f), look_at(3.5f, 2.5f, 0.8f);
     options.views = {{{"room", eye * room.metre, look_at * room.metre, {0, 0, 1}, 60}}};
     options.limits.rays = room.rays;

@@ -37,8 +37,7 @@ struct Flat {
 std::ostream& operator<<(std::ostream& out, const Flat& flat) { return out << flat.method; }
 
 SolveOptions default_options(const Flat& flat, std::int64_t rays, std::uint64_t seed) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(flat.method);
+    SolveOptions options{.method = find_method(flat.method)};
     options.views = {{into_the_corner}};
     options.experimental.points = flat.points;
     options.limits.rays = rays;
@@ -143,8 +142,7 @@ TEST(FurnaceOfPasses, IsRightAtAnyDistanceFromAnEdgeAndInElementsOfAnySize) {
     std::array<std::vector<double>, distances.size()> by_distance;
     std::array<std::vector<double>, levels> by_level;
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-        SolveOptions options{.method = find_method("srr")};
-        options.method = find_method("hsrr");
+        SolveOptions options{.method = find_method("hsrr")};
         options.limits.rays = 2'000'000;
         options.seed = seed;
         const Solution s = solve(scene, ray_caster, options);

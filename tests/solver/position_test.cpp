@@ -87,8 +87,7 @@ struct Measured {
 Measured measure(const Placement& place, std::uint64_t seed) {
     const Scene scene = read_mgf_text(room(place), "room.mgf");
     const RayCaster ray_caster(scene);
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("hsrr");
+    SolveOptions options{.method = find_method("hsrr")};
     options.limits.rays = 150'000;
     options.seed = seed;
     const Solution solution = solve(scene, ray_caster, options);

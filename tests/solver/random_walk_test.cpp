@@ -39,8 +39,7 @@ constexpr std::uint64_t runs = 32;
 constexpr std::int64_t rays_per_run = 100'000;
 
 SolveOptions walk_options(ImportanceUse importance, std::uint64_t seed) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("random-walk");
+    SolveOptions options{.method = find_method("random-walk")};
     options.method.importance = importance;
     options.views = {{into_the_corner}};
     options.limits.rays = rays_per_run;

@@ -25,8 +25,7 @@ namespace {
 using namespace testing_support;
 
 SolveOptions options_of(const char* method, std::int64_t rays, std::uint64_t seed) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     options.limits.rays = rays;
     options.seed = seed;
     return options;

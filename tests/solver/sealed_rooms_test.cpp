@@ -26,8 +26,7 @@ double leak(const TwoRoomsOptions& rooms, bool cuts, double min_area = 0) {
     const Scene whole = make_two_rooms(rooms);
     const auto least_extent = static_cast<float>(2 * default_element_size(whole));
     const Scene scene = cuts ? cut_at_contacts(whole, {.least_extent = least_extent}) : whole;
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("hsrr");
+    SolveOptions options{.method = find_method("hsrr")};
     options.limits.rays = 1'000'000;
     options.refinement.min_area = min_area;
     const Solution s = solve(scene, RayCaster(scene), options);

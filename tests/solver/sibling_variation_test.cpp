@@ -49,8 +49,7 @@ struct Setting {
         for (int level = 0; level < levels; ++level) divide();
     }
     static SolveOptions hierarchical() {
-        SolveOptions options{.method = find_method("srr")};
-        options.method = find_method("hsrr");
+        SolveOptions options{.method = find_method("hsrr")};
         return options;
     }
     void divide() {

@@ -121,8 +121,7 @@ TEST_P(ReproducibleMesh, SameSeedSameBitsForAnyNumberOfThreads) {
 
 TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
     const Scene scene = furnished_room();
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method("hsrr");
+    SolveOptions options{.method = find_method("hsrr")};
     options.limits.rays = 60'000;
     options.refinement.max_elements = 3 * scene.patches.size();
     const Solution expected = solved_on_threads(1, scene, options);

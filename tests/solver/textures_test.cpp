@@ -22,8 +22,7 @@ namespace {
 using namespace testing_support;
 
 Solution solved(const Scene& scene, const char* method, std::int64_t rays = 600'000, std::uint64_t seed = 1) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     options.limits.rays = rays;
     options.seed = seed;
     return solve(scene, RayCaster(scene), options);

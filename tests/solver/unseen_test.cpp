@@ -47,8 +47,7 @@ Scene chambers(int n) {
 const View first_chamber{"first", {1.8f, 2.8f, 1.6f}, {0.3f, 0.3f, 0.8f}, {0, 0, 1}, 60};
 
 SolveOptions options_of(const char* method, std::int64_t rays, std::uint64_t seed) {
-    SolveOptions options{.method = find_method("srr")};
-    options.method = find_method(method);
+    SolveOptions options{.method = find_method(method)};
     options.views = {{first_chamber}};
     options.refinement.criterion = RefinementCriterion::power;
     options.experimental.epsilon_decay = 0;
