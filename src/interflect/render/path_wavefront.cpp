@@ -119,14 +119,13 @@ void PathWavefront::split_paths() {
             const Material& m = s_.material(hit.patch);
             const Ray ray = rays_[i];  // copies: add_path() reallocates
             Path path = paths_[i];
-            if (const Rgb through = s_.panes.transmittance(ray, hit); largest_channel(through) > 0) {
-                path.travelled += hit.distance;
+            path.travelled += hit.distance;
+            if (const Rgb through = s_.panes.transmittance(ray, hit); largest_channel(through) > 0)
                 add_path(s_.panes.behind(ray, hit), path, through, reflectance_of_hit(ray, hit));
-            }
             if (vertex_ > 1 || !s_.options.mirrors || largest_channel(m.specular_reflectance) <= 0) continue;
             const V3f n = s_.geometry[hit.patch].normal();
             const V3f mirrored = ray.direction - 2 * n.dot(ray.direction) * n;
-            add_path({offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction), mirrored}, paths_[i],
+            add_path({offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction), mirrored}, path,
                      m.specular_reflectance, reflectance_of_hit(ray, hit));
         }
         hits_.resize(rays_.size());
@@ -171,7 +170,8 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     if (shows_irradiance()) exitance = Rgb(0), reflectance = Rgb(1);
     // Later paths, behind panes or in mirrors, overwrite it.
     if (vertex_ == 1 && path.sets_first_hit)
-        light_[path.index].first = {RgbD(reflectance), Imath::V3d(geometry.normal()), Imath::V3d(x), hit.distance,
+        light_[path.index].first = {RgbD(reflectance), Imath::V3d(geometry.normal()), Imath::V3d(x),
+                                    path.travelled + hit.distance,
                                     s_.known ? static_cast<double>(s_.known->level(hit.patch, x)) : 0};
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 

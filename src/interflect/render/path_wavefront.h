@@ -51,7 +51,7 @@ struct PathScene {
 struct FirstHit {
     RgbD albedo{0, 0, 0};
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
-    double distance = 0;  // from the camera [m]
+    double distance = 0;  // from the camera, through panes and by mirrors [m]
     double level = 0;     // of the element, with a known solution
 
     FirstHit& operator+=(const FirstHit& o) {
@@ -92,9 +92,9 @@ class PathWavefront {
   private:
     struct Path {
         Rgb throughput;
-        std::uint32_t index;         // in light_
-        V3f normal;                  // of the surface that the ray left
-        float travelled = 0;         // from that surface to the ray's origin, behind panes [m]
+        std::uint32_t index;  // in light_
+        V3f normal;           // of the surface that the ray left
+        float travelled = 0;  // from that surface or the camera to the ray's origin, behind panes or in mirrors [m]
         bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
     };
     struct PathLight {
