@@ -34,7 +34,7 @@ GltfElements elements_of(const DracoAttribute& attribute, std::uint64_t count) {
             .components = attribute.components};
 }
 
-/// Drops the degenerate triangles at which strips turn.
+/// Converts strips and fans to single triangles, without the degenerate ones that join strips.
 std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corners, std::uint64_t mode) {
     if (mode == triangles) return corners;
     std::vector<std::uint32_t> result;
@@ -48,7 +48,8 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corner
     return result;
 }
 
-/// Renumbers `indices` to the used vertices, which it returns in ascending order.
+/// Drops unused vertices if there are surely some (fewer corners than vertices): renumbers `indices` and returns the
+/// kept vertices in ascending order.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uint64_t vertex_count) {
     std::vector<std::uint32_t> used;
     if (indices.size() >= vertex_count) {
@@ -73,7 +74,7 @@ struct GltfMeshes::Vertices {
     };
     GltfElements positions;
     std::optional<GltfElements> coordinates, lightmap_coordinates, normals;
-    DracoMesh draco;
+    DracoMesh draco;  // owns the data of the elements above
     std::vector<Target> targets;
     GltfElements joint_indices, joint_weights;
     std::span<const Imath::M44d> joints;
@@ -105,10 +106,10 @@ GltfMeshes::GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& ac
       materials_(materials),
       meshes_(asset.root().objects("meshes")) {}
 
-void GltfMeshes::require_room(std::uint64_t count, const GltfValue& primitive) {
+void GltfMeshes::add_triangles(std::uint64_t count, const GltfValue& primitive) {
     triangles_ += count;
     if (triangles_ > asset_.options().max_patches)
-        throw TooManyPatches(asset_.path(), 0,
+        throw TooManyPatches(asset_.path(), /*line=*/0,
                              fmt::format("{}: with its {} triangles there would be more than {} patches (max_patches)",
                                          primitive.place(), count, asset_.options().max_patches));
 }
@@ -120,7 +121,7 @@ GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, 
 
 /// Returns an empty text for untextured materials.
 std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
-    const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), true);
+    const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), /*textured=*/true);
     return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";
 }
 
@@ -129,27 +130,29 @@ void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extensi
     constexpr std::size_t most_ids = 1 << 16;
     std::vector<std::uint32_t> wanted = {ids.required_index("POSITION", most_ids)};
     const std::string texture_set = texture_set_of(primitive);
-    const auto is_wanted = [&](const std::string& set) {
-        if (set.empty() || !ids.has(set.c_str())) return false;
+    // Returns the set's place in `wanted`, if it exists.
+    const auto want = [&](const std::string& set) -> std::optional<std::size_t> {
+        if (set.empty() || !ids.has(set.c_str())) return std::nullopt;
         wanted.push_back(ids.index(set.c_str(), most_ids));
-        return true;
+        return wanted.size() - 1;
     };
-    const bool has_coordinates = is_wanted(texture_set), has_lightmap = is_wanted(lightmap_set);
-    const bool has_normals = is_wanted(normal_set);
+    const auto coordinates = want(texture_set), lightmap = want(lightmap_set), normals = want(normal_set);
     const auto view = buffers_.view(extension.required_index("bufferView", buffers_.view_count()));
+    // Only the counts of these accessors are used; their data are compressed.
     const GltfElements indices =
         accessors_.elements(primitive.required_index("indices", accessors_.count()), "SCALAR", primitive);
     const GltfElements positions = attribute(primitive, "POSITION", "VEC3");
-    require_room(indices.count / 3, primitive);
+    add_triangles(indices.count / 3, primitive);
+    // Limits the decoder's memory: max_patches limits the corners, but only this check limits the vertices.
     if (positions.count > indices.count) extension.fail("it has more vertices than corners");
     vertices.draco = decode_draco(view.bytes, wanted, indices.count / 3, positions.count, extension);
     const auto decoded = [&](std::size_t i) {
         return elements_of(vertices.draco.attributes[i], vertices.draco.vertex_count);
     };
     vertices.positions = decoded(0);
-    if (has_coordinates) vertices.coordinates = decoded(1);
-    if (has_lightmap) vertices.lightmap_coordinates = decoded(has_coordinates ? 2 : 1);
-    if (has_normals) vertices.normals = decoded(wanted.size() - 1);
+    if (coordinates) vertices.coordinates = decoded(*coordinates);
+    if (lightmap) vertices.lightmap_coordinates = decoded(*lightmap);
+    if (normals) vertices.normals = decoded(*normals);
 }
 
 void GltfMeshes::open_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices) {
@@ -198,22 +201,23 @@ GltfMeshes::Vertices GltfMeshes::vertices_of(const GltfValue& primitive) {
 
 std::vector<std::uint32_t> GltfMeshes::corners_of(const GltfValue& primitive, Vertices& vertices) {
     const std::uint64_t mode = primitive.integer("mode", triangles);
-    const auto count_triangles = [&](std::uint64_t corners) {
+    // Also adds the triangles.
+    const auto check_corner_count = [&](std::uint64_t corners) {
         if (mode == triangles && corners % 3 != 0)
             primitive.fail(fmt::format("{} corners are no whole number of triangles", corners));
-        require_room(mode == triangles ? corners / 3 : std::max<std::uint64_t>(corners, 2) - 2, primitive);
+        add_triangles(mode == triangles ? corners / 3 : std::max<std::uint64_t>(corners, 2) - 2, primitive);
     };
     std::vector<std::uint32_t> corners;
     const std::uint64_t vertex_count = vertices.positions.count;
     if (primitive.extension("KHR_draco_mesh_compression").exists()) {
-        return std::move(vertices.draco.indices);
+        return std::move(vertices.draco.indices);  // triangles in any mode, counted by open_draco()
     } else if (primitive.has("indices")) {
         const GltfElements indices = accessors_.indices(primitive.index("indices", accessors_.count()), primitive);
-        count_triangles(indices.count);
+        check_corner_count(indices.count);
         corners.reserve(indices.count);
         for (std::uint64_t i = 0; i < indices.count; ++i) corners.push_back(indices.whole_number(i));
     } else {
-        count_triangles(vertex_count);
+        check_corner_count(vertex_count);
         if (vertex_count > std::numeric_limits<std::uint32_t>::max()) primitive.fail("it has too many vertices");
         corners.resize(vertex_count);
         std::iota(corners.begin(), corners.end(), 0u);
@@ -238,6 +242,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     if (primitive.object("attributes").has("COLOR_0"))
         asset_.warn("vertex-colours", "colours of vertices (COLOR_0) are ignored", primitive.place());
     Vertices vertices = vertices_of(primitive);
+    // After the vertices: without coordinates, textures become their means.
     const GltfSurface& surface =
         materials_.surface(primitive.index("material", materials_.count()), vertices.coordinates.has_value());
     if (surface.is_invisible) return;
@@ -254,12 +259,14 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     if (vertices.normals && vertices.targets.empty() && vertices.joints.empty())  // normals are not deformed
         for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
-    if (surface.mapping) mesh.texture_coordinates.reserve(used.size());
-    for (const std::uint32_t v : surface.mapping ? used : std::vector<std::uint32_t>()) {
-        const GltfElements& c = *vertices.coordinates;
-        const V2f coordinate = surface.mapping->apply(c.number(v, 0), c.number(v, 1));
-        is_outside |= std::min(coordinate.x, coordinate.y) < 0 || std::max(coordinate.x, coordinate.y) > 1;
-        mesh.texture_coordinates.push_back(coordinate);
+    if (surface.mapping) {
+        const GltfElements& c = *vertices.coordinates;  // present: only then does a surface have a mapping
+        mesh.texture_coordinates.reserve(used.size());
+        for (const std::uint32_t v : used) {
+            const V2f coordinate = surface.mapping->apply(c.number(v, 0), c.number(v, 1));
+            is_outside |= std::min(coordinate.x, coordinate.y) < 0 || std::max(coordinate.x, coordinate.y) > 1;
+            mesh.texture_coordinates.push_back(coordinate);
+        }
     }
     if (is_outside && !surface.repeats)
         asset_.warn("texture-wrap", "a texture that its sampler clamps or mirrors repeats beyond its edges",
@@ -277,15 +284,15 @@ void GltfMeshes::read_lightmap_coordinates(const GltfElements& set, const std::v
     const auto clamped = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1.0)); };
     mesh.lightmap_coordinates.reserve(used.size());
     for (const std::uint32_t v : used) {
-        const double u = set.number(v, 0), down = set.number(v, 1);
-        if (!is_in_range(u) || !is_in_range(down)) {
+        const double u = set.number(v, 0), v_down = set.number(v, 1);  // glTF's v points down
+        if (!is_in_range(u) || !is_in_range(v_down)) {
             asset_.warn("lightmap-coordinates",
                         fmt::format("{} is no lightmap, since it leaves [0, 1]: it is ignored", lightmap_set),
                         mesh.name);
             mesh.lightmap_coordinates.clear();
             return;
         }
-        mesh.lightmap_coordinates.emplace_back(clamped(u), clamped(1 - down));
+        mesh.lightmap_coordinates.emplace_back(clamped(u), clamped(1 - v_down));
     }
 }
 

@@ -39,7 +39,8 @@ class GltfMeshes {
     void read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used, Mesh& mesh);
     GltfElements attribute(const GltfValue& primitive, const char* key, const char* types);
     std::vector<std::uint32_t> corners_of(const GltfValue& primitive, Vertices& vertices);
-    void require_room(std::uint64_t count, const GltfValue& primitive);
+    /// Adds to triangles_. @throws TooManyPatches above the limit.
+    void add_triangles(std::uint64_t count, const GltfValue& primitive);
 
     GltfAsset& asset_;
     GltfBuffers& buffers_;

@@ -43,7 +43,7 @@ KnownLight::Place KnownLight::place(std::uint32_t patch, const V3f& x) const {
     return {patch, forest_.is_leaf(patch) ? patch : forest_.leaf_at(patch, p), p};
 }
 
-Rgb KnownLight::radiance(const Place& place) const {
+Rgb KnownLight::reflected_radiance(const Place& place) const {
     return reflectance_at(scene_, scene_.patches[place.patch], place.parameters) * irradiance_[place.leaf] /
            std::numbers::pi_v<float>;
 }

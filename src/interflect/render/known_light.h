@@ -28,7 +28,7 @@ class KnownLight {
     int level(std::uint32_t patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
     /// Returns the reflected radiance rho H / pi.
-    Rgb radiance(const Place& place) const;
+    Rgb reflected_radiance(const Place& place) const;
 
     /// Returns whether the leaf's solid angle A / d^2 is at most 0.25 sr.
     bool is_far(const Place& place, float distance2) const {

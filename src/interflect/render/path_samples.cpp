@@ -57,9 +57,9 @@ SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_
     return {double{point[2]}, point[0], point[1]};
 }
 
-float light_density(const PatchGeometry& lamp, float probability, const V3f& direction, float distance2) {
-    const float cosine = -lamp.normal().dot(direction);
-    return cosine > 0 ? probability * distance2 / (lamp.area() * cosine) : 0;
+float density_per_solid_angle(const PatchGeometry& patch, float probability, const V3f& direction, float distance2) {
+    const float cosine = -patch.normal().dot(direction);
+    return cosine > 0 ? probability * distance2 / (patch.area() * cosine) : 0;
 }
 
 }  // namespace interflect::detail

@@ -46,7 +46,7 @@ SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_
 /// Returns the density per solid angle of a point on an emitting patch [1/sr].
 /// @param probability  Of the patch.
 /// @param distance2    Squared distance to the point [m^2].
-float light_density(const PatchGeometry& lamp, float probability, const V3f& direction, float distance2);
+float density_per_solid_angle(const PatchGeometry& patch, float probability, const V3f& direction, float distance2);
 
 /// Balance heuristic: weight of density p against density q.
 inline float balance(float p, float q) { return p / (p + q); }

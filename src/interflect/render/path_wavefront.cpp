@@ -19,10 +19,11 @@ constexpr float pi = std::numbers::pi_v<float>;
 /// Throughput below which Russian roulette starts. Lower: less variance, longer paths; 0.25 to 1 are equally efficient.
 constexpr float roulette_threshold = 0.5f;
 
-/// Shadow rays for direct light in final gathering. Squared error times time relative to one ray (16 samples, filtered)
-/// in maze, office-graz, office2: 0.63, 0.76, 0.51; with two rays 0.75, 0.82, 0.66.
+/// Shadow rays for direct light in final gathering. Squared error times time, one ray = 1, in maze, office-graz,
+/// office2 (16 samples, filtered): two rays 0.75, 0.82, 0.66; four 0.63, 0.76, 0.51.
 constexpr std::uint32_t gathered_shadow_rays = 4;
 
+/// Projects x onto its patch, against rounding, and lifts it off.
 V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
     const PatchGeometry& geometry = s.geometry[patch];
     return geometry.point(geometry.parameters_of(x)) + geometry.normal() * s.ray_caster.ray_offset(patch);
@@ -33,20 +34,20 @@ V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
 V3f PathWavefront::start_of(const Ray& ray, const Path& path) { return ray.origin - path.travelled * ray.direction; }
 
 void PathWavefront::trace(std::span<BatchOfPaths> batches) {
-    vertex_ = 1;
-    light_.assign(batches.size() * s_.batch_size, {});
+    light_.resize(batches.size() * s_.batch_size);
     for (const BatchOfPaths& b : batches) keys_.push_back(mix(mix(s_.options.seed, b.pixel), b.batch));
     if (s_.start.camera)
         start_at_camera(batches);
     else
         start_at_gauges(batches);
     for (; !paths_.empty(); ++vertex_) advance_paths();
-    const double unit = s_.options.quantity == PathQuantity::irradiance ? std::numbers::pi : 1;
+    // Irradiance = pi L of a white surface.
+    const double per_radiance = s_.options.quantity == PathQuantity::irradiance ? std::numbers::pi : 1;
     for (std::size_t i = 0; i < light_.size(); ++i) {
         BatchOfPaths& batch = batches[i / s_.batch_size];
-        batch.emitted += RgbD(light_[i].emitted) * unit;
-        batch.direct += RgbD(light_[i].direct) * unit;
-        batch.indirect += RgbD(light_[i].indirect) * unit;
+        batch.emitted += RgbD(light_[i].emitted) * per_radiance;
+        batch.direct += RgbD(light_[i].direct) * per_radiance;
+        batch.indirect += RgbD(light_[i].indirect) * per_radiance;
         batch.first += light_[i].first;
         batch.done = true;
     }
@@ -107,25 +108,24 @@ void PathWavefront::advance_paths() {
 }
 
 void PathWavefront::split_paths() {
-    if (!s_.splits) return;
-    const bool is_lit_alone = vertex_ == 1 && s_.options.quantity == PathQuantity::irradiance;
+    if (!s_.splits || shows_irradiance()) return;
+    constexpr int most_splits = Panes::most_in_a_row;  // panes and mirrors in a row
     std::size_t first = 0;
-    for (int round = 0; round < Panes::most_in_a_row && first < rays_.size() && !is_lit_alone; ++round) {
+    for (int round = 0; round < most_splits && first < rays_.size(); ++round) {
         const std::size_t end = rays_.size();
         for (std::size_t i = first; i < end; ++i) {
             const Hit hit = hits_[i];
             if (hit.patch == none) continue;
             const Material& m = s_.material(hit.patch);
-            const Ray ray = rays_[i];
+            const Ray ray = rays_[i];  // copies: add_path() reallocates
             Path path = paths_[i];
-            if (const Rgb through = s_.panes.transmittance(ray, hit); largest_channel(through) > 0) {
-                path.travelled += hit.distance;
+            path.travelled += hit.distance;
+            if (const Rgb through = s_.panes.transmittance(ray, hit); largest_channel(through) > 0)
                 add_path(s_.panes.behind(ray, hit), path, through, reflectance_of_hit(ray, hit));
-            }
             if (vertex_ > 1 || !s_.options.mirrors || largest_channel(m.specular_reflectance) <= 0) continue;
             const V3f n = s_.geometry[hit.patch].normal();
             const V3f mirrored = ray.direction - 2 * n.dot(ray.direction) * n;
-            add_path({offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction), mirrored}, paths_[i],
+            add_path({offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction), mirrored}, path,
                      m.specular_reflectance, reflectance_of_hit(ray, hit));
         }
         hits_.resize(rays_.size());
@@ -138,7 +138,7 @@ void PathWavefront::add_path(const Ray& ray, const Path& path, const Rgb& share,
     constexpr float least_throughput = 1e-3f;  // further reflections in facing mirrors are invisible
     Path added = path;
     added.throughput *= share;
-    added.is_first = path.is_first && largest_channel(reflectance) <= 0;
+    added.sets_first_hit = path.sets_first_hit && largest_channel(reflectance) <= 0;
     if (largest_channel(added.throughput) < least_throughput) return;
     rays_.push_back(ray);
     paths_.push_back(added);
@@ -149,11 +149,12 @@ Rgb PathWavefront::reflectance_of_hit(const Ray& ray, const Hit& hit) const {
     return reflectance_at(s_.scene, s_.scene.patches[hit.patch], p);
 }
 
+bool PathWavefront::shows_irradiance() const { return vertex_ == 1 && s_.options.quantity == PathQuantity::irradiance; }
+
 bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
-    const bool is_lit_alone = vertex_ == 1 && s_.options.quantity == PathQuantity::irradiance;
     if (hit.patch == none) {
         ++counts_.escaped_rays;
-        if (!is_lit_alone) add_sky(ray, path);
+        if (!shows_irradiance()) add_sky(ray, path);
         return false;
     }
     const V3f x = ray.origin + hit.distance * ray.direction;
@@ -166,9 +167,11 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
         exitance = exitance_at(s_.scene, patch, p);
         reflectance = reflectance_at(s_.scene, patch, p);
     }
-    if (is_lit_alone) exitance = Rgb(0), reflectance = Rgb(1);
-    if (vertex_ == 1 && path.is_first)
-        light_[path.index].first = {RgbD(reflectance), Imath::V3d(geometry.normal()), Imath::V3d(x), hit.distance,
+    if (shows_irradiance()) exitance = Rgb(0), reflectance = Rgb(1);
+    // Later paths, behind panes or in mirrors, overwrite it.
+    if (vertex_ == 1 && path.sets_first_hit)
+        light_[path.index].first = {RgbD(reflectance), Imath::V3d(geometry.normal()), Imath::V3d(x),
+                                    path.travelled + hit.distance,
                                     s_.known ? static_cast<double>(s_.known->level(hit.patch, x)) : 0};
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
@@ -189,7 +192,8 @@ bool PathWavefront::leave(Ray& ray, Path& path) {
     for (std::uint32_t k = 0; k < count; ++k) {
         const std::uint32_t index = path.index % size * count + k;
         const LightSample sample = light_sample(key, vertex_, index);
-        if (samples_emitters) connect_to_light(ray.origin, path, sample);
+        if (samples_emitters) connect_to_patch(ray.origin, path, sample);
+        // With every EmitterSampling: reflected paths cannot hit luminaires other than skies.
         if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
         if (samples_emitters && s_.skies.can_sample()) connect_to_sky(ray.origin, path, index);
     }
@@ -205,13 +209,11 @@ bool PathWavefront::leave(Ray& ray, Path& path) {
 
 void PathWavefront::add_sky(const Ray& ray, const Path& path) {
     if (vertex_ == 1) return add(path.index, 0, path.throughput * s_.skies.seen(ray.direction));
-    Rgb radiance = s_.skies.uniform_radiance();
-    if (s_.skies.can_sample()) {
+    Rgb radiance = s_.skies.uniform_radiance();  // no shadow rays sample it
+    if (s_.skies.can_sample()) {                 // otherwise sampled_radiance() is 0
         const auto count = static_cast<float>(shadow_rays_at(vertex_ - 1));
-        float weight = 1;
-        if (s_.options.emitter_sampling == EmitterSampling::lights) weight = 0;
-        if (s_.options.emitter_sampling == EmitterSampling::combined)
-            weight = balance(path.normal.dot(ray.direction) / pi, count * s_.skies.density(ray.direction));
+        const float weight =
+            direction_weight(path.normal.dot(ray.direction) / pi, count * s_.skies.density(ray.direction));
         radiance += s_.skies.sampled_radiance(ray.direction) * weight;
     }
     add(path.index, vertex_ - 1, path.throughput * radiance);
@@ -220,16 +222,24 @@ void PathWavefront::add_sky(const Ray& ray, const Path& path) {
 void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance) {
     const Rgb radiance = path.throughput * exitance / pi;
     if (vertex_ == 1) return add(path.index, 0, radiance);
-    float weight = 1;
-    if (s_.options.emitter_sampling == EmitterSampling::lights) weight = 0;
-    if (s_.options.emitter_sampling == EmitterSampling::combined) {
-        const float distance = path.travelled + hit.distance;
-        const float probability = s_.lights.probability(hit.patch, start_of(ray, path), path.normal);
-        const float of_light = light_density(s_.geometry[hit.patch], probability, ray.direction, distance * distance);
-        const auto count = static_cast<float>(shadow_rays_at(vertex_ - 1));
-        weight = balance(path.normal.dot(ray.direction) / pi, count * of_light);
-    }
+    const float distance = path.travelled + hit.distance;
+    const float probability = s_.lights.probability(hit.patch, start_of(ray, path), path.normal);
+    const float light_density =
+        density_per_solid_angle(s_.geometry[hit.patch], probability, ray.direction, distance * distance);
+    const auto count = static_cast<float>(shadow_rays_at(vertex_ - 1));
+    const float weight = direction_weight(path.normal.dot(ray.direction) / pi, count * light_density);
     add(path.index, vertex_ - 1, radiance * weight);
+}
+
+float PathWavefront::direction_weight(float direction_density, float light_density) const {
+    switch (s_.options.emitter_sampling) {
+        case EmitterSampling::directions:
+            return 1;
+        case EmitterSampling::lights:
+            return 0;
+        default:
+            return balance(direction_density, light_density);
+    }
 }
 
 bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Path& path) {
@@ -237,9 +247,10 @@ bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Pat
     const KnownLight::Place place = s_.known->place(hit.patch, ray.origin + hit.distance * ray.direction);
     const float distance = path.travelled + hit.distance, distance2 = distance * distance;
     if (!s_.known->is_far(place, distance2)) return false;
-    const float of_light = density_towards(place, start_of(ray, path), path.normal, ray.direction, distance2);
-    const float weight = balance(path.normal.dot(ray.direction) / pi, of_light);
-    add(path.index, vertex_, path.throughput * s_.known->radiance(place) * weight);
+    const float light_density = density_towards(place, start_of(ray, path), path.normal, ray.direction, distance2);
+    const float weight = balance(path.normal.dot(ray.direction) / pi, light_density);
+    // The place reflects once more than its emitted light, which add_emission() has added.
+    add(path.index, vertex_, path.throughput * s_.known->reflected_radiance(place) * weight);
     return true;
 }
 
@@ -252,14 +263,15 @@ void PathWavefront::connect_to_known_light(const V3f& x, const Path& path) {
     const float distance2 = to_light.length2();
     if (!(distance2 > 0) || !s_.known->is_far(place, distance2)) return;
     const V3f direction = to_light / std::sqrt(distance2);
-    const float of_direction = path.normal.dot(direction) / pi;
-    const float of_light = density_towards(place, x, path.normal, direction, distance2);
-    if (!(of_direction > 0 && of_light > 0)) return;
-    const float weight = balance(of_light, of_direction);
+    const float direction_density = path.normal.dot(direction) / pi;
+    const float light_density = density_towards(place, x, path.normal, direction, distance2);
+    if (!(direction_density > 0 && light_density > 0)) return;
+    const float weight = balance(light_density, direction_density);
     shadow_rays_.push_back({x, direction});
-    connections_.push_back({place.patch, path.index,
-                            path.throughput * s_.known->radiance(place) * (of_direction / of_light * weight), 0,
-                            vertex_ + 1});
+    connections_.push_back(
+        {place.patch, path.index,
+         path.throughput * s_.known->reflected_radiance(place) * (direction_density / light_density * weight), 0,
+         vertex_ + 1});  // the place reflects once more
 }
 
 float PathWavefront::density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
@@ -277,25 +289,26 @@ std::uint32_t PathWavefront::shadow_rays_at(std::uint32_t vertex) const {
     return s_.known && vertex == 1 ? gathered_shadow_rays : 1;
 }
 
-void PathWavefront::connect_to_light(const V3f& x, const Path& path, const LightSample& sample) {
+void PathWavefront::connect_to_patch(const V3f& x, const Path& path, const LightSample& sample) {
     const LightTree::Choice choice = s_.lights.choose(x, path.normal, sample.light);
     if (choice.index == none) return;
-    const PatchGeometry& lamp = s_.geometry[choice.index];
-    const Parameters on_lamp = lamp.uniform_parameters(sample.u, sample.v);
-    const V3f to_light = lamp.point(on_lamp) - x;
+    const PatchGeometry& patch = s_.geometry[choice.index];
+    const Parameters on_patch = patch.uniform_parameters(sample.u, sample.v);
+    const V3f to_light = patch.point(on_patch) - x;
     const float distance2 = to_light.length2();
     if (!(distance2 > 0)) return;
     const V3f direction = to_light / std::sqrt(distance2);
-    const float of_direction = path.normal.dot(direction) / pi;  // density, cosine / pi
-    const float of_light =
-        static_cast<float>(shadow_rays_at(vertex_)) * light_density(lamp, choice.probability, direction, distance2);
-    if (!(of_direction > 0 && of_light > 0)) return;
-    const float weight = s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(of_light, of_direction);
+    const float direction_density = path.normal.dot(direction) / pi;
+    const float light_density = static_cast<float>(shadow_rays_at(vertex_)) *
+                                density_per_solid_angle(patch, choice.probability, direction, distance2);
+    if (!(direction_density > 0 && light_density > 0)) return;
+    const float weight =
+        s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(light_density, direction_density);
     // Integrand: (rho / pi) (M / pi) cosine.
-    const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.index], on_lamp) / pi;
+    const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.index], on_patch) / pi;
     shadow_rays_.push_back({x, direction});
-    connections_.push_back(
-        {choice.index, path.index, path.throughput * radiance * (of_direction / of_light * weight), 0, vertex_});
+    connections_.push_back({choice.index, path.index,
+                            path.throughput * radiance * (direction_density / light_density * weight), 0, vertex_});
 }
 
 void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample) {
@@ -309,14 +322,15 @@ void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const L
 void PathWavefront::connect_to_sky(const V3f& x, const Path& path, std::uint32_t index) {
     const SkySample numbers = sky_sample(keys_[path.index / s_.batch_size], vertex_, index);
     const Skies::Sample sample = s_.skies.sample(numbers.sky, numbers.u, numbers.v);
-    const float of_direction = path.normal.dot(sample.direction) / pi;
-    const float of_sky = static_cast<float>(shadow_rays_at(vertex_)) * sample.density;
-    if (!(of_direction > 0 && of_sky > 0)) return;
-    const float weight = s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(of_sky, of_direction);
-    const Rgb radiance = s_.skies.sampled_radiance(sample.direction) * (of_direction / of_sky * weight);
+    const float direction_density = path.normal.dot(sample.direction) / pi;
+    const float sky_density = static_cast<float>(shadow_rays_at(vertex_)) * sample.density;
+    if (!(direction_density > 0 && sky_density > 0)) return;
+    const float weight =
+        s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(sky_density, direction_density);
+    const Rgb radiance = s_.skies.sampled_radiance(sample.direction) * (direction_density / sky_density * weight);
     shadow_rays_.push_back({x, sample.direction});
-    constexpr float everywhere = std::numeric_limits<float>::infinity();
-    connections_.push_back({none, path.index, path.throughput * radiance, everywhere, vertex_});
+    constexpr float infinitely_far = std::numeric_limits<float>::infinity();
+    connections_.push_back({none, path.index, path.throughput * radiance, infinitely_far, vertex_});
 }
 
 void PathWavefront::pass_panes() {
@@ -328,8 +342,7 @@ void PathWavefront::pass_panes() {
         passing.clear(), rest.clear();
         for (std::size_t i = 0; i < connections_.size(); ++i) {
             Connection& c = connections_[i];
-            if (hits_[i].patch == c.patch) continue;
-            if (c.patch == none && hits_[i].distance > c.distance) continue;
+            if (is_unoccluded(c, hits_[i])) continue;
             const Rgb through = s_.panes.transmittance(shadow_rays_[i], hits_[i]);
             if (!(largest_channel(through) > 0)) continue;
             passing.push_back(i);
@@ -346,6 +359,11 @@ void PathWavefront::pass_panes() {
     }
 }
 
+bool PathWavefront::is_unoccluded(const Connection& connection, const Hit& hit) {
+    // Escaped rays towards luminaires and skies are equal: both patches are none.
+    return hit.patch == connection.patch || (connection.patch == none && hit.distance > connection.distance);
+}
+
 void PathWavefront::trace_shadow_rays() {
     hits_.resize(shadow_rays_.size());
     s_.ray_caster.trace(shadow_rays_, hits_);
@@ -354,8 +372,7 @@ void PathWavefront::trace_shadow_rays() {
     counts_.shadow_rays += static_cast<std::int64_t>(shadow_rays_.size());
     for (std::size_t i = 0; i < connections_.size(); ++i) {
         const Connection& c = connections_[i];
-        const bool is_reached = hits_[i].patch == c.patch || (c.patch == none && hits_[i].distance > c.distance);
-        if (is_reached) add(c.index, c.bounces, c.radiance);
+        if (is_unoccluded(c, hits_[i])) add(c.index, c.bounces, c.radiance);
     }
 }
 

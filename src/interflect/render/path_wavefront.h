@@ -42,7 +42,7 @@ struct PathScene {
     std::size_t batch_size;
     Panes panes;
     bool splits;                        // at panes or mirrors
-    const KnownLight* known = nullptr;  // ends paths; null: Russian roulette
+    const KnownLight* known = nullptr;  // ends paths; null: only Russian roulette ends them
 
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
@@ -51,7 +51,7 @@ struct PathScene {
 struct FirstHit {
     RgbD albedo{0, 0, 0};
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
-    double distance = 0;  // from the camera [m]
+    double distance = 0;  // from the camera, through panes and by mirrors [m]
     double level = 0;     // of the element, with a known solution
 
     FirstHit& operator+=(const FirstHit& o) {
@@ -85,17 +85,17 @@ class PathWavefront {
   public:
     explicit PathWavefront(const PathScene& scene) : s_(scene) {}
 
-    /// Adds the light of the paths to their batches.
+    /// Adds the light of the paths to their batches. Call once.
     void trace(std::span<BatchOfPaths> batches);
     const RayCounts& counts() const { return counts_; }
 
   private:
     struct Path {
         Rgb throughput;
-        std::uint32_t index;   // in light_
-        V3f normal;            // of the surface that the ray left
-        float travelled = 0;   // from that surface to the ray's origin, behind panes [m]
-        bool is_first = true;  // the picture shows no diffuse reflection before it
+        std::uint32_t index;  // in light_
+        V3f normal;           // of the surface that the ray left
+        float travelled = 0;  // from that surface or the camera to the ray's origin, behind panes or in mirrors [m]
+        bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
     };
     struct PathLight {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
@@ -113,6 +113,8 @@ class PathWavefront {
     /// Gauges act as white surfaces: paths begin with leave().
     void start_at_gauges(std::span<const BatchOfPaths> batches);
     void advance_paths();
+    /// Returns whether the first surface is white, opaque and does not emit: pictures of irradiance.
+    bool shows_irradiance() const;
     /// Returns the point where a path left the last surface.
     static V3f start_of(const Ray& ray, const Path& path);
     /// Adds paths behind panes and in mirrors seen by the camera.
@@ -126,15 +128,20 @@ class PathWavefront {
     bool leave(Ray& ray, Path& path);
     void add_sky(const Ray& ray, const Path& path);
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
+    /// Returns the weight of light found by the path's own direction, against shadow rays to it. Densities in [1/sr].
+    float direction_weight(float direction_density, float light_density) const;
     /// Returns the shadow rays per kind of light; more where paths end after the next vertex.
     std::uint32_t shadow_rays_at(std::uint32_t vertex) const;
     /// @param path  Its throughput includes the reflectance at x; also below.
-    void connect_to_light(const V3f& x, const Path& path, const LightSample& sample);
+    void connect_to_patch(const V3f& x, const Path& path, const LightSample& sample);
     void connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample);
     /// @param index  Ray in its batch at this vertex.
     void connect_to_sky(const V3f& x, const Path& path, std::uint32_t index);
     void trace_shadow_rays();
+    /// Extends shadow rays through panes: dims their connections, replaces their hits by the hits behind.
     void pass_panes();
+    /// Returns whether a shadow ray hits its patch, or no surface up to its distance.
+    static bool is_unoccluded(const Connection& connection, const Hit& hit);
     /// Ends a path with solved light at a far element; returns whether it has ended.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
     /// Returns the density of KnownLight::sample() per solid angle from x [1/sr].
@@ -145,7 +152,8 @@ class PathWavefront {
     void add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance);
 
     const PathScene& s_;
-    std::uint32_t vertex_ = 1;         // next vertex; the camera is 0
+    // Next vertex; the camera is 0. Light emitted there has been reflected vertex_ - 1 times.
+    std::uint32_t vertex_ = 1;
     std::vector<std::uint64_t> keys_;  // per batch
     std::vector<PathLight> light_;     // per path
     std::vector<Path> paths_;          // continuing; parallel to rays_
