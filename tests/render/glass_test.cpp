@@ -166,6 +166,22 @@ TEST(Glass, FiltersLightByItsColour) {
 }
 
 /// A mirror that faces the camera shows the wall behind it, scaled by its reflectance; with --no-mirrors it does not.
+// Seen to fail if the distance starts anew behind a pane or in a mirror.
+TEST(Depth, IsThatFromTheCameraBehindPanesAndInMirrors) {
+    Scene scene;
+    const std::uint32_t wall = add_material(scene, Rgb(0.5f), Rgb(1));
+    const std::uint32_t mirror = add_material(scene, Rgb(0), Rgb(0));
+    scene.materials[mirror].specular_reflectance = Rgb(0.9f);
+    const V3f y(0, 4, 0), z(0, 0, 4);
+    add_rectangle(scene, {1, -2, -2}, y, z, add_glass(scene, Rgb(0.9f), Rgb(0)), 1, 1, true);
+    add_rectangle(scene, {4, -2, -2}, z, y, mirror);  // faces the camera
+    add_rectangle(scene, {-3, -2, -2}, y, z, wall);   // 4 m to the mirror, 7 m back
+    const View ahead{"ahead", {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 1};
+    const PictureLayers layers =
+        trace_paths(scene, RayCaster(scene), ahead, {.width = 1, .height = 1, .samples = 64}).layers;
+    EXPECT_NEAR(layers.depth[0], 11, 0.01);
+}
+
 TEST(Mirror, ShowsWhatIsBehindTheCamera) {
     Scene scene = closed_box({2, 1, 1}, 1, {Material{"", Rgb(0), Rgb(0)}});
     const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(7));
