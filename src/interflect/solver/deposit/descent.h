@@ -20,6 +20,7 @@
 
 namespace interflect::detail {
 
+/// Power and rays that left the scene.
 struct Escaped {
     FixedPoint::Value power{};
     std::int64_t rays = 0;
@@ -72,7 +73,7 @@ class Descent {
     }
     /// Hit points on leaves that reflect where they receive.
     const std::vector<StartPoint>& start_points() const { return start_points_; }
-    /// @return  Escaped power and rays.
+    /// Flushes all contributions. @return  Escaped power and rays of this thread.
     Escaped finish();
 
   private:

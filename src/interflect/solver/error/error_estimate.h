@@ -14,14 +14,14 @@ struct ElementErrors {
 };
 ElementErrors element_errors(const SolverState& state, ErrorMeasure measure);
 
-/// Relative to error_reference(); see IterationReport.
+/// Estimated errors relative to error_reference(); see IterationReport.
 struct ErrorEstimate {
     double noise = 0, discretisation = 0;
 
     double total() const;
 };
 
-/// Infinite until two iterations have been compared, or if the relevant surfaces are dark.
+/// Estimates the error; infinite until two iterations have been compared, or if the relevant surfaces are dark.
 ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure);
 inline ErrorEstimate estimate_error(const SolverState& state) { return estimate_error(state, default_measure(state)); }
 

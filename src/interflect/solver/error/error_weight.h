@@ -8,6 +8,7 @@ namespace interflect::detail {
 
 /// Domain of the error: pictures of the views, or all surfaces.
 enum class ErrorMeasure { pictures, surfaces };
+/// Returns pictures if a view shows a surface, else surfaces.
 ErrorMeasure default_measure(const SolverState& state);
 
 /// Weight of the squared luminance error, per area. Pictures: view importance times squared luminance of rho. Surfaces:

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Call before the iteration is merged.
+/// Updates the noise model with an iteration that has not been merged yet.
 void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays);
 
 }  // namespace interflect::detail

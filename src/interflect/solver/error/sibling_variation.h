@@ -26,29 +26,31 @@ struct SiblingVariation {
     float signal() const { return is_under_sampled() ? assumed : spread - noise; }
     /// Wiener filter: near 1 if the signal far exceeds the noise, 0 if differences are noise.
     float shrinkage() const;
-    /// Mean square error after shrinkage, beyond the parent's. Unbiased (Stein 1981, in three dimensions because the
-    /// four differences sum to zero).
+    /// Mean square error after shrinkage, in addition to the parent's. Unbiased (Stein 1981, in three dimensions
+    /// because the four differences sum to zero).
     float risk() const;
 };
 
-/// For siblings `first` ... `first` + 3.
+/// Returns the variation among the siblings `first` ... `first` + 3.
 SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first);
 
+/// Whether differences of siblings that are mostly noise are reduced.
 bool uses_shrinkage(const SolverState& state);
 
-/// Mean square errors beyond the parent's.
+/// Mean square errors of siblings in addition to their parent's.
 struct AddedError {
     float noise = 0, bias = 0;
 };
 AddedError added_error(const SolverState& state, std::uint32_t first);
 
-/// Factors of sibling differences, and the remaining noise of each relative to its mean.
+/// Factors of the differences of four siblings from their parent, and the noise variance that remains in each, relative
+/// to its area-weighted mean.
 struct Shrinkage {
     std::array<float, 4> kept, noise;
 };
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first);
 
-/// Signal among the element's siblings; 0 if unknown.
+/// Returns the signal among the element and its siblings; 0 if unknown.
 float signal_among_siblings(const SolverState& state, std::uint32_t e);
 
 inline std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {

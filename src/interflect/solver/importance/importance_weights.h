@@ -11,25 +11,26 @@
 
 namespace interflect::detail {
 
-/// Off without a view.
+/// Returns the use of importance by the method; off without a view.
 ImportanceUse importance_use(const Solution& so_far);
 
-/// psi of every element; empty without a view. Refers to the solution.
+/// Returns psi of every element; empty without a view. Refers to the solution.
 Importance importance_of(const Solution& so_far);
 std::vector<float> total_importance(const Solution& so_far);
 
-/// Found by the rays of a part of the luminaires' emission (Emission).
+/// Importance found by the rays of a part of the luminaires' emission (Emission).
 struct PartImportance {
     double found = 0;  ///< Sum over its rays [1/m^2]
     double rays = 0;
 };
 
-/// For sampling power rays; empty if unused.
+/// Importance for sampling rays of power; empty if the method does not use it.
 struct ImportanceWeights {
     std::vector<float> elements;
     std::vector<float> nearby;               ///< Mean over each patch's neighbourhood (Neighbourhoods); may be empty.
     std::vector<float> parts, parts_nearby;  ///< By luminaire part.
 };
+/// @param found  Importance found by the rays of luminaire parts so far.
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 

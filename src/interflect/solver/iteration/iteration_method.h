@@ -9,22 +9,22 @@
 
 namespace interflect::detail {
 
-/// Steps of a family of methods, called by iterate_until(). After Interrupted, discard() restores the method and
-/// IterationStart the state.
+/// The steps of a family of methods, which iterate_until() calls (solve.cpp). If a step throws Interrupted, the caller
+/// discards the iteration: discard() restores the method, IterationStart the state.
 class IterationMethod {
   public:
     virtual ~IterationMethod() = default;
 
-    /// @throws Interrupted
+    /// Runs the steps before the first iteration. @throws Interrupted
     virtual void prepare(SolverState&) {}
     virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
-    /// 0 rays: the run is over.
+    /// Plans the next iteration; 0 rays if the run is over.
     virtual IterationPlan plan(SolverState& state);
     /// Traces and merges rays that carry importance alone (Eq. 7, 8). @throws Interrupted
     virtual void update_importance(SolverState&, IterationPlan&) {}
-    /// @param plan  Receives the number of rays. @throws Interrupted
+    /// Traces the rays of an iteration. @param plan  Receives their number. @throws Interrupted
     virtual Estimate trace(SolverState& state, IterationPlan& plan) = 0;
-    /// Eq. 6.
+    /// Merges the estimate with the running mean (Eq. 6).
     virtual void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) = 0;
     /// Refines the mesh between iterations; Eq. 14 and 15 refine it during trace().
     virtual void refine(SolverState&) {}
@@ -36,7 +36,7 @@ class IterationMethod {
     virtual bool fits(const SolverState&) const { return true; }
 };
 
-/// The state must outlive the method.
+/// Makes the method that the options name. The state must outlive it.
 std::unique_ptr<IterationMethod> make_iteration_method(SolverState& state);
 
 }  // namespace interflect::detail

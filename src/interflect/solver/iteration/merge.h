@@ -20,7 +20,7 @@ void merge(const SolverState& state, std::vector<float>& mean, const std::vector
 void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                        const IterationPlan& plan);
 
-/// Groups dimmed to 0 do not change.
+/// Merges each light group. The light of groups dimmed to 0 does not change.
 void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
 void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
                        const IterationPlan& plan);
@@ -28,7 +28,8 @@ void merge_independent(const SolverState& state, GroupLight& mean, const GroupLi
 /// Averages escaped power like irradiance (Eq. 6). The power of one iteration includes light of the previous one.
 void merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan);
 
-/// New elements keep only `inherited_weight` of their history, because their inherited mean is too smooth.
+/// Adds the rays of an iteration. New elements keep only `inherited_weight` of their history, because their inherited
+/// mean is too smooth.
 void update_history(SolverState& state, const IterationPlan& plan);
 
 }  // namespace interflect::detail

@@ -20,13 +20,14 @@ inline void inherit(const ElementForest& forest, std::uint32_t first, GroupLight
 inline void pull(const ElementForest& forest, GroupLight& light) {
     for (std::vector<Rgb>& of_group : light) pull(forest, of_group);
 }
-/// @param sum  May be empty.
+/// Adds the light of each group. @param sum  May be empty.
 void accumulate(GroupLight& sum, const GroupLight& more);
 void scale(GroupLight& light, float factor);
 
-/// @param dimming  Solution::dimming; excludes groups with factor 0.
+/// Returns the sum of the groups. @param dimming  Solution::dimming; excludes groups with factor 0.
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
+/// Radiosity by light group.
 struct GroupRadiosity {
     const SourceGroups* groups = nullptr;  ///< Null: not separated.
     const GroupLight* irradiance = nullptr;
@@ -34,7 +35,7 @@ struct GroupRadiosity {
     bool emits = true;
 
     std::size_t size() const { return groups ? groups->size() : 0; }
-    /// B [lm/m^2 or W/m^2].
+    /// Returns B of a leaf by one group [lm/m^2 or W/m^2].
     Rgb of(const Materials& materials, const ElementForest& forest, std::uint32_t leaf, std::size_t group) const {
         if ((*dimming)[group] == 0) return Rgb(0);
         const MeanSurface surface = materials.surface(forest.patch(leaf), leaf);

@@ -43,7 +43,7 @@ class Materials {
         return channel_sum(surface(patch, element).reflectance) / 3;
     }
     bool has_textures() const { return !elements_.empty(); }
-    /// New elements have their patch's mean until then.
+    /// Adds new elements, which have the mean of their patch until then.
     void grow(const ElementForest& forest) { elements_.grow(forest); }
 
   private:

@@ -54,7 +54,7 @@ class Payload {
     double q_sum_over_rays_;
 };
 
-/// Histogram in quarter octaves.
+/// Histogram of ray power, in bins of a quarter of an octave.
 class PayloadHistogram {
   public:
     /// @param power  Sum of the channels [lm or W].
@@ -62,7 +62,7 @@ class PayloadHistogram {
     PayloadHistogram& operator+=(const PayloadHistogram& other);
 
     double largest_over_mean() const;  ///< 1 without power.
-    /// Power, relative to the mean, that a share of the rays exceeds; accurate to 19%.
+    /// Returns the power, relative to the mean, that a share of the rays exceeds; accurate to 19%.
     double quantile_over_mean(double share) const;
 
     void archive(StateArchive& archive) {

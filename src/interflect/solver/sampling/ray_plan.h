@@ -18,12 +18,12 @@ struct RayPlan {
     /// Weight >= 0 by element (0 for inner ones), then by part of `emission`. All 0: no rays.
     std::vector<float> q;
     std::int64_t rays = 0;               ///< N > 0.
-    Radiosity light;                     ///< Light to shoot; empty: no power.
+    Radiosity light;                     ///< Radiosity to shoot; empty: rays carry no power.
     const Emission* emission = nullptr;  ///< Luminaires that shoot, or null.
     GroupRadiosity groups;               ///< Light groups received separately.
     /// True: rays carry B_s over the sum of its channels. False: B_s A_s / (N q_s), unbiased.
     bool equal_payloads = false;
-    Importance importance;                      ///< psi to shoot; empty: no importance.
+    Importance importance;                      ///< Importance psi to shoot; empty: rays carry none.
     const StartPoints* start_points = nullptr;  ///< Origins of `light`; null: uniform.
 
     std::size_t part_count() const { return emission ? emission->part_count() : 0; }
@@ -31,7 +31,7 @@ struct RayPlan {
     bool carries_importance() const { return !importance.empty(); }
 };
 
-/// With the sums over leaves of P_s (Eq. 3) and of P_s psi_s (Eq. 9, 10; 0 if not used).
+/// A plan for power, with the sums over leaves of P_s (Eq. 3) and of P_s psi_s (Eq. 9, 10; 0 if not used).
 struct PowerPlan {
     RayPlan plan;
     double power = 0, weighted_power = 0;
@@ -42,7 +42,7 @@ struct PowerPlan {
 /// power (Eq. 3), direct importance, or total or indirect importance (Eq. 9, 10). One share is sampled by power alone
 /// (beta), another by neighbourhood importance, because underestimated small lamps give rays large weights.
 /// @param emission  Shot if `light` emits.
-/// @param light     To shoot. The plan refers to `so_far`, `emission` and `light`.
+/// @param light     Radiosity to shoot. The plan refers to `so_far`, `emission` and `light`.
 PowerPlan plan_power(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);
 

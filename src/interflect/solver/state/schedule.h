@@ -8,14 +8,15 @@
 
 namespace interflect::detail {
 
+/// Plan of an iteration, and the number of rays that it traced.
 struct IterationPlan {
-    std::int64_t rays = 0;  ///< Planned, and the weight in the mean; 0: the run is over.
-    std::int64_t traced = 0;
-    bool warms_up = false;  ///< Not averaged: the next iteration replaces it.
-    bool is_final = false;  ///< Ends the run, even with fewer traced rays.
-    std::uint32_t old_elements = 0;
+    std::int64_t rays = 0;                ///< Planned, and the weight in the mean; 0: the run is over.
+    std::int64_t traced = 0;              ///< Traced rays; initially the planned ones.
+    bool warms_up = false;                ///< Not averaged: the next iteration replaces it.
+    bool is_final = false;                ///< Ends the run, even with fewer traced rays.
+    std::uint32_t old_elements = 0;       ///< Number of elements before the iteration.
     std::int64_t importance_rays = 0;     ///< Rays that carry importance alone.
-    std::int64_t rays_for_new_views = 0;  ///< After a change of views.
+    std::int64_t rays_for_new_views = 0;  ///< Additional rays after a change of views.
     /// Factor of each patch's history after a change of views (ViewChange). Empty: 1.
     std::vector<float> history_factor = {};
 };
@@ -32,16 +33,17 @@ class Schedule {
     std::int64_t start_rays() const;
     /// Records these passes. Power rays are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// The iteration should end within the time limit, because an interrupted one is lost.
+    /// Plans the next iteration. It should end within the time limit, because an interrupted iteration is lost.
     /// @param seconds  Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
+    /// Counts the rays of an iteration.
     void done(const IterationPlan& plan);
-    /// Makes iterations small again.
+    /// Makes iterations small again; they grow with the rays averaged from now on.
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
-    /// Keeps the size of the first iterations.
+    /// Replaces SolveOptions::limits. The size of the first iterations does not change.
     void set_limits(const Limits& limits);
     void archive(StateArchive& archive);
 

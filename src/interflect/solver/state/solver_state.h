@@ -30,6 +30,7 @@ namespace interflect::detail {
 /// Limits of SolverState::targets. 20 halvings at each place reach from 10 km to 1 cm.
 inline constexpr int most_places = 4, most_targets = 80;
 
+/// State of a run that persists between iterations.
 struct SolverState {
     /// @param scene, caster  Must outlive this.
     SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o);
@@ -39,7 +40,7 @@ struct SolverState {
     const Scene* lit = &scene;  // with dimmed sources
     Materials materials;
     std::vector<Imath::Box3f> targets;  // of outdoor light, for the current views
-    Emission emission;
+    Emission emission;                  // of the luminaires
     const RayCaster& ray_caster;
     const SourceGroups groups;
     Solution solution;
@@ -55,12 +56,13 @@ struct SolverState {
     std::vector<float> history;  // rays averaged into each element's mean
     NoiseModel noise;
     RiskCheck risk_check;
-    PayloadHistogram payloads;
+    PayloadHistogram payloads;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
     std::int64_t rays_of_other_views = 0;  // rays averaged before the views changed
     RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
     double escaped_power_rays = 0;         // rays in this mean
 
+    // The work in progress:
     Monitor monitor;
     StopRequest stop;  // after a first estimate, also by the time limit
     StopRequest::Clock::time_point start;
@@ -71,7 +73,7 @@ struct SolverState {
     double seconds_of_this_call() const {
         return std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }
-    /// Includes earlier calls.
+    /// Duration of all work, including earlier calls [s].
     double seconds() const { return earlier_seconds + seconds_of_this_call(); }
 
     /// @throws std::runtime_error if the data are inconsistent.
@@ -81,26 +83,29 @@ struct SolverState {
 /// Changes the exitances to those of `lit`, which must outlive the state.
 void set_sources(SolverState& state, const Scene& lit);
 
-/// Resets the importance of luminaire parts.
+/// Replaces the targets of outdoor light, and resets the importance of luminaire parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
-/// Resets the indirect importance.
+/// Computes the view importance of every element for the current views. Resets the indirect importance.
 void compute_view_importance(SolverState& state);
 
+/// Returns the radiosity of each light group. Refers to its arguments.
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
 
+/// Returns the power of surfaces and luminaires [lm or W].
 RgbD radiated_power(const SolverState& state);
 
+/// Whether variance refines the mesh between iterations; otherwise the oracle refines during them.
 bool refines_by_variance(const SolveOptions& options);
 
-/// Minimum area of an element's children, and area of a pixel at the element [m^2] (ElementFloor).
+/// Returns the minimum area of an element's children, and the area of a pixel at the element [m^2]; see ElementFloor.
 float min_area(const SolverState& state, std::uint32_t element);
 float pixel_area(const SolverState& state, std::uint32_t element);
 
 /// Initialises new elements (index >= first) from their parents.
 void grow_with_forest(SolverState& state, std::uint32_t first);
 
-/// Adds camera rays in proportion to the averaged rays, for the finer mesh.
+/// Adds camera rays in proportion to the averaged rays, because the mesh becomes finer.
 void refine_view_importance(SolverState& state);
 
 }  // namespace interflect::detail

@@ -29,7 +29,7 @@ namespace interflect::detail {
 /// Cost: O(N (log(patches) + levels)); 40 bytes per element while rays are traced, then the results.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, ContributionSums& sums, const StopRequest& stop);
-/// With its own sums, without a stop request.
+/// The same with its own sums, without a stop request.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 

@@ -21,7 +21,7 @@ struct ReflectedPower {
     double of_ray;  ///< Power of its ray before any pane, all channels.
 };
 
-/// One object per thread, reused.
+/// Particles of one task; one object per thread, reused.
 struct Walkers {
     std::vector<ReflectedPower> received, reflected;
     std::vector<RgbD> received_groups, reflected_groups;  ///< [particle][group]
@@ -41,11 +41,11 @@ class Walks {
     Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
           const TransportStep& step, const ContributionUnits& units, std::uint32_t elements, std::uint64_t key);
 
-    /// The caller appends the filtered power by light group to `received_groups`.
+    /// Adds a particle at a hit. The caller appends its filtered power by light group to `received_groups`.
     /// @param power          Before any pane.
     /// @param transmittance  Of the panes before the hit.
     void add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const;
-    /// @param task  Key of the random numbers.
+    /// Traces the particles until they are absorbed or escape. @param task  Key of the random numbers.
     void follow(std::uint64_t task, Walkers& walkers, Descent& descent) const;
 
   private:
