@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "interflect/exports/json_text.h"
-#include "interflect/solve.h"
+#include "interflect/solution.h"
 
 namespace interflect::detail {
 

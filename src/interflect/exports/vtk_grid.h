@@ -8,7 +8,7 @@
 
 #include "interflect/exports/lit_polygons.h"
 #include "interflect/scene.h"
-#include "interflect/solve.h"
+#include "interflect/solution.h"
 
 namespace interflect::detail {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "interflect/solve.h"
+#include "interflect/solve_options.h"
 
 namespace interflect::detail {
 

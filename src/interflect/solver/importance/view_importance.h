@@ -10,7 +10,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/scene.h"
-#include "interflect/solve.h"
+#include "interflect/solve_options.h"
 
 namespace interflect::detail {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "interflect/scene.h"
-#include "interflect/solve.h"
+#include "interflect/solve_options.h"
 
 namespace interflect::detail {
 
