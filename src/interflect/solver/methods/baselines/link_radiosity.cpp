@@ -282,7 +282,7 @@ void LinkedElements::describe_new_elements(std::uint32_t first) {
     solution.view_importance = state_.view.per_area(forest_, state_.options.experimental.importance_at_patches);
 }
 
-bool LinkedElements::refine() {
+bool LinkedElements::refine_links() {
     if (candidates_.empty()) subdivide_links();
     const bool is_refined = !candidates_.empty();
     link_candidates();
@@ -318,7 +318,7 @@ IterationPlan LinkedElements::plan(SolverState& state) {
 }
 
 Estimate LinkedElements::trace(SolverState&, IterationPlan& plan) {
-    if (refines_next_) refines_ = refine();
+    if (refines_next_) refines_ = refine_links();
     refines_next_ = false;
     state_.escaped_power = gather_light();
     if (importance_use(state_.solution) == ImportanceUse::full) gather_importance();

@@ -64,7 +64,7 @@ class LinkedElements : public IterationMethod {
   private:
     RgbD gather_light();
     void gather_importance();
-    bool refine();
+    bool refine_links();
     void find_patches_to_link();
     void link_candidates();
     void subdivide_links();
