@@ -52,7 +52,7 @@ void prepare(Run& run) {
 /// @param rays_asked_for  In total; extends a completed plan. @return  0 rays if the run is over.
 IterationPlan plan_iteration(Run& run, std::int64_t rays_asked_for) {
     SolverState& state = run.state;
-    const IterationPlan next = run.method->plan(state);
+    IterationPlan next = run.method->plan(state);
     const bool is_more_asked_for =
         rays_asked_for < unlimited && rays_asked_for > std::max(state.schedule.rays(), state.options.limits.rays);
     if (next.rays > 0 || !is_more_asked_for) return next;

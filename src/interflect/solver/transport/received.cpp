@@ -118,14 +118,14 @@ Received nothing_received(const TransportStep& step, std::size_t elements) {
 
 Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_size, const RayAllocation& allocation,
                  const PayloadTotals& payload, const ContributionUnits& units, const FoundImportance* importance,
-                 ContributionSums& contributions) {
-    RenumberedSums sums(contributions, old_size, forest.put_in_order(old_size));
-    drop_excess(forest, sums, step.oracle.max_elements, old_size);
+                 ContributionSums& sums) {
+    RenumberedSums renumbered(sums, old_size, forest.put_in_order(old_size));
+    drop_excess(forest, renumbered, step.oracle.max_elements, old_size);
     Received received;
     step.oracle.importance = std::vector<float>();
     if (!importance) step.q = std::vector<float>();
     if (step.reusable_buffer) received.irradiance = std::move(*step.reusable_buffer);
-    convert(forest, step, units, sums, received);
+    convert(forest, step, units, renumbered, received);
     if (importance && !step.importance_at_patches)
         blend(forest, step, allocation, *importance, payload, old_size, received.importance);
     if (importance) received.part_importance = found_by_parts(step, allocation, *importance, old_size);
