@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     options.max_model_bytes = 1 << 22;
     try {
         const interflect::Scene scene =
-            interflect::read_gltf_bytes({reinterpret_cast<const char*>(data), size}, "fuzz.glb", options);
+            interflect::detail::read_gltf_bytes({reinterpret_cast<const char*>(data), size}, "fuzz.glb", options);
         for (const std::string& fault : interflect::scene_faults(scene)) {
             std::fprintf(stderr, "%s\n", fault.c_str());
             std::abort();

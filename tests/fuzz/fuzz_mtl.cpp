@@ -9,9 +9,9 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     return interflect::fuzzing::require_scene_or_error([&](const interflect::ReadOptions& options) {
-        interflect::Model model;
+        interflect::detail::Model model;
         model.file = "fuzz.obj";
-        interflect::ObjMaterials materials(model, options);
+        interflect::detail::ObjMaterials materials(model, options);
         materials.read_text(bytes, "fuzz.mtl");
         model.meshes.push_back({.name = "triangle",
                                 .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
@@ -21,6 +21,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                 .face_sizes = {}});
         model.meshes[0].material = materials.find("a", {&model.file, 1});
         model.instances.push_back({});
-        return interflect::scene_of(std::move(model), options);
+        return interflect::detail::scene_of(std::move(model), options);
     });
 }

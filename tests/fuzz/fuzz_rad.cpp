@@ -8,6 +8,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-    return interflect::fuzzing::require_scene_or_error(
-        [&](const interflect::ReadOptions& options) { return interflect::read_rad_text(bytes, "fuzz.rad", options); });
+    return interflect::fuzzing::require_scene_or_error([&](const interflect::ReadOptions& options) {
+        return interflect::detail::read_rad_text(bytes, "fuzz.rad", options);
+    });
 }

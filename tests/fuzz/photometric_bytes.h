@@ -12,7 +12,7 @@
 namespace interflect {
 
 /// For arbitrary bytes, a photometry reader returns a faultless web or throws an InputError.
-inline void read_photometric_bytes(decltype(read_ies_text)& read, const std::uint8_t* data, std::size_t size) {
+inline void read_photometric_bytes(decltype(detail::read_ies_text)& read, const std::uint8_t* data, std::size_t size) {
     ReadOptions options;
     options.max_photometric_values = 10'000;
     Warnings warnings;
