@@ -45,6 +45,7 @@ using namespace detail;
 namespace {
 
 enum class PictureShading {
+    hybrid,  ///< Direct light per pixel, indirect light interpolated, see render_hybrid().
     gather,  ///< Final gathering from a solution.
     smooth,  ///< The solution itself, see Shading.
     flat,
@@ -52,7 +53,7 @@ enum class PictureShading {
 };
 
 bool traces_paths(PictureShading shading) {
-    return shading == PictureShading::gather || shading == PictureShading::path;
+    return shading == PictureShading::hybrid || shading == PictureShading::gather || shading == PictureShading::path;
 }
 
 struct RenderArguments {
@@ -65,7 +66,7 @@ struct RenderArguments {
     PathTracerArguments path;
     std::filesystem::path output;
     Size size;
-    PictureShading shading = PictureShading::gather;
+    PictureShading shading = PictureShading::hybrid;
     std::optional<int> samples;
     RenderOptions render;
     Exposure exposure;
@@ -146,7 +147,7 @@ PathOptions path_options(const RenderArguments& options) {
     result.height = options.rows();
     constexpr int gathered_samples = 16;  // enough for a filtered picture
     result.samples =
-        options.samples.value_or(options.shading == PictureShading::gather ? gathered_samples : result.samples);
+        options.samples.value_or(options.shading == PictureShading::path ? result.samples : gathered_samples);
     result.until = options.solver.until();
     result.seed = options.solver.seed();
     if (options.shows_irradiance()) result.quantity = PathQuantity::irradiance;
@@ -156,7 +157,8 @@ PathOptions path_options(const RenderArguments& options) {
 /// @param solution  Null for path tracing.
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
-    PathTracing traced = run_path_tracer(scene, solution, ray_caster, view, path_options(options), options.path);
+    const Tracer tracer = options.shading == PictureShading::hybrid ? render_hybrid : gather;
+    PathTracing traced = run_path_tracer(scene, solution, tracer, ray_caster, view, path_options(options), options.path);
     Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
     picture.traced = std::move(traced);
     return picture;
@@ -302,7 +304,7 @@ void check_false_colours(const RenderArguments& options) {
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
     check_option("--output", [&] { return require_image_format(options.output); });
-    if (options.shown != Shown::light && options.shading == PictureShading::gather)
+    if (options.shown != Shown::light && traces_paths(options.shading) && options.shading != PictureShading::path)
         options.shading = PictureShading::smooth;  // shows elements
     if (options.shading == PictureShading::path)
         refuse_solver_options(command);
@@ -324,7 +326,7 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     options.view.check();
     if (options.view.count() > 1) throw UsageError("--view", "a picture has one view, but several were given");
     options.dimming.require_solution(options.scene.path);
-    if (options.shading == PictureShading::gather && command.get_option("--denoise")->count() == 0)
+    if (options.shading != PictureShading::path && command.get_option("--denoise")->count() == 0)
         options.path.denoise = is_for_people(options);
     check_tone_options(options, command);
     check_false_colours(options);
@@ -389,13 +391,15 @@ void add_render(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 65536));
     add_choice<PictureShading>(
         command, "--shading", options->shading,
-        {{"gather", PictureShading::gather},
+        {{"hybrid", PictureShading::hybrid},
+         {"gather", PictureShading::gather},
          {"smooth", PictureShading::smooth},
          {"flat", PictureShading::flat},
          {"path", PictureShading::path}},
-        "gather: each pixel finds its own light, from the solution; smooth: interpolated over each surface; "
-        "flat: one value an element; path: path tracing, without solving")
-        ->default_str("gather");
+        "hybrid: direct light of each pixel, indirect light interpolated; gather: each pixel finds its own light, from "
+        "the solution; smooth: interpolated over each surface; flat: one value an element; path: path tracing, without "
+        "solving")
+        ->default_str("hybrid");
     options->path.add_to(command);
     add_tone_options(command, *options);
     add_show(command, options->shown);

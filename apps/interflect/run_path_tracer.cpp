@@ -104,8 +104,9 @@ void require_memory_for_paths(Size size) {
                         "a smaller --size, and --shading smooth, need less");
 }
 
-PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-                            PathOptions options, const PathTracerArguments& arguments) {
+PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const Tracer& tracer,
+                            const RayCaster& ray_caster, const View& view, PathOptions options,
+                            const PathTracerArguments& arguments) {
     options.max_samples = arguments.max_samples;
     options.mirrors = arguments.mirrors;
     require_free_memory(scene.patches.size() * path_bytes_per_patch +
@@ -117,7 +118,7 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
     PathTracing traced;
     stop_on_signal();
     const double seconds = with_path_progress([&](const Monitor& monitor) {
-        traced = solution ? gather(scene, *solution, ray_caster, view, options, monitor)
+        traced = solution ? tracer(scene, *solution, ray_caster, view, options, monitor)
                           : trace_paths(scene, ray_caster, view, options, monitor);
     });
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)

@@ -34,9 +34,14 @@ std::vector<ImageLayer> layers_of(const PathTracing& traced);
 /// @throws std::runtime_error if a gathered or path-traced picture does not fit into memory.
 void require_memory_for_paths(Size size);
 
+/// gather() or render_hybrid().
+using Tracer = PathTracing (*)(const Scene&, const Solution&, const RayCaster&, const View&, const PathOptions&,
+                               const Monitor&);
+
 /// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
-/// with a partial result. @param solution  Null for path tracing, otherwise for final gathering.
-PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-                            PathOptions options, const PathTracerArguments& arguments);
+/// with a partial result. @param solution  Null for path tracing. @param tracer  Draws a solution.
+PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const Tracer& tracer,
+                            const RayCaster& ray_caster, const View& view, PathOptions options,
+                            const PathTracerArguments& arguments);
 
 }  // namespace interflect::command

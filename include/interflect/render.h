@@ -167,6 +167,15 @@ PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const V
 PathTracing gather(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                    const PathOptions& options = {}, const Monitor& monitor = {});
 
+/// Hybrid shading: direct light as by gather(), with more stratification; indirect light interpolated between sparse
+/// points that gather 512 directions each (irradiance caching, Ward et al. 1988). Normals of Scene::normals shade smooth
+/// objects. Where no point is near, light is gathered.
+/// @param options  Of path tracing; `samples` are camera rays per pixel.
+/// @return         The standard error excludes indirect light.
+/// @throws InputError as gather() does.
+PathTracing render_hybrid(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                          const PathOptions& options = {}, const Monitor& monitor = {});
+
 /// Removes noise from a picture of gather() or trace_paths(): each pixel becomes a weighted mean of its surroundings.
 /// Direct and indirect light are filtered separately, as irradiance, which keeps reflectances, textures and emitters
 /// sharp. A neighbour counts if it lies in the pixel's tangent plane and its light differs by no more than noise

@@ -158,7 +158,7 @@ class IrradianceSource {
         for (const TexelPlace& place : places) {
             const PatchGeometry& geometry = solution_.forest->geometry(place.patch);
             const V3f x = geometry.point(inset(geometry, place.at, distance * texel));
-            const V3f normal = vertices_.normals().at(*solution_.forest, place.patch, place.at);
+            const V3f normal = vertices_.normals().at(geometry, place.patch, place.at);
             points.push_back({scene_.origin + Imath::V3d(x), normal});
         }
         PathOptions path;

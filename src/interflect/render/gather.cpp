@@ -18,4 +18,11 @@ PathTracing gather(const Scene& scene, const Solution& solution, const RayCaster
     return detail::gather(scene, *solution.forest, ray_caster, view, solution.irradiance, options, monitor);
 }
 
+PathTracing render_hybrid(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                          const PathOptions& options, const Monitor& monitor) {
+    KnownIrradiance known = known_irradiance(scene, *solution.forest, solution.irradiance);
+    known.is_interpolated = true;
+    return trace_picture(scene, ray_caster, start_at_camera(view, options, scene.origin), options, monitor, &known);
+}
+
 }  // namespace interflect

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "interflect/core.h"
+#include "interflect/scene.h"
 
 namespace interflect::detail {
 
@@ -13,6 +15,8 @@ struct Gauge {
     V3f tangent{0, 0, 0};   // perpendicular, in the arc's plane; both have unit length
     float half_arc = 0;     // [rad]
     float offset = 0;       // of ray origins along the normal [m]
+    std::uint32_t patch = none;  // that it lies on, if known
+    float spacing = 0;           // distance to the nearest other gauge on the patch [m]
 
     /// @param u  In [0, 1].
     V3f normal_at(float u) const {

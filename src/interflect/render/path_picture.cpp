@@ -15,16 +15,20 @@
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/render/camera_samples.h"
+#include "interflect/render/indirect_field.h"
 #include "interflect/render/light_tree.h"
 #include "interflect/render/luminaire_choice.h"
 #include "interflect/render/pixel_statistics.h"
+#include "interflect/render/smooth_normals.h"
+#include "interflect/render/smooth_surfaces.h"
 
 namespace interflect::detail {
 
 namespace {
 
-/// Minimum batches per pixel: 7 degrees of freedom for its standard error.
-constexpr int least_batches = 8;
+/// Minimum batches per pixel: 7 degrees of freedom for its standard error. Hybrid shading has less noise; larger
+/// batches reduce it further.
+constexpr int least_batches = 8, least_hybrid_batches = 2;
 /// Larger batches stratify little better; more batches improve the error estimate.
 constexpr int largest_batch = 64;
 /// Approximate. Amortises the cost of a call, fits the cache.
@@ -100,9 +104,16 @@ class PathPicture {
         layers.pixel_angle = s_.start.pixel_angle;
         layers.pixel_size = s_.start.pixel_size;
         layers.reflected = light_of([](const PixelStatistics& p) { return std::tie(p.direct, p.indirect); });
-        for (std::size_t h = 0; h < layers.halves.size(); ++h)
-            layers.halves[h] =
+        for (std::size_t h = 0; h < layers.halves.size(); ++h) {
+            SampledLight& half = layers.halves[h];
+            half =
                 light_of([h](const PixelStatistics& p) { return std::tie(p.direct_halves[h], p.indirect_halves[h]); });
+            for (std::size_t i = 0; i < pixels_.size(); ++i) {
+                if (pixels_[i].direct_halves[h].batches > 1) continue;
+                half.direct_variance[i] = 2 * layers.reflected.direct_variance[i];
+                half.indirect_variance[i] = 2 * layers.reflected.indirect_variance[i];
+            }
+        }
         for (Image* image : {&layers.emitted, &layers.albedo, &layers.normal, &layers.position})
             *image = Image(options_.width, options_.height);
         layers.depth.resize(pixels_.size());
@@ -208,8 +219,31 @@ void require_valid(const PathOptions& options) {
                                      options.max_samples, options.samples));
 }
 
-std::size_t batch_size_for(int samples) {
-    return std::bit_floor(static_cast<unsigned>(std::clamp(samples / least_batches, 1, largest_batch)));
+std::size_t batch_size_for(int samples, int batches) {
+    return std::bit_floor(static_cast<unsigned>(std::clamp(samples / batches, 1, largest_batch)));
+}
+
+/// Points that the camera sees, one path a pixel; or the gauges.
+std::vector<SurfacePoint> points_of(const PathScene& scene, const Monitor& monitor) {
+    std::vector<SurfacePoint> points;
+    for (const Gauge& g : scene.start.gauges)
+        points.push_back({g.position + g.normal * g.offset, g.normal, g.patch, g.spacing});
+    if (!scene.start.camera) return points;
+    PathScene finding = scene.with(scene.start, 1);
+    finding.smooth_normals = scene.smooth_normals;
+    finding.finds_points = true;
+    const std::size_t pixels = static_cast<std::size_t>(scene.options.width) * static_cast<std::size_t>(scene.options.height);
+    std::vector<std::vector<SurfacePoint>> found((pixels + paths_per_tile - 1) / paths_per_tile);
+    parallel_for_ranges(pixels, paths_per_tile, [&](std::size_t begin, std::size_t end) {
+        if (monitor.stop && *monitor.stop) return;
+        std::vector<BatchOfPaths> batches;
+        for (std::size_t i = begin; i < end; ++i) batches.push_back({.pixel = static_cast<std::uint32_t>(i)});
+        PathWavefront wavefront(finding);
+        wavefront.trace(batches);
+        found[begin / paths_per_tile] = wavefront.points();
+    });
+    for (const std::vector<SurfacePoint>& some : found) points.insert(points.end(), some.begin(), some.end());
+    return points;
 }
 
 }  // namespace
@@ -224,9 +258,10 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     const Skies skies(scene);
     const Panes panes(scene, ray_caster);
     const auto is_mirror = [](const Material& m) { return largest_channel(m.specular_reflectance) > 0; };
+    const bool is_hybrid = known && known->is_interpolated;
     std::optional<KnownLight> known_light;
     if (known) known_light.emplace(scene, geometry, known->forest, known->irradiance);
-    const PathScene path_scene{scene,
+    PathScene path_scene{scene,
                                ray_caster,
                                start,
                                geometry,
@@ -234,10 +269,26 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
                                luminaires,
                                skies,
                                options,
-                               batch_size_for(options.samples),
+                               batch_size_for(options.samples, is_hybrid ? least_hybrid_batches : least_batches),
                                panes,
                                !panes.empty() || std::any_of(scene.materials.begin(), scene.materials.end(), is_mirror),
                                known_light ? &*known_light : nullptr};
+    SmoothNormals smooth_normals;
+    std::optional<IndirectField> indirect_field;
+    const UnoccludedLight unoccluded(scene, geometry);
+    if (is_hybrid) {
+        if (start.camera && !scene.normals.empty()) {
+            smooth_normals = SmoothNormals(scene, find_smooth_surfaces(scene));
+            path_scene.smooth_normals = &smooth_normals;
+        }
+        indirect_field.emplace(path_scene, points_of(path_scene, monitor), monitor.stop);
+        path_scene.indirect_field = &*indirect_field;
+        path_scene.unoccluded = &unoccluded;
+        path_scene.directions_find_light = !unoccluded.has_patches() || skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
+        if (const char* e = getenv("HYB_SHADOW")) path_scene.hybrid_shadow_rays = atoi(e);
+        if (const char* e = getenv("HYB_DIR")) path_scene.paths_per_direction = atoi(e);
+        fprintf(stderr, "records %zu rays %ld\n", indirect_field->records(), (long)indirect_field->rays());
+    }
     PathPicture picture(path_scene, options, monitor);
     picture.trace();
     return picture.result();

@@ -13,6 +13,7 @@ namespace interflect::detail {
 struct KnownIrradiance {
     const ElementForest& forest;
     std::span<const Rgb> irradiance;
+    bool is_interpolated = false;  ///< Hybrid shading: an IndirectField replaces gathered directions.
 };
 /// @throws InputError for inconsistent sizes or a forest of another scene.
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);

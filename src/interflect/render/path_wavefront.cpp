@@ -41,6 +41,7 @@ void PathWavefront::trace(std::span<BatchOfPaths> batches) {
     else
         start_at_gauges(batches);
     for (; !paths_.empty(); ++vertex_) advance_paths();
+    add_light_of_seen_places();
     // Irradiance = pi L of a white surface.
     const double per_radiance = s_.options.quantity == PathQuantity::irradiance ? std::numbers::pi : 1;
     for (std::size_t i = 0; i < light_.size(); ++i) {
@@ -76,7 +77,7 @@ void PathWavefront::start_at_gauges(std::span<const BatchOfPaths> batches) {
         const Gauge& gauge = s_.start.gauges[batches[b].pixel];
         for (std::size_t i = 0; i < size; ++i) {
             const V3f normal = gauge.normal_at(points.coordinate[0][i]);
-            Path path{Rgb(1, 1, 1), static_cast<std::uint32_t>(b * size + i), normal};
+            Path path{Rgb(1, 1, 1), static_cast<std::uint32_t>(b * size + i), normal, gauge.patch};
             Ray ray{gauge.position + normal * gauge.offset, normal};
             if (!leave(ray, path)) continue;
             rays_.push_back(ray);
@@ -173,18 +174,28 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
         light_[path.index].first = {RgbD(reflectance), Imath::V3d(geometry.normal()), Imath::V3d(x),
                                     path.travelled + hit.distance,
                                     s_.known ? static_cast<double>(s_.known->level(hit.patch, x)) : 0};
+    const float distance = path.travelled + hit.distance;
+    if (vertex_ == 2 && !s_.start.camera) light_[path.index].first.nearness = 1 / static_cast<double>(distance);
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
-    if (end_at_known_light(hit, ray, path)) return false;
+    if (path.place != none || end_at_known_light(hit, ray, path)) return false;
     path.throughput *= reflectance;
     if (largest_channel(path.throughput) <= 0) return false;
-    path.normal = geometry.normal();
+    path.normal = vertex_ == 1 && s_.smooth_normals
+                      ? s_.smooth_normals->at(geometry, hit.patch, geometry.parameters_of(x))
+                      : geometry.normal();
+    path.patch = hit.patch;
     ray.origin = offset_origin(s_, hit.patch, x);
+    if (s_.finds_points) {
+        points_.push_back({ray.origin, path.normal, hit.patch, distance * s_.start.pixel_angle + s_.start.pixel_size});
+        return false;
+    }
     return leave(ray, path);
 }
 
 bool PathWavefront::leave(Ray& ray, Path& path) {
     path.travelled = 0;
+    path.place = s_.indirect_field && vertex_ == 1 ? seen_place(ray.origin, path) : none;
     const auto size = static_cast<std::uint32_t>(s_.batch_size);
     const std::uint64_t key = keys_[path.index / size];
     const bool samples_emitters = s_.options.emitter_sampling != EmitterSampling::directions;
@@ -197,8 +208,12 @@ bool PathWavefront::leave(Ray& ray, Path& path) {
         if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
         if (samples_emitters && s_.skies.can_sample()) connect_to_sky(ray.origin, path, index);
     }
-    if (s_.known) connect_to_known_light(ray.origin, path);
+    if (s_.known && path.place == none) connect_to_known_light(ray.origin, path);
 
+    if (path.place != none) {
+        if (!s_.directions_find_light || path.index % size % s_.paths_per_direction != 0) return false;
+        path.throughput *= static_cast<float>(s_.paths_per_direction);
+    }
     const VertexSample sample = vertex_sample(key, vertex_, path.index % size);
     const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
     if (sample.roulette >= survival) return false;
@@ -207,19 +222,63 @@ bool PathWavefront::leave(Ray& ray, Path& path) {
     return true;
 }
 
+std::uint32_t PathWavefront::seen_place(const V3f& x, const Path& path) {
+    constexpr float same_cosine = 0.999f;
+    const auto batch = path.index / static_cast<std::uint32_t>(s_.batch_size);
+    std::size_t i = seen_.size();
+    while (i > 0 && seen_[i - 1].batch == batch &&
+           (seen_[i - 1].patch != path.patch || seen_[i - 1].normal.dot(path.normal) < same_cosine))
+        --i;
+    if (i == 0 || seen_[i - 1].batch != batch) {
+        i = seen_.size() + 1;
+        SeenPlace& place = seen_.emplace_back();
+        place.batch = batch, place.patch = path.patch, place.index = path.index, place.normal = path.normal;
+        place.indirect = s_.indirect_field->at(x, path.normal, path.patch);
+        if (s_.unoccluded->has_patches()) place.patches.exact = s_.unoccluded->by_patches(x, path.normal);
+        if (s_.unoccluded->has_luminaires()) place.luminaires.exact = s_.unoccluded->by_luminaires(x, path.normal);
+    }
+    SeenPlace& place = seen_[i - 1];
+    if (!place.indirect) return none;
+    place.throughput += path.throughput;
+    return static_cast<std::uint32_t>(i - 1);
+}
+
+Rgb PathWavefront::ExactLight::result() const {
+    Rgb light(0);
+    for (int c = 0; c < 3; ++c)
+        if (sampled[c] > 0) light[c] = exact[c] * (visible[c] / sampled[c]);
+    return light;
+}
+
+void PathWavefront::add_light_of_seen_places() {
+    for (const SeenPlace& place : seen_) {
+        if (!place.indirect) continue;
+        const Rgb per_irradiance = place.throughput / pi;
+        add(place.index, 1, per_irradiance * (place.patches.result() + place.luminaires.result()));
+        add(place.index, 2, per_irradiance * *place.indirect);
+    }
+}
+
+void PathWavefront::estimate_visible_share(Connection& connection, const Path& path, ExactLight SeenPlace::*kind) {
+    connection.place = path.place;
+    connection.kind = kind;
+    (seen_[path.place].*kind).sampled += connection.radiance;
+}
+
 void PathWavefront::add_sky(const Ray& ray, const Path& path) {
     if (vertex_ == 1) return add(path.index, 0, path.throughput * s_.skies.seen(ray.direction));
     Rgb radiance = s_.skies.uniform_radiance();  // no shadow rays sample it
     if (s_.skies.can_sample()) {                 // otherwise sampled_radiance() is 0
         const auto count = static_cast<float>(shadow_rays_at(vertex_ - 1));
-        const float weight =
-            direction_weight(path.normal.dot(ray.direction) / pi, count * s_.skies.density(ray.direction));
+        const float weight = direction_weight(direction_density(path, ray.direction),
+                                              count * s_.skies.density(ray.direction));
         radiance += s_.skies.sampled_radiance(ray.direction) * weight;
     }
     add(path.index, vertex_ - 1, path.throughput * radiance);
 }
 
 void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance) {
+    if (path.place != none && s_.unoccluded->has_patches()) return;  // known exactly
     const Rgb radiance = path.throughput * exitance / pi;
     if (vertex_ == 1) return add(path.index, 0, radiance);
     const float distance = path.travelled + hit.distance;
@@ -227,8 +286,13 @@ void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& pat
     const float light_density =
         density_per_solid_angle(s_.geometry[hit.patch], probability, ray.direction, distance * distance);
     const auto count = static_cast<float>(shadow_rays_at(vertex_ - 1));
-    const float weight = direction_weight(path.normal.dot(ray.direction) / pi, count * light_density);
+    const float weight = direction_weight(direction_density(path, ray.direction), count * light_density);
     add(path.index, vertex_ - 1, radiance * weight);
+}
+
+float PathWavefront::direction_density(const Path& path, const V3f& direction) const {
+    const float density = path.normal.dot(direction) / pi;
+    return path.place == none ? density : density / static_cast<float>(s_.paths_per_direction);
 }
 
 float PathWavefront::direction_weight(float direction_density, float light_density) const {
@@ -281,12 +345,15 @@ float PathWavefront::density_towards(const KnownLight::Place& place, const V3f& 
 }
 
 void PathWavefront::add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance) {
+    if (bounces == 1 && s_.is_indirect_only) return;
     PathLight& light = light_[index];
     (bounces == 0 ? light.emitted : bounces == 1 ? light.direct : light.indirect) += radiance;
 }
 
 std::uint32_t PathWavefront::shadow_rays_at(std::uint32_t vertex) const {
-    return s_.known && vertex == 1 ? gathered_shadow_rays : 1;
+    if (vertex == 1 && s_.is_indirect_only) return 0;
+    if (vertex > 1 || !s_.known) return 1;
+    return s_.indirect_field ? s_.hybrid_shadow_rays : gathered_shadow_rays;
 }
 
 void PathWavefront::connect_to_patch(const V3f& x, const Path& path, const LightSample& sample) {
@@ -298,36 +365,47 @@ void PathWavefront::connect_to_patch(const V3f& x, const Path& path, const Light
     const float distance2 = to_light.length2();
     if (!(distance2 > 0)) return;
     const V3f direction = to_light / std::sqrt(distance2);
-    const float direction_density = path.normal.dot(direction) / pi;
+    const float cosine = path.normal.dot(direction);
     const float light_density = static_cast<float>(shadow_rays_at(vertex_)) *
                                 density_per_solid_angle(patch, choice.probability, direction, distance2);
-    if (!(direction_density > 0 && light_density > 0)) return;
-    const float weight =
-        s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(light_density, direction_density);
+    if (!(cosine > 0 && light_density > 0)) return;
     // Integrand: (rho / pi) (M / pi) cosine.
-    const Rgb radiance = exitance_at(s_.scene, s_.scene.patches[choice.index], on_patch) / pi;
+    const Rgb radiance =
+        exitance_at(s_.scene, s_.scene.patches[choice.index], on_patch) / pi * (cosine / pi / light_density);
+    Connection connection{choice.index, path.index, radiance, 0, vertex_};
+    if (path.place != none && s_.unoccluded->has_patches())
+        estimate_visible_share(connection, path, &SeenPlace::patches);
+    else if (s_.options.emitter_sampling == EmitterSampling::lights)
+        connection.radiance *= path.throughput;
+    else
+        connection.radiance *= path.throughput * balance(light_density, direction_density(path, direction));
     shadow_rays_.push_back({x, direction});
-    connections_.push_back({choice.index, path.index,
-                            path.throughput * radiance * (direction_density / light_density * weight), 0, vertex_});
+    connections_.push_back(connection);
 }
 
 void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample) {
     const Illumination light = s_.luminaires.choose(x, path.normal, sample);
     if (!(channel_sum(light.irradiance) > 0)) return;
     const float share = 1 / (pi * static_cast<float>(shadow_rays_at(vertex_)));
+    Connection connection{none, path.index, light.irradiance * share, light.distance, vertex_};
+    if (path.place != none && s_.unoccluded->has_luminaires())
+        estimate_visible_share(connection, path, &SeenPlace::luminaires);
+    else
+        connection.radiance *= path.throughput;
     shadow_rays_.push_back({x, light.towards});
-    connections_.push_back({none, path.index, path.throughput * light.irradiance * share, light.distance, vertex_});
+    connections_.push_back(connection);
 }
 
 void PathWavefront::connect_to_sky(const V3f& x, const Path& path, std::uint32_t index) {
     const SkySample numbers = sky_sample(keys_[path.index / s_.batch_size], vertex_, index);
     const Skies::Sample sample = s_.skies.sample(numbers.sky, numbers.u, numbers.v);
-    const float direction_density = path.normal.dot(sample.direction) / pi;
+    const float cosine = path.normal.dot(sample.direction);
     const float sky_density = static_cast<float>(shadow_rays_at(vertex_)) * sample.density;
-    if (!(direction_density > 0 && sky_density > 0)) return;
-    const float weight =
-        s_.options.emitter_sampling == EmitterSampling::lights ? 1 : balance(sky_density, direction_density);
-    const Rgb radiance = s_.skies.sampled_radiance(sample.direction) * (direction_density / sky_density * weight);
+    if (!(cosine > 0 && sky_density > 0)) return;
+    const float weight = s_.options.emitter_sampling == EmitterSampling::lights
+                             ? 1
+                             : balance(sky_density, direction_density(path, sample.direction));
+    const Rgb radiance = s_.skies.sampled_radiance(sample.direction) * (cosine / pi / sky_density * weight);
     shadow_rays_.push_back({x, sample.direction});
     constexpr float infinitely_far = std::numeric_limits<float>::infinity();
     connections_.push_back({none, path.index, path.throughput * radiance, infinitely_far, vertex_});
@@ -372,7 +450,11 @@ void PathWavefront::trace_shadow_rays() {
     counts_.shadow_rays += static_cast<std::int64_t>(shadow_rays_.size());
     for (std::size_t i = 0; i < connections_.size(); ++i) {
         const Connection& c = connections_[i];
-        if (is_unoccluded(c, hits_[i])) add(c.index, c.bounces, c.radiance);
+        if (!is_unoccluded(c, hits_[i])) continue;
+        if (c.place == none)
+            add(c.index, c.bounces, c.radiance);
+        else
+            (seen_[c.place].*c.kind).visible += c.radiance;
     }
 }
 

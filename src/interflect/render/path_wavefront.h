@@ -14,10 +14,13 @@
 #include "interflect/raycast/panes.h"
 #include "interflect/render.h"
 #include "interflect/render/gauge.h"
+#include "interflect/render/indirect_field.h"
 #include "interflect/render/known_light.h"
 #include "interflect/render/light_tree.h"
 #include "interflect/render/luminaire_choice.h"
 #include "interflect/render/path_samples.h"
+#include "interflect/render/smooth_normals.h"
+#include "interflect/render/unoccluded_light.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
@@ -43,7 +46,19 @@ struct PathScene {
     Panes panes;
     bool splits;                        // at panes or mirrors
     const KnownLight* known = nullptr;  // ends paths; null: only Russian roulette ends them
+    const SmoothNormals* smooth_normals = nullptr;   // of the surfaces that the camera sees; null: flat patches
+    const IndirectField* indirect_field = nullptr;   // replaces reflected paths at the first vertex
+    const UnoccludedLight* unoccluded = nullptr;     // at the first vertex, shadow rays only estimate its visible share
+    std::uint32_t hybrid_shadow_rays = 1;
+    bool directions_find_light = true;               // of hybrid shading: some light is not exact
+    std::uint32_t paths_per_direction = 4;           // of hybrid shading: one path in these finds emitters by its direction
+    bool is_indirect_only = false;                   // without light that is reflected once
+    bool finds_points = false;                       // paths end at the first vertex, see PathWavefront::points()
 
+    /// The same scene with other starts.
+    PathScene with(const PathStart& other_start, std::size_t other_batch_size) const {
+        return {scene, ray_caster, other_start, geometry, lights, luminaires, skies, options, other_batch_size, panes, splits, known};
+    }
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
 
@@ -53,9 +68,11 @@ struct FirstHit {
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
     double distance = 0;  // from the camera, through panes and by mirrors [m]
     double level = 0;     // of the element, with a known solution
+    double nearness = 0;  // 1 / distance to what a gauge sees [1/m]
 
     FirstHit& operator+=(const FirstHit& o) {
         albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance, level += o.level;
+        nearness += o.nearness;
         return *this;
     }
 };
@@ -88,25 +105,45 @@ class PathWavefront {
     /// Adds the light of the paths to their batches. Call once.
     void trace(std::span<BatchOfPaths> batches);
     const RayCounts& counts() const { return counts_; }
+    /// First vertices, with PathScene::finds_points.
+    const std::vector<SurfacePoint>& points() const { return points_; }
 
   private:
     struct Path {
         Rgb throughput;
-        std::uint32_t index;  // in light_
-        V3f normal;           // of the surface that the ray left
+        std::uint32_t index;         // in light_
+        V3f normal;                  // of the surface that the ray left
+        std::uint32_t patch = none;  // that surface
         float travelled = 0;  // from that surface or the camera to the ray's origin, behind panes or in mirrors [m]
         bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
+        std::uint32_t place = none;   // in seen_: ends at the next vertex, because its indirect light is known
     };
     struct PathLight {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
         FirstHit first{};
     };
+    /// Irradiance by the sources of a kind, without occlusion: exact, and estimated by shadow rays.
+    struct ExactLight {
+        Rgb exact{0, 0, 0};
+        Rgb sampled{0, 0, 0}, visible{0, 0, 0};  // by shadow rays: all, and those that are not occluded
+        Rgb result() const;
+    };
+    /// Place that the camera sees in a pixel: light of a patch, which all its paths there share.
+    struct SeenPlace {
+        std::uint32_t batch = none, patch = none, index = 0;  // index: in light_, of its first path
+        V3f normal{0, 0, 0};
+        Rgb throughput{0, 0, 0};      // sum over the paths
+        std::optional<Rgb> indirect;  // irradiance
+        ExactLight patches, luminaires;
+    };
     /// Contribution of a shadow ray that hits `patch` or, without a patch, is unoccluded up to `distance`.
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;         // to the luminaire [m]
-        std::uint32_t bounces;  // reflections of its light
+        float distance;             // to the luminaire [m]
+        std::uint32_t bounces;      // reflections of its light
+        std::uint32_t place = none;  // in seen_; then `radiance` only estimates the visible share of exact light
+        ExactLight SeenPlace::*kind = nullptr;
     };
 
     void start_at_camera(std::span<const BatchOfPaths> batches);
@@ -126,8 +163,15 @@ class PathWavefront {
     bool interact(const Hit& hit, Ray& ray, Path& path);
     /// Connects `ray.origin` to the lights and samples a direction; returns whether the path continues.
     bool leave(Ray& ray, Path& path);
+    /// Returns the place in seen_ of the first vertex, which may be new; none where light is gathered.
+    std::uint32_t seen_place(const V3f& x, const Path& path);
+    void add_light_of_seen_places();
+    /// Adds the connection to a place, which then estimates the visible share of exact light.
+    void estimate_visible_share(Connection& connection, const Path& path, ExactLight SeenPlace::*kind);
     void add_sky(const Ray& ray, const Path& path);
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
+    /// Returns the density of the path's own direction [1/sr], per path.
+    float direction_density(const Path& path, const V3f& direction) const;
     /// Returns the weight of light found by the path's own direction, against shadow rays to it. Densities in [1/sr].
     float direction_weight(float direction_density, float light_density) const;
     /// Returns the shadow rays per kind of light; more where paths end after the next vertex.
@@ -160,6 +204,8 @@ class PathWavefront {
     std::vector<Ray> rays_, shadow_rays_;
     std::vector<Hit> hits_;
     std::vector<Connection> connections_;
+    std::vector<SurfacePoint> points_;
+    std::vector<SeenPlace> seen_;  // with an indirect field
     RayCounts counts_;
 };
 

@@ -144,11 +144,11 @@ void SmoothNormals::apply(const ElementForest& forest, std::vector<Rgb>& irradia
     });
 }
 
-V3f SmoothNormals::at(const ElementForest& forest, std::uint32_t patch, Parameters p) const {
+V3f SmoothNormals::at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const {
     const auto curved = std::lower_bound(curved_.begin(), curved_.end(), patch,
                                          [](const CurvedPatch& c, std::uint32_t x) { return c.patch < x; });
-    if (curved == curved_.end() || curved->patch != patch) return forest.geometry(patch).normal();
-    return curved->normal_at(forest.geometry(patch).is_triangle(), p).normalized();
+    if (curved == curved_.end() || curved->patch != patch) return geometry.normal();
+    return curved->normal_at(geometry.is_triangle(), p).normalized();
 }
 
 }  // namespace interflect::detail

@@ -7,6 +7,7 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
+#include "interflect/geometry/patch_geometry.h"
 #include "interflect/render/smooth_surfaces.h"
 #include "interflect/scene.h"
 
@@ -31,7 +32,8 @@ class SmoothNormals {
     void apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const;
 
     /// Returns the unit normal at a point; the patch's own normal if flat.
-    V3f at(const ElementForest& forest, std::uint32_t patch, Parameters p) const;
+    /// @param geometry  Of the patch.
+    V3f at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const;
 
   private:
     /// Patch at a common edge. Edges are numbered by their first corner.

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/geometry/box_tree.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+struct PathScene;
+
+/// Point of a surface that needs indirect light.
+struct SurfacePoint {
+    V3f position;  ///< Start of its rays, relative to the scene's origin [m].
+    V3f normal;    ///< For shading, unit length.
+    std::uint32_t patch = none;
+    float spacing = 0;  ///< Distance to the nearest such points: size of a pixel or texel [m].
+};
+
+/// Indirect irradiance of surfaces, interpolated between sparse records (irradiance caching, Ward et al. 1988). A
+/// record gathers the light of a solution, which averages its noise over a hemisphere. It reaches a share of the
+/// harmonic mean distance to what it sees, but at least a few spacings. Values are local linear fits to the records in
+/// reach. No record reaches across a contact. Immutable, thread-safe.
+class IndirectField {
+  public:
+    /// Makes records until all points are covered.
+    /// @param scene  With a known solution; its starts and batches are ignored.
+    /// @param stop   If set, ends early; may be null.
+    IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
+
+    /// Returns the irradiance [as H]; nullopt without a record in reach.
+    std::optional<Rgb> at(const V3f& x, const V3f& n, std::uint32_t patch) const;
+
+    std::size_t records() const { return records_.size(); }
+    std::int64_t rays() const { return rays_; }
+
+  private:
+    struct Record {
+        V3f position, normal;
+        std::uint32_t patch = none;
+        float reach = 0;            // on its own patch, which no contact crosses [m]
+        float reach_elsewhere = 0;  // at most the distance to the nearest contact [m]
+        Rgb irradiance{0, 0, 0};
+    };
+    struct Fit;
+
+    Fit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
+    void add_records(const PathScene& scene, std::span<const SurfacePoint> points);
+    float distance_to_contact(const V3f& x, float most) const;
+
+    std::vector<Contact> contacts_;
+    std::vector<Boxed> contact_tree_;
+    std::vector<Record> records_;
+    std::vector<Boxed> tree_;  // boxes of the records' reach
+    std::int64_t rays_ = 0;
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Exact irradiance of surfaces by light sources that nothing hides. Shadow rays then estimate only the visible share
+/// of it. Immutable, thread-safe. Cost: linear in the number of sources, hence only for few.
+class UnoccludedLight {
+  public:
+    /// Arguments must outlive this object.
+    UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry);
+
+    /// Whether all emitting patches, or all luminaires that are not skies, are few and have a closed form.
+    bool has_patches() const { return has_patches_; }
+    bool has_luminaires() const { return has_luminaires_; }
+
+    /// Returns the irradiance [as H] at x on a surface with normal n. Lambert's formula for polygons.
+    Rgb by_patches(const V3f& x, const V3f& n) const;
+    /// Measured luminaires: the mean over 16 points of the opening.
+    Rgb by_luminaires(const V3f& x, const V3f& n) const;
+
+  private:
+    const Scene& scene_;
+    std::span<const PatchGeometry> geometry_;
+    std::vector<std::uint32_t> patches_, luminaires_;
+    bool has_patches_ = false, has_luminaires_ = false;
+};
+
+/// Returns the irradiance at x on a surface with normal n by a convex polygon of radiance 1, of which only the part
+/// above the surface counts. Its vertices may be in either order.
+float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f& n);
+
+}  // namespace interflect::detail
