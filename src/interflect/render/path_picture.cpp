@@ -23,11 +23,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum batches per pixel: 7 degrees of freedom for its standard error.
+/// Gives each standard error 7 degrees of freedom.
 constexpr int least_batches = 8;
 /// Larger batches stratify little better; more batches improve the error estimate.
 constexpr int largest_batch = 64;
-/// Approximate. Amortises the cost of a call, fits the cache.
+/// Amortises the cost of a call.
 constexpr std::size_t paths_per_tile = 2048;
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
 
@@ -121,8 +121,6 @@ class PathPicture {
 
     bool stopped() const { return monitor_.stop && *monitor_.stop; }
 
-    /// At most doubles each pixel's batches.
-    /// @return  Whether a pixel needs more.
     bool want_more(std::vector<std::uint32_t>& wanted, std::uint32_t most) {
         const std::vector<double> needed = needed_batches(pixels_, options_);
         bool more = false;
@@ -137,7 +135,6 @@ class PathPicture {
         return more;
     }
 
-    /// At most one batch per pixel at a time.
     void trace_round(const std::vector<std::uint32_t>& wanted) {
         const std::size_t per_chunk = paths_per_chunk / s_.batch_size;
         std::vector<std::uint32_t> present(pixels_.size());
@@ -175,7 +172,6 @@ class PathPicture {
         report(std::min(1.0, static_cast<double>(batches_done_) / foreseen_));
     }
 
-    /// Updates the error, which visits all pixels, after about one new path per pixel.
     void report(double fraction) {
         if (!monitor_.on_progress) return;
         const auto new_batches = static_cast<std::size_t>(batches_done_ - batches_of_error_);

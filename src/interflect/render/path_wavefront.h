@@ -22,19 +22,19 @@
 
 namespace interflect::detail {
 
-/// Starts of paths, one per pixel: camera or gauges.
+/// Camera, or one gauge per pixel.
 struct PathStart {
     std::optional<Camera> camera;
-    float pixel_angle = 0;  // side of a central pixel [rad]; 0 if orthographic
+    float pixel_angle = 0;  // [rad]
     std::span<const Gauge> gauges{};
-    float pixel_size = 0;  // side of an orthographic pixel [m]
+    float pixel_size = 0;  // [m]
 };
 
 struct PathScene {
     const Scene& scene;
     const RayCaster& ray_caster;
     const PathStart& start;
-    std::span<const PatchGeometry> geometry;  // per patch
+    std::span<const PatchGeometry> geometry;
     const LightTree& lights;
     const LuminaireChoice& luminaires;
     const Skies& skies;
@@ -42,17 +42,17 @@ struct PathScene {
     std::size_t batch_size;
     Panes panes;
     bool splits;                        // at panes or mirrors
-    const KnownLight* known = nullptr;  // ends paths; null: only Russian roulette ends them
+    const KnownLight* known = nullptr;  // null: only Russian roulette ends paths
 
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
 
-/// First hit of a camera ray, or a sum; all 0 if the ray escapes.
+/// First hit of a camera ray, or a sum; 0 if the ray escapes.
 struct FirstHit {
     RgbD albedo{0, 0, 0};
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
-    double distance = 0;  // from the camera, through panes and by mirrors [m]
-    double level = 0;     // of the element, with a known solution
+    double distance = 0;  // through panes and by mirrors [m]
+    double level = 0;     // of the element
 
     FirstHit& operator+=(const FirstHit& o) {
         albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance, level += o.level;
@@ -60,13 +60,13 @@ struct FirstHit {
     }
 };
 
-/// One batch of a pixel, as sums over its paths.
+/// Sums over one batch of a pixel's paths.
 struct BatchOfPaths {
     std::uint32_t pixel = 0, batch = 0;
     bool done = false;
-    RgbD emitted{0, 0, 0};   // visible directly
-    RgbD direct{0, 0, 0};    // reflected once
-    RgbD indirect{0, 0, 0};  // reflected more than once
+    RgbD emitted{0, 0, 0};
+    RgbD direct{0, 0, 0};
+    RgbD indirect{0, 0, 0};
     FirstHit first{};
 };
 
@@ -80,21 +80,20 @@ struct RayCounts {
     }
 };
 
-/// Traces several batches breadth first, one bounce at a time.
 class PathWavefront {
   public:
     explicit PathWavefront(const PathScene& scene) : s_(scene) {}
 
-    /// Adds the light of the paths to their batches. Call once.
+    /// Call once.
     void trace(std::span<BatchOfPaths> batches);
     const RayCounts& counts() const { return counts_; }
 
   private:
     struct Path {
         Rgb throughput;
-        std::uint32_t index;  // in light_
-        V3f normal;           // of the surface that the ray left
-        float travelled = 0;  // from that surface or the camera to the ray's origin, behind panes or in mirrors [m]
+        std::uint32_t index;
+        V3f normal;                  // of the last surface
+        float travelled = 0;         // from that surface or the camera to the ray's origin [m]
         bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
     };
     struct PathLight {
@@ -105,7 +104,7 @@ class PathWavefront {
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;         // to the luminaire [m]
+        float distance;         // [m]
         std::uint32_t bounces;  // reflections of its light
     };
 
@@ -113,24 +112,21 @@ class PathWavefront {
     /// Gauges act as white surfaces: paths begin with leave().
     void start_at_gauges(std::span<const BatchOfPaths> batches);
     void advance_paths();
-    /// Returns whether the first surface is white, opaque and does not emit: pictures of irradiance.
+    /// In pictures of irradiance, the first surface is white, opaque and does not emit.
     bool shows_irradiance() const;
-    /// Returns the point where a path left the last surface.
     static V3f start_of(const Ray& ray, const Path& path);
     /// Adds paths behind panes and in mirrors seen by the camera.
     void split_paths();
-    /// Adds a path unless its throughput is negligible.
     void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
     Rgb reflectance_of_hit(const Ray& ray, const Hit& hit) const;
     /// Replaces `ray` and `path` by their reflection; returns whether the path continues.
     bool interact(const Hit& hit, Ray& ray, Path& path);
-    /// Connects `ray.origin` to the lights and samples a direction; returns whether the path continues.
+    /// Connects `ray.origin` to the lights and samples a direction. Returns as interact().
     bool leave(Ray& ray, Path& path);
     void add_sky(const Ray& ray, const Path& path);
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
-    /// Returns the weight of light found by the path's own direction, against shadow rays to it. Densities in [1/sr].
+    /// Returns the weight of light that the path hits, against shadow rays. Densities are in [1/sr].
     float direction_weight(float direction_density, float light_density) const;
-    /// Returns the shadow rays per kind of light; more where paths end after the next vertex.
     std::uint32_t shadow_rays_at(std::uint32_t vertex) const;
     /// @param path  Its throughput includes the reflectance at x; also below.
     void connect_to_patch(const V3f& x, const Path& path, const LightSample& sample);
@@ -138,13 +134,11 @@ class PathWavefront {
     /// @param index  Ray in its batch at this vertex.
     void connect_to_sky(const V3f& x, const Path& path, std::uint32_t index);
     void trace_shadow_rays();
-    /// Extends shadow rays through panes: dims their connections, replaces their hits by the hits behind.
     void pass_panes();
-    /// Returns whether a shadow ray hits its patch, or no surface up to its distance.
     static bool is_unoccluded(const Connection& connection, const Hit& hit);
-    /// Ends a path with solved light at a far element; returns whether it has ended.
+    /// Ends a path with solved light at a far element, if possible.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
-    /// Returns the density of KnownLight::sample() per solid angle from x [1/sr].
+    /// Returns the density of KnownLight::sample() [1/sr].
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                           float distance2) const;
     void connect_to_known_light(const V3f& x, const Path& path);
@@ -152,11 +146,11 @@ class PathWavefront {
     void add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance);
 
     const PathScene& s_;
-    // Next vertex; the camera is 0. Light emitted there has been reflected vertex_ - 1 times.
+    // Next vertex; the camera is 0.
     std::uint32_t vertex_ = 1;
-    std::vector<std::uint64_t> keys_;  // per batch
-    std::vector<PathLight> light_;     // per path
-    std::vector<Path> paths_;          // continuing; parallel to rays_
+    std::vector<std::uint64_t> keys_;
+    std::vector<PathLight> light_;
+    std::vector<Path> paths_;  // parallel to rays_
     std::vector<Ray> rays_, shadow_rays_;
     std::vector<Hit> hits_;
     std::vector<Connection> connections_;
