@@ -158,7 +158,8 @@ PathOptions path_options(const RenderArguments& options) {
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
     const Tracer tracer = options.shading == PictureShading::hybrid ? render_hybrid : gather;
-    PathTracing traced = run_path_tracer(scene, solution, tracer, ray_caster, view, path_options(options), options.path);
+    PathTracing traced =
+        run_path_tracer(scene, solution, tracer, ray_caster, view, path_options(options), options.path);
     Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
     picture.traced = std::move(traced);
     return picture;

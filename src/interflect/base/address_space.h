@@ -5,7 +5,7 @@
 
 namespace interflect::detail {
 
-/// Returns the address space left under RLIMIT_AS [bytes]; the maximum of the type if unlimited.
+/// Returns the address space left under RLIMIT_AS [bytes], or the type's maximum.
 std::size_t free_address_space();
 
 class AddressSpaceError : public std::runtime_error {

@@ -10,7 +10,7 @@ namespace interflect::detail {
 /// CRC-32 as in zlib. @param so_far  Checksum of the preceding bytes.
 std::uint32_t crc32(std::string_view bytes, std::uint32_t so_far = 0);
 
-/// One pass, several GB/s. @throws std::runtime_error if the file cannot be read.
+/// @throws std::runtime_error if the file cannot be read.
 std::uint32_t crc32_of_file(const std::filesystem::path& path);
 
 /// Eight lower-case hexadecimal digits.

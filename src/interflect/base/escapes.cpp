@@ -10,7 +10,6 @@ namespace {
 constexpr std::string_view hex_digits = "0123456789abcdef";
 constexpr std::size_t escape_length = 4;  // \xNN
 
-/// Lead byte of a UTF-8 sequence, its length and its smallest code point.
 struct SequenceKind {
     std::uint8_t mask, lead;
     std::size_t length;

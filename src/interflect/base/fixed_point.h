@@ -9,13 +9,13 @@
 
 namespace interflect::detail {
 
-/// Non-negative colours as integers in units of total / 2^61, so sums do not depend on the order of their terms. 2^61
-/// terms stay below 2^63 even if all are rounded up; each of 10^12 equal terms has 2^21 units.
+/// Non-negative colours as integers in units of total / 2^61, for sums independent of order. 2^61 terms stay below 2^63
+/// even if rounded up; 10^12 equal terms have 2^21 units each.
 class FixedPoint {
   public:
     using Value = std::array<std::int64_t, 3>;
 
-    /// @param total  Upper bound of the sum of all terms, per channel; finite, >= 0.
+    /// @param total  Upper bound of the sum, per channel; finite, >= 0.
     explicit FixedPoint(double total) : unit_(total * 0x1p-61), per_unit_(total > 0 ? 1 / unit_ : 0) {}
 
     Value from(const RgbD& c) const {

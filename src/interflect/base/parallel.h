@@ -26,12 +26,12 @@
 
 namespace interflect::detail {
 
-/// One T per thread. ThreadSanitizer cannot follow TBB's allocator, hence std::allocator.
+/// ThreadSanitizer cannot follow TBB's allocator, hence std::allocator.
 template <class T>
 using PerThread = tbb::enumerable_thread_specific<T, std::allocator<T>>;
 
-/// Calls body(begin, end) for consecutive ranges of at most `grain` indices in [0, count). The ranges do not depend on
-/// the number of threads.
+/// Calls body(begin, end) for ranges of at most `grain` indices in [0, count), which do not depend on the number of
+/// threads.
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body) {
     const std::size_t ranges = (count + grain - 1) / grain;
@@ -54,8 +54,7 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body)
 #endif
 }
 
-/// Sums body(begin, end) over these ranges in order, so any number of threads gives equal bits.
-/// @param zero  The empty sum.
+/// Sums over these ranges in order: any number of threads gives equal bits.
 template <class T, class Body>
 T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& body) {
     std::vector<T> parts((count + grain - 1) / grain, zero);

@@ -23,7 +23,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The target need not exist.
 fs::path target_of(fs::path path) {
     constexpr int most_links = 40;  // as in Linux
     for (int link = 0; fs::is_symlink(fs::symlink_status(path)); ++link) {
@@ -39,7 +38,7 @@ fs::path target_of(fs::path path) {
 
 bool is_standard_output(const fs::path& path) { return path == "-"; }
 
-/// Writes to an existing device or pipe. @throws std::runtime_error
+/// @throws std::runtime_error
 void copy_into(const fs::path& from, const fs::path& device) {
     const auto fail = [&] {
         throw std::runtime_error("cannot write '" + device.string() + "': " + std::strerror(errno));
@@ -84,7 +83,6 @@ std::string temporary_name(const fs::path& final_path) {
            std::string(temporary_mark) + (extension.size() <= longest_extension ? extension : "");
 }
 
-/// Whether the process that made the file has ended.
 bool is_stale(std::string_view name, std::string_view prefix) {
     if (!name.starts_with(prefix) || name.find(temporary_mark) == std::string_view::npos) return false;
     pid_t process = 0;
@@ -102,7 +100,7 @@ void remove_stale_files(const fs::path& folder) {
         if (is_stale(entry->path().filename().string(), prefix)) ::unlink(entry->path().c_str());
 }
 
-/// Paths of the live files, for a signal handler; null if the slot is free.
+/// For a signal handler; null if the slot is free.
 constexpr std::size_t slot_count = 16;
 std::array<std::atomic<const char*>, slot_count> listed_paths{};
 static_assert(std::atomic<const char*>::is_always_lock_free);

@@ -13,8 +13,8 @@ namespace {
 constexpr int word_bits = 32;
 using Directions = std::array<std::uint32_t, word_bits>;
 
-/// Direction numbers of one dimension (Joe and Kuo 2008), bit-reversed.
-/// @param inner  Inner coefficients of the primitive polynomial of this degree.
+/// Returns the direction numbers of one dimension, bit-reversed.
+/// @param inner  Inner coefficients of the primitive polynomial.
 /// @param m  First odd numbers.
 constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::array<std::uint32_t, 3> m) {
     std::array<std::uint32_t, word_bits> v{};  // v[i] = m[i] * 2^(31 - i)
@@ -39,8 +39,8 @@ constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::arra
 constexpr std::array<Directions, 4> directions = {sobol_directions(0, 0, {}), sobol_directions(1, 0, {1}),
                                                   sobol_directions(2, 1, {1, 3}), sobol_directions(3, 1, {1, 3, 1})};
 
-/// Owen's nested scrambling of bit-reversed numbers: each bit depends only on itself and lower bits. Form of Laine and
-/// Karras 2011, constants of N. Vegdahl 2021.
+/// Owen scrambling of bit-reversed numbers: each bit depends only on itself and lower bits. Form of Laine and Karras
+/// 2011, constants of N. Vegdahl 2021.
 constexpr std::uint32_t nested_permutation(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -58,8 +58,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     return x >> 16 | x << 16;
 }
 
-/// Writes points first ... first + count - 1 to block[begin ...]. In Gray-code order, consecutive points differ by one
-/// direction number; aligned blocks of 2^k points are the same sets as in natural order.
+/// Writes points first ... to block[begin ...] in Gray-code order: consecutive points differ by one direction number,
+/// and aligned blocks of 2^k points are the same sets as in natural order.
 void fill_sobol(std::uint64_t key, std::uint32_t first, std::size_t begin, std::size_t count, PointBlock& block) {
     std::array<std::uint32_t, PointBlock::capacity> word;
     for (std::size_t d = 0; d < 4; ++d) {
@@ -87,7 +87,7 @@ void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size
         }
         return;
     }
-    // A sequence ends after 2^32 points; the next one has a new scrambling.
+    // A sequence ends after 2^32 points; the next has a new scrambling.
     for (std::size_t begin = 0; begin < count;) {
         const std::uint64_t index = first + begin, left = (std::uint64_t{1} << word_bits) - (index & 0xffffffffu);
         const auto run = static_cast<std::size_t>(std::min<std::uint64_t>(left, count - begin));
@@ -98,7 +98,7 @@ void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size
 
 std::array<float, 4> shuffled_point(std::uint64_t key, std::uint32_t index) {
     constexpr std::uint32_t shuffled_bits = 0xffffu;
-    constexpr std::uint64_t order = 4;  // key of the shuffle, after the keys 0 to 3 of the dimensions
+    constexpr std::uint64_t order = 4;  // after the keys 0 to 3 of the dimensions
     const auto order_seed = static_cast<std::uint32_t>(mix(key, order) >> 32);
     const std::uint32_t place =
         (reverse_bits(nested_permutation(reverse_bits(index), order_seed)) & shuffled_bits) | (index & ~shuffled_bits);

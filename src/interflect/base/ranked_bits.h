@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// A set of integers below a bound with rank in O(1), for indexing compact tables. Two bits per integer.
+/// Set of integers with rank in O(1), to index compact tables. Two bits per integer below `bound`.
 class RankedBits {
   public:
     RankedBits() = default;
@@ -24,7 +24,7 @@ class RankedBits {
     bool operator[](std::uint32_t number) const {
         return number / 64 < words_.size() && (words_[number / 64].bits >> number % 64 & 1u);
     }
-    /// Number of smaller members. @param number  A member.
+    /// Returns the number of smaller members. @param number  A member.
     std::uint32_t rank(std::uint32_t number) const {
         const Word& word = words_[number / 64];
         const std::uint64_t lower = (std::uint64_t{1} << number % 64) - 1;

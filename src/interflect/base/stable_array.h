@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// An array of `capacity` zeros that never moves, so threads can fill new entries while others read old ones. Reserves
-/// address space only; the system allocates pages on first access.
+/// Array of zeros that never moves: threads can fill new entries while others read old ones. The system allocates pages
+/// on first access.
 template <class T>
 class StableArray {
     static_assert(std::is_trivially_copyable_v<T>);

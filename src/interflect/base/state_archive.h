@@ -13,11 +13,11 @@
 
 namespace interflect::detail {
 
-/// State of a run as named byte arrays in native layout; readable only by the same version. The archive() of each class
-/// lists its members for both writing and reading.
+/// State of a run as named byte arrays in native layout, for the same version only. Each class's archive() both writes
+/// and reads.
 class StateArchive {
   public:
-    /// For writing. Refers to the values, which must stay unchanged until written.
+    /// For writing. Values must not change until written.
     StateArchive() = default;
     /// For reading.
     explicit StateArchive(std::map<std::string, std::vector<std::byte>> arrays)

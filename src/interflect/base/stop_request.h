@@ -16,7 +16,7 @@ class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// @param flag  Set by another thread or a signal handler; may be null.
+    /// @param flag  Set by a thread or signal handler; may be null.
     explicit StopRequest(const std::atomic<bool>* flag = nullptr) : flag_(flag) {}
 
     void limit_time(Clock::time_point start, double seconds) {
@@ -36,7 +36,7 @@ class StopRequest {
     double seconds_ = std::numeric_limits<double>::infinity();
 };
 
-/// Starts no more ranges once the run must stop. @throws Interrupted
+/// Skips the remaining ranges once the run must stop. @throws Interrupted
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const StopRequest& stop, const Body& body) {
     std::atomic<bool> is_over{false};

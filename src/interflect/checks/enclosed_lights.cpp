@@ -21,7 +21,7 @@ constexpr std::uint64_t segments_per_path = 16;
 constexpr std::uint64_t seed_of_reflections = 51, seed_of_faces = 52, seed_of_volume = 53, seed_of_starts = 54,
                         seed_of_choices = 55;
 
-/// Points just before the hit surfaces, and whether the path stays in the scene.
+/// Points just before the hit surfaces.
 struct Path {
     std::vector<V3f> points;
     bool stays = true;
@@ -50,7 +50,6 @@ class Paths {
         return path;
     }
 
-    /// Whether a path from x sees a lit point, or leaves a scene with a sky.
     bool is_lit(const V3f& x, std::span<const V3f> lit, bool has_sky) const {
         constexpr std::uint64_t paths = 16, segments = 8;
         for (std::uint64_t i = 0; i < paths; ++i) {
@@ -93,7 +92,6 @@ std::vector<LitSpace> lit_spaces(const LocalLights& lights, const Paths& paths) 
     return spaces;
 }
 
-/// From at most 256 emitting patches.
 std::vector<V3f> points_lit_by_surfaces(const Scene& scene, const RayCaster& ray_caster, const Paths& paths) {
     constexpr std::size_t most = 256, all_paths = 256;
     std::vector<std::uint32_t> emitting;

@@ -9,9 +9,9 @@ namespace interflect::detail {
 
 enum class Side { front, back };
 
-/// Fractions of the rays that leave a side of a face.
+/// Fractions of the rays from a side of a face.
 struct Surroundings {
-    float blocked = 0;  ///< Hit an object within a tenth of the face's size.
+    float blocked = 0;  ///< Hit within a tenth of the face's size.
     float escaped = 0;  ///< Left the scene.
     float one_way = 0;  ///< Hit an object from which no light returns (is_one_way()).
 };
@@ -22,8 +22,8 @@ class FaceSurroundings {
 
     /// Traces 64 rays and their reversed rays.
     Surroundings look(std::uint32_t patch, Side side) const;
-    /// Whether light stays close for eight reflections: within a tenth of the scene, and five times the lamp's size or
-    /// 0.5 m. Traces 64 paths through glass, regardless of reflectance.
+    /// Whether light stays close for eight reflections: within a tenth of the scene and the larger of five lamp sizes
+    /// and 0.5 m. Traces 64 paths through glass, regardless of reflectance.
     bool is_enclosed(std::uint32_t patch) const;
 
   private:

@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum gap between luminaire and surface [m], or relative to the diagonal of small scenes.
+/// Minimum gap to a surface [m], or relative to a small scene's diagonal.
 constexpr float least_gap = 0.02f, least_gap_relative = 0.01f;
 
 /// Multiple of the gap along a ray; excludes lamp shades.
@@ -27,7 +27,6 @@ struct Outcome {
     std::size_t escaped = 0, close = 0;
 };
 
-/// Compares the distance from the surface's plane with `close_distance`.
 Outcome outcome_of(const Scene& scene, std::span<const Ray> rays, const SightLines& lines, float close_distance) {
     Outcome result;
     for (const Ray& ray : rays) {
@@ -41,7 +40,7 @@ Outcome outcome_of(const Scene& scene, std::span<const Ray> rays, const SightLin
     return result;
 }
 
-/// Whether more than a twentieth of the light starts outside a closed scene. Tests every fourth ray.
+/// Whether more than a twentieth of the light starts outside a closed scene.
 bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const SightLines& lines) {
     constexpr std::size_t step = 4;
     std::size_t outside = 0;
@@ -52,7 +51,7 @@ bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const S
     return 20 * step * outside > rays.size();
 }
 
-/// Whether planes C0 and C90 differ by more than a tenth of the peak.
+/// Whether C0 and C90 differ by more than a tenth of the peak.
 bool depends_on_planes(const PhotometricWeb& web) {
     constexpr int steps = 36;  // of 5 degrees
     const float peak = web.peak();

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t most_lights = 1024;
 constexpr std::uint64_t seed_of_light = 31;
 
-/// Offsets relative to the largest coordinate. Measured light starts outside its opening (Emission), perhaps beyond a
-/// close ceiling. Checks start closer: 16 roundings.
+/// Relative to the largest coordinate. Emission starts measured light outside its opening, perhaps beyond a close
+/// ceiling; checks start closer: 16 roundings.
 constexpr float start_offset = 0x1p-17f, checked_offset = 0x1p-20f;
 
 bool is_local(const Luminaire& luminaire) {
@@ -25,7 +25,6 @@ bool is_local(const Luminaire& luminaire) {
            std::holds_alternative<MeasuredLight>(luminaire.kind);
 }
 
-/// Direction is 0 for a point light.
 struct Pose {
     V3f position, direction{0, 0, 0};
 };

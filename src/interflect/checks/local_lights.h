@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Emitting point lights, spots and measured lights of a non-empty scene, at most 1024, with rays distributed by
+/// Up to 1024 emitting point lights, spots and measured lights of a non-empty scene, with rays distributed by
 /// intensity.
 class LocalLights {
   public:
@@ -22,7 +22,7 @@ class LocalLights {
     V3f position(std::size_t i) const;
     /// Returns a point just before the surface that contains the luminaire.
     V3f before(std::size_t i) const;
-    /// Rays of measured light start in its opening (checked_offset). Consecutive groups of equal size have equal power.
+    /// Returns rays in groups of equal power; those of measured light start in its opening.
     std::span<const Ray> rays(std::size_t i) const { return {rays_.data() + i * rays_per_light, rays_per_light}; }
 
   private:

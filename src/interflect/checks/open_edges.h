@@ -7,13 +7,13 @@
 
 namespace interflect::detail {
 
-/// An edge of exactly one face.
+/// Edge of exactly one face.
 struct OpenEdge {
     V3f a, b;  ///< Relative to Scene::origin [m].
     std::uint32_t patch = none;
 };
 
-/// Sorts by patch. Merges vertices at equal positions. O(n log n).
+/// Returns edges sorted by patch. Merges vertices at equal positions.
 std::vector<OpenEdge> open_edges(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -15,7 +15,7 @@ constexpr int most_escaped_inside = 2;                                 // of Sig
 constexpr int least_escaped_outside = SightLines::rays_per_point / 4;  // walls on a ground have half
 constexpr std::uint64_t seed_of_origins = 11, seed_of_directions = 12, seed_of_sides = 13;
 
-/// Random lines, uniform and isotropic in the sphere around the scene.
+/// Uniform and isotropic in the sphere around the scene.
 class OuterLines {
   public:
     explicit OuterLines(const Scene& scene) {
@@ -35,7 +35,7 @@ class OuterLines {
 };
 
 struct MetFace {
-    V3f front, back;  ///< Just before and behind the face [m].
+    V3f front, back;  ///< Just off the face [m].
     V3f normal;       ///< Towards the start of the line.
 };
 
@@ -72,7 +72,7 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
         if (inner.escaped > most_escaped_inside)
             inner = lines.from_surface(face.front, face.normal, seed_of_sides, least_escaped_outside);
         if (inner.escaped > least_escaped_outside && scene.patches[hit.patch].other_side == none) {
-            // Outer side of a thick wall: the inner side lies further along the line.
+            // Outer side of a thick wall: the inner side lies behind.
             const Ray behind{face.back, line(i).direction};
             const Hit inner_hit = lines.first_surface(behind);
             if (inner_hit.patch == none) {

@@ -6,19 +6,19 @@ namespace interflect::detail {
 
 /// Enclosed space, sampled with random lines from outside.
 struct Shell {
-    /// Whether nine of ten lines reach an inner side, from which hardly any ray leaves the scene. Behind thick walls,
-    /// the second face counts. True for rooms with a window, false for rooms with a missing wall.
+    /// Nine of ten lines reach an inner side, from which hardly any ray leaves the scene: true for rooms with a window,
+    /// false with a missing wall. Behind thick walls, the second face counts.
     bool is_closed = false;
-    /// Whether the shell is closed and a view is inside or, without views, the scene is 2 m wide in each direction.
+    /// Closed, with a view inside or, without views, 2 m wide in each direction.
     bool is_room = false;
     float mean_free_path = 0;  ///< Between inner sides [m]; 0 unless closed.
 };
 
-/// Traces at most 128 lines, with 1 + 3 x 32 rays each.
+/// Traces at most 128 x 98 rays.
 Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines);
 
-/// Whether any of 2^14 lines from outside reaches an inner side. Finds 1 m^2 of windows in 1000 m^2 of walls and roof
-/// with probability above 0.998.
+/// Whether any of 2^14 lines from outside reaches an inner side. Finds 1 m^2 of windows in 1000 m^2 of hull with
+/// probability above 0.998.
 bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines);
 
 }  // namespace interflect::detail

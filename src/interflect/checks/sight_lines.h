@@ -18,13 +18,13 @@ class SightLines {
     bool is_clear(const V3f& a, const V3f& b) const;
 
     struct Outlook {
-        int escaped = 0, met = 0;  ///< Rays that left the scene, and rays that hit a surface.
+        int escaped = 0, met = 0;  ///< Numbers of rays.
         float distance = 0;        ///< Sum over hits [m].
     };
     static constexpr int rays_per_point = 32;
-    /// Traces rays from a point just before a surface until more than `most_escaped` escape.
+    /// Traces rays from just before a surface until more than `most_escaped` escape.
     Outlook from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int most_escaped) const;
-    /// Whether a quarter of all directions escape: true outside a closed scene, false inside.
+    /// Whether a quarter of all directions escape, as outside a closed scene.
     bool is_open(const V3f& x) const;
 
     static V3f uniform_direction(std::uint64_t key, std::uint64_t index);

@@ -16,7 +16,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum cosine to an axis, and minimum share of evidence.
 constexpr double least_cosine = 0.9, least_agreement = 0.5;
 
 constexpr const char* axis_names[3][2] = {{"x", "-x"}, {"y", "-y"}, {"z", "-z"}};
@@ -47,7 +46,6 @@ const char* axis_of_light(const Scene& scene) {
     return axis_of(sum, total);
 }
 
-/// Groups patches by part_of(patch) < parts.
 template <class PartOf>
 std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, const PartOf& part_of) {
     std::vector<Imath::Box3f> boxes(parts);
@@ -78,7 +76,7 @@ bool is_thin(const Imath::Box3f& box, int axis) {
     return size[axis] < thin * std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
 }
 
-/// Per axis and direction: share of objects on the scene's lower end that are not thin.
+/// Returns, per axis and direction, the share of objects on the lower end that are not thin.
 std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     const std::vector<Imath::Box3f> boxes = boxes_of_objects(scene);
     std::array<std::array<double, 2>, 3> shares{};

@@ -47,7 +47,6 @@ class Validator {
         return {scene_, options_.places, {kind, is_problem, message, advice, 0, {}}};
     }
 
-    /// Adds warnings of the reader.
     void add_warnings(const char* kind, const char* message, const char* advice) {
         Finding finding{kind, true, message, advice, 0, {}};
         for (const Warnings::Entry& warning : scene_.warnings.entries())
@@ -97,8 +96,8 @@ class Validator {
         return result;
     }
 
-    /// Finds faces with the void in front, and with the scene and its light behind. Excludes bottoms of solids and
-    /// outer faces of thick walls.
+    /// Finds faces with the void in front and the lit scene behind, except bottoms of solids and outer faces of thick
+    /// walls.
     void add_inverted_faces() {
         Finder inverted = finder("inverted-face", "one-sided faces have the scene behind them and nothing before them",
                                  "turn them round: reverse the order of their vertices");

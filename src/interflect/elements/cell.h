@@ -4,16 +4,16 @@
 
 namespace interflect::detail {
 
-/// Square or triangle of an element in the parameter domain of its patch: local (s, t) maps to (u + size s, v + size
-/// t). A triangle's central child has a `size` of opposite sign.
+/// Square or triangle in the parameter domain of a patch: local (s, t) maps to (u + size s, v + size t). A triangle's
+/// central child has a `size` of opposite sign.
 struct Cell {
     float u = 0, v = 0, size = 1;
 
     Parameters at(float s, float t) const { return {u + size * s, v + size * t}; }
     Parameters centre(bool triangle) const { return triangle ? at(1.0f / 3, 1.0f / 3) : at(0.5f, 0.5f); }
 
-    /// Child k of the regular 1:4 subdivision. Square: k = 2 (upper half in v) + (upper half in u). Triangle: child 3
-    /// is central; child k < 3 contains corner k.
+    /// Returns child k. Square: k = 2 (upper half in v) + (upper half in u). Triangle: child 3 is central; child k < 3
+    /// contains corner k.
     Cell child(unsigned k, bool triangle) const {
         const float half = 0.5f * size;
         const bool central = triangle & (k == 3);

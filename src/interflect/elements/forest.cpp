@@ -78,7 +78,7 @@ std::uint32_t ElementForest::subdivide(std::uint32_t e) {
     std::atomic_ref<std::uint32_t> slot(nodes_[e].first_child);
     std::uint32_t state = none;
     if (level(e) >= deepest_level || !slot.compare_exchange_strong(state, being_made, std::memory_order_acquire)) {
-        while (state == being_made) {  // another thread creates them within tens of nanoseconds
+        while (state == being_made) {  // another thread needs tens of nanoseconds
             std::this_thread::yield();
             state = slot.load(std::memory_order_acquire);
         }
@@ -95,7 +95,7 @@ std::uint32_t ElementForest::subdivide(std::uint32_t e) {
     blocks_[(first - patch_count()) / 4] = {e, patch(e), path(e)};
     for (std::uint32_t k = 0; k < 4; ++k) {
         const Cell cell = parent.child(k, geometry.is_triangle());
-        // Exact: the Jacobian is linear, so its mean over the cell is its value at the centre.
+        // Exact, because the Jacobian is linear.
         const float area = geometry.jacobian(cell.centre(geometry.is_triangle())) * cell.size * cell.size;
         nodes_[first + k] = {none, geometry.is_triangle() ? 0.5f * area : area};
     }

@@ -15,14 +15,13 @@ namespace interflect::detail {
 
 inline constexpr std::size_t elements_at_once = 1 << 13;
 
-/// Quadtrees of elements over the patches of a scene; 11 bytes per element. Element i < patch_count() is the root of
-/// patch i. Children follow in blocks of four siblings. Threads may subdivide while others traverse; put_in_order()
-/// then makes the indices independent of threads.
+/// Quadtrees over a scene's patches; 11 bytes per element. Element i < patch_count() is the root of patch i; blocks of
+/// four siblings follow. Threads may subdivide while others traverse; put_in_order() then makes indices independent of
+/// threads.
 class ElementForest {
   public:
     static constexpr int deepest_level = 15;
 
-    /// Creates one element per patch.
     /// @param capacity  In [patches, 2^32 - 2); reserves address space.
     /// @throws InputError for another capacity or a vertex index out of range; AddressSpaceError.
     ElementForest(const Scene& scene, std::size_t capacity);
@@ -41,7 +40,7 @@ class ElementForest {
     std::uint32_t parent(std::uint32_t e) const { return is_root(e) ? none : block_of(e).parent; }
     float area(std::uint32_t e) const { return nodes_[e].area; }  ///< [m^2]
     int level(std::uint32_t e) const;
-    /// Path from the root: 1, then two bits per level, the index of the child.
+    /// Returns the path from the root: 1, then two bits per level, the index of the child.
     std::uint32_t path(std::uint32_t e) const {
         return is_root(e) ? 1 : block_of(e).parent_path << 2 | number_in_block(e);
     }
@@ -54,14 +53,13 @@ class ElementForest {
         __builtin_prefetch(geometry + 64);
     }
 
-    /// `none` for a leaf.
     std::uint32_t first_child(std::uint32_t e) const {
         const std::uint32_t child = std::atomic_ref(nodes_[e].first_child).load(std::memory_order_acquire);
         return child >= being_made ? none : child;
     }
     bool is_leaf(std::uint32_t e) const { return first_child(e) == none; }
     std::vector<std::uint32_t> leaves() const;
-    /// Leaf below `root` that contains `p`, ignoring elements from `limit` on.
+    /// Returns the leaf that contains `p`, ignoring elements from `limit` on.
     std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const {
         return leaf_below(root, Cell(), p, limit);
     }
@@ -82,13 +80,13 @@ class ElementForest {
     /// @throws InputError if an element cannot be subdivided in this order.
     void rebuild(std::span<const std::uint32_t> parents);
 
-    /// Removes the last four siblings (leaves) of an ordered forest and returns their parent. Not thread-safe.
+    /// Removes the last four siblings (leaves) of an ordered forest; returns their parent. Not thread-safe.
     std::uint32_t drop_last_siblings();
 
-    /// Calls body(first) for each block of siblings, parents before children; in parallel after put_in_order().
+    /// Calls body(first) per block of siblings, parents first; in parallel after put_in_order().
     template <class Body>
     void for_siblings_from_roots(const Body& body) const;
-    /// The same, children before parents.
+    /// The same, children first.
     template <class Body>
     void for_siblings_from_leaves(const Body& body) const;
 
@@ -115,7 +113,7 @@ class ElementForest {
     std::uint64_t scene_fingerprint_;
     std::vector<PatchGeometry> geometry_;
     std::uint32_t patch_count_;
-    /// First element of each generation, then the end. Parents belong to earlier generations.
+    /// First element of each generation, then the end; parents are in earlier ones.
     std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;

@@ -10,7 +10,7 @@ namespace {
 
 /// Squares per side of a non-linear quadrilateral.
 constexpr int squares_per_side = 4;
-/// Relative twist below which a quadrilateral is a parallelogram.
+/// Relative twist.
 constexpr float rounding = 1e-5f;
 
 template <class Vector>
@@ -29,7 +29,7 @@ bool is_linear(const Scene& scene, const Patch& patch) {
     return is_parallelogram(corners) && is_parallelogram(coordinates);
 }
 
-/// Twice the area of a triangle on a patch [m^2], accurate below the rounding of positions.
+/// Returns [m^2], accurate below the rounding of positions.
 double doubled_area(const PatchGeometry::Shape& shape, const std::array<Parameters, 3>& p) {
     const auto edge = [&](const Parameters& a, const Parameters& b) {
         const double au = a.u, av = a.v, bu = b.u, bv = b.v;

@@ -9,14 +9,14 @@
 
 namespace interflect::detail {
 
-/// Area-weighted means of textures over cells, exact for linear texture coordinates. Other quadrilaterals are
-/// approximated by 32 triangles per cell.
+/// Area-weighted means over cells, exact for linear texture coordinates. Other quadrilaterals use 32 triangles per
+/// cell.
 class TextureMeans {
   public:
     /// @param scene  Valid; must outlive this.
     explicit TextureMeans(const Scene& scene);
 
-    /// Returns 1 without a texture (`none`).
+    /// Returns 1 without a texture.
     Rgb mean(std::uint32_t texture, const Patch& patch, const PatchGeometry& geometry, const Cell& cell) const;
 
   private:

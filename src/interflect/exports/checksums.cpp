@@ -21,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view signature = "interflect checksums\n";
-/// Range name of unnamed bytes.
 constexpr const char* structure = "structure";
 /// Eight hexadecimal digits and a line break.
 constexpr std::size_t own_checksum_length = 9, checked_length = checksum_block_size - own_checksum_length;
@@ -44,14 +43,13 @@ std::optional<std::uint32_t> checksum_of(std::ifstream& file, const FileRange& r
     return checksum;
 }
 
-/// Reduces "/scene/textures/12" to "/scene/textures".
 std::string_view checked_name(std::string_view name) {
     const std::size_t last = name.find_last_not_of("0123456789");
     const bool is_numbered = last + 1 < name.size() && name[last] == '/';
     return is_numbered ? name.substr(0, last) : name;
 }
 
-/// Joins numbered arrays of one group, since the block has limited room. @param ranges  In file order.
+/// Joins numbered arrays, because the block has limited room. @param ranges  In file order.
 std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges) {
     std::vector<FileRange> joined;
     for (const FileRange& range : ranges) {
@@ -64,7 +62,7 @@ std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges
     return joined;
 }
 
-/// Fills the gaps: the result covers [checksum_block_size, size) in file order.
+/// Covers [checksum_block_size, size) in file order.
 std::vector<FileRange> partition(std::vector<FileRange> ranges, std::uint64_t size) {
     std::sort(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
     ranges = with_numbered_joined(ranges);

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Size of the HDF5 user block [bytes], which HDF5 readers skip.
+/// [bytes]
 inline constexpr std::uint64_t checksum_block_size = 4096;
 
 struct FileRange {
@@ -15,8 +15,7 @@ struct FileRange {
     std::uint64_t begin = 0, length = 0;
 };
 
-/// Writes CRC-32 checksums into the user block of a finished file (docs/solution-file.md): of each range, each gap and
-/// the block. Numbered arrays of one group share a checksum. Cost: one pass over the file.
+/// Writes CRC-32 checksums into the user block of a finished file (docs/solution-file.md).
 /// @param ranges  Disjoint and outside the block.
 /// @throws std::runtime_error if the file cannot be read or written.
 void write_checksums(const std::filesystem::path& path, std::vector<FileRange> ranges);

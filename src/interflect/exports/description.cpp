@@ -14,9 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// First version with escaped names, options and result.
 constexpr int first_with_options = 4;
-/// First version with checksums of input files and all iterations.
 constexpr int first_with_history = 5;
 
 Json json_of_files(const Scene& scene) {
@@ -81,7 +79,6 @@ void read_scene(const Json& json, int format_version, Scene& scene) {
     if (json.contains("files")) read_files(json.at("files"), format_version, scene);
 }
 
-/// Old files contain only the number of rays.
 void read_result(const Json& json, int format_version, Solution& solution) {
     IterationReport& last = solution.iterations.emplace_back();
     if (format_version >= first_with_history && json.at("history").get<std::vector<std::string>>() != report_columns())

@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Scales a colour to a largest channel of at most 1. Clamping would shift its chromaticity.
+/// Scales colours to channels of at most 1, because clamping would shift chromaticity.
 inline Rgb within_display_range(const Rgb& colour) { return colour / std::max(1.0f, largest_channel(colour)); }
 
 }  // namespace interflect::detail

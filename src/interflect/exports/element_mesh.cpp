@@ -23,7 +23,7 @@ struct PositionHash {
     }
 };
 
-/// Merging distance [m], as for smooth surfaces.
+/// As for smooth surfaces [m].
 float joining_distance(const Scene& scene) {
     constexpr float relative = 0x1p-20f;
     float largest = 0;
@@ -97,7 +97,7 @@ void ElementMesh::join_near_points() {
         }
     });
     for (std::uint32_t i = 0; i < joined.size(); ++i) {
-        joined[i] = joined[joined[i]];  // joined[i] <= i, and smaller indices are already resolved
+        joined[i] = joined[joined[i]];  // smaller indices are already resolved
         if (joined[i] == i) tree_.push_back({Imath::Box3f(points_[i]), i});
     }
     arrange_box_tree(tree_);

@@ -19,19 +19,19 @@ struct MeshCorner {
 };
 using MeshTriangle = std::array<MeshCorner, 3>;
 
-/// Triangulation of the leaves without T-junctions; counter-clockwise seen from the lit side. Leaves with vertices
-/// inside their edges become fans. Other quadrilaterals are split along the diagonal with the smaller difference of
-/// irradiance (Baum et al. 1991).
+/// Triangulation of the leaves without T-junctions; counter-clockwise seen from the lit side. Quadrilaterals are split
+/// along the diagonal with the smaller difference of irradiance (Baum et al. 1991); leaves with more vertices become
+/// fans.
 class ElementMesh {
   public:
-    /// Keeps references. Cost: O(n log n) for n elements; about 100 bytes each.
+    /// Keeps references.
     /// @param irradiance  One value per element; only leaves count.
     /// @throws InputError for a forest of another scene.
     ElementMesh(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
 
     /// Relative to Scene::origin [m]; triangulate() appends the centres of fans.
     const std::vector<V3f>& points() const { return points_; }
-    /// Returns fewer than three vertices for a leaf without area.
+    /// Returns fewer than three vertices without area.
     std::vector<MeshCorner> outline(std::uint32_t leaf) const;
     void triangulate(std::uint32_t leaf, std::vector<MeshTriangle>& triangles);
 
@@ -42,11 +42,11 @@ class ElementMesh {
 
     const ElementForest& forest_;
     ElementVertices vertices_;
-    std::vector<Rgb> values_;  // irradiance at vertices_
+    std::vector<Rgb> values_;
     std::vector<V3f> points_;
     std::vector<std::array<std::uint32_t, 4>> corners_;
-    std::vector<Boxed> tree_;  // over all leaf corners
-    float tolerance_;          // merging distance [m]
+    std::vector<Boxed> tree_;
+    float tolerance_;  // [m]
 };
 
 }  // namespace interflect::detail

@@ -49,7 +49,7 @@ class Surroundings {
         return hit.patch == none || !is_dark_[hit.patch] ||
                scene_.materials[scene_.patches[hit.patch].material].transmittance != Rgb(0);
     }
-    /// Traces the reversed ray. @return  Distance from the patch to its obstacle [m]; about 0 without obstacle.
+    /// Traces the reversed ray. Returns [m]; about 0 without obstacle.
     float distance_from_patch(const Ray& ray, const Hit& hit, float distance) const {
         const float start = hit.patch == none ? distance : distance - ray_caster_.ray_offset(hit.patch);
         const Ray back{ray.origin + start * ray.direction, -ray.direction};
@@ -61,14 +61,14 @@ class Surroundings {
     const Scene& scene_;
     const RayCaster& ray_caster_;
     const std::vector<bool>& is_dark_;
-    float diameter_;  // of the scene [m]
+    float diameter_;  // [m]
 };
 
 }  // namespace
 
 std::vector<bool> encased_patches(const Scene& scene, const RayCaster& ray_caster, const std::vector<bool>& is_dark) {
     const Surroundings surroundings(scene, ray_caster, is_dark);
-    std::vector<char> encased(scene.patches.size(), 0);  // not bool: threads write to neighbouring entries
+    std::vector<char> encased(scene.patches.size(), 0);  // threads write to neighbouring entries
     constexpr std::size_t patches_at_once = 1 << 8;
     parallel_for_ranges(encased.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)

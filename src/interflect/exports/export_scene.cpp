@@ -19,7 +19,7 @@ struct SceneFormat {
     const char* extension;
     std::string (*describe)(ForeignScene& scene);
     std::string (*escape)(std::string_view file_name);
-    std::string_view excluded;  // characters of file names that cannot be escaped
+    std::string_view excluded;  // characters that cannot be escaped
 };
 constexpr std::array<SceneFormat, 4> scene_formats{{
     {".rad", radiance_description, quotable, ""},

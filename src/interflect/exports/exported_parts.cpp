@@ -36,7 +36,7 @@ Image image_of(const Texture& texture) {
 
 std::vector<std::string> plain_names(const std::vector<std::string>& names, const char* kind, std::size_t most) {
     std::set<std::string> taken;
-    std::map<std::string, int> next_numbers;  // by base name; smaller numbers are taken
+    std::map<std::string, int> next_numbers;  // by base name
     std::vector<std::string> plain;
     for (const std::string& name : names) {
         const std::string base = plain_name(name, kind).substr(0, most);

@@ -14,7 +14,6 @@ namespace interflect::detail {
 /// @param most  Maximum length before a number is appended.
 std::vector<std::string> plain_names(const std::vector<std::string>& names, const char* kind,
                                      std::size_t most = std::string::npos);
-/// Returns names short enough for file names.
 std::vector<std::string> material_names(const Scene& scene);
 std::vector<std::string> object_names(const Scene& scene);
 

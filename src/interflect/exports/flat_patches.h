@@ -13,7 +13,6 @@
 
 namespace interflect::detail {
 
-/// A patch laid out in a plane.
 struct FlatPatch {
     std::uint32_t patch;
     int count;                            ///< 3 or 4.
@@ -31,8 +30,7 @@ using FlatPatches = std::vector<FlatPatch>;
 /// Projects coplanar patches to their plane [m], counter-clockwise seen from the lit side.
 FlatPatches projected(const Scene& scene, std::span<const std::uint32_t> patches);
 
-/// Returns a lower bound of the distance between convex outlines: the largest gap along an edge normal, negative if
-/// they overlap.
+/// Returns a lower bound of the distance between convex outlines; negative if they overlap.
 double separation(const FlatPatch& a, const FlatPatch& b);
 
 }  // namespace interflect::detail

@@ -1,4 +1,4 @@
-// A script for Blender 2.93 or later: https://docs.blender.org/api
+// Blender 2.93 or later: https://docs.blender.org/api
 #include <fmt/format.h>
 
 #include <cmath>

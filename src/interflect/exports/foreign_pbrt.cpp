@@ -13,7 +13,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Returns the field of view of the shorter side, as pbrt expects [degrees]. @param fov  Vertical.
+/// Returns [degrees], as pbrt expects. @param fov  Vertical.
 float shorter_fov(const ForeignScene& scene, float fov) {
     const float aspect = static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
     return aspect >= 1 ? fov : 360 / pi * std::atan(aspect * std::tan(fov / 360 * pi));
@@ -84,7 +84,7 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
     return "";
 }
 
-/// Equal-area map from square to sphere (Clarberg 2008): EqualAreaSquareToSphere() of pbrt-v4.
+/// EqualAreaSquareToSphere() of pbrt-v4 (Clarberg 2008).
 V3f octahedral_direction(float x, float y) {
     const float u = 2 * x - 1, v = 2 * y - 1, a = std::abs(u), b = std::abs(v);
     const float signed_distance = 1 - (a + b), distance = std::abs(signed_distance), r = 1 - distance;

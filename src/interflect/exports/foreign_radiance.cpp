@@ -1,4 +1,4 @@
-// Radiance (Ward 1994) uses W/(m^2 sr): photometric values divided by 179 lm/W.
+// Radiance (Ward 1994) divides photometric values by 179 lm/W.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -29,7 +29,6 @@ struct ForeignMesh {
     std::vector<std::array<std::uint32_t, 3>> triangles() const;
 };
 
-/// A scene prepared for another renderer.
 struct ForeignScene {
     const Scene& scene;
     std::filesystem::path path;
@@ -45,9 +44,9 @@ struct ForeignScene {
     ForeignScene(const Scene& exported, const std::filesystem::path& description, const SceneExportOptions& chosen,
                  std::string (*file_name_escape)(std::string_view));
 
-    /// Adds a file "STEM-name" beside the description. @return  Its escaped name.
+    /// Adds a file "STEM-name"; returns its escaped name.
     std::string add_file(const std::string& name, std::string bytes);
-    /// Add a linear image; radiance is M / pi. @return  Its escaped name.
+    /// Add a linear image and return its escaped name; radiance is M / pi.
     std::string add_reflectance_image(std::uint32_t material);
     std::string add_radiance_image(std::uint32_t material);
     std::string add_transmittance_image(std::uint32_t material);
@@ -63,8 +62,7 @@ struct ForeignScene {
     Rgb radiance(const ForeignMesh& mesh) const;
     void leave_out(const std::string& what) { warnings.add("left-out", "left out: " + what); }
 
-    /// @param has_glass  The renderer supports panes and one-sided faces.
-    /// @param has_holes  The renderer supports transmittance textures.
+    /// @param has_glass, has_holes  Support of panes and one-sided faces; of transmittance textures.
     void warn_of_materials(bool has_glass, bool has_holes);
 };
 
@@ -76,7 +74,7 @@ std::string ply_of(const ForeignMesh& mesh);
 /// Formats "0.5 0.25 1".
 std::string triple(const V3f& v, const char* between = " ");
 
-// Return the description and add its files to the scene.
+// Return the description and add its files.
 std::string radiance_description(ForeignScene& scene);
 std::string mitsuba_description(ForeignScene& scene);
 std::string pbrt_description(ForeignScene& scene);

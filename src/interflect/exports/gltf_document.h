@@ -12,15 +12,14 @@
 
 namespace interflect::detail {
 
-/// A glTF 2.0 file under construction, with one binary buffer.
 class GltfDocument {
   public:
     GltfDocument();
 
-    /// Excludes the buffer; callers may extend it.
+    /// Excludes the buffer.
     Json json;
 
-    /// Appends an object to an array such as "materials". @return  Its index.
+    /// Appends to an array such as "materials". @return  Its index.
     int add(const char* array, Json object);
     void use_extension(const char* name);
 
@@ -32,7 +31,7 @@ class GltfDocument {
 
     /// Adds a texture as 8-bit sRGB PNG, clamped to [0, 1]. @return  Its index.
     /// @param opacity  Alpha in [0, 1]; no alpha channel if empty.
-    /// @param repeats  Repeats, with mipmaps; otherwise extends edge texels.
+    /// @param repeats  With mipmaps; otherwise extends edge texels.
     int add_texture(const Image& image, const std::string& name, bool repeats, std::span<const float> opacity = {});
 
     /// Return GLB, or JSON with embedded buffer. glb() throws InputError beyond 4 GiB.

@@ -25,7 +25,6 @@ struct MappedVertex {
     V2f coordinate, lightmap_coordinate;
 };
 
-/// Triangles of one object, material and lightmap image.
 using MappedPrimitive = WeldedVertices<MappedVertex>;
 using MappedPrimitives = std::map<std::tuple<std::uint32_t, std::uint32_t, int>, MappedPrimitive>;
 
@@ -38,8 +37,7 @@ struct Encoding {
     float intensity() const { return scale * std::exp2(exposure); }
 };
 
-/// Covers all texels, but at most eight times the irradiance at which white surfaces appear white, to hide 8-bit steps
-/// in dark areas.
+/// Covers all texels, up to eight times the irradiance displayed as white, to hide 8-bit steps in dark areas.
 float scale_of(const std::vector<Image>& images, LightmapContent content, float exposure) {
     if (content == LightmapContent::radiance) return std::exp2(-exposure);
     constexpr float headroom = 8;
@@ -91,7 +89,7 @@ MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, Ele
     return primitives;
 }
 
-/// Lightmaps of radiance use TEXCOORD_0, since their materials have no other texture.
+/// Radiance uses TEXCOORD_0, since its materials have no other texture.
 Json write_primitive(GltfDocument& document, const MappedPrimitive& primitive, const std::vector<V3f>& points,
                      bool is_textured, LightmapContent content) {
     Json attributes;
@@ -155,7 +153,6 @@ Json description_of(const Lightmap& lightmap, const Encoding& encoding, const st
               {"covered", lightmap.covered}}}};
 }
 
-/// Adds unclamped images. @return  Description of the groups.
 Json add_groups(const std::filesystem::path& path, const Lightmap& lightmap, const std::vector<std::string>& names,
                 const std::string& extension, const std::string& quantity, std::vector<ExportedFile>& files) {
     Json groups = Json::array();

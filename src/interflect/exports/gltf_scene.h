@@ -10,7 +10,6 @@
 
 namespace interflect::detail {
 
-/// Primitives by object.
 using GltfPrimitives = std::map<std::uint32_t, std::vector<Json>>;
 
 /// Adds objects and views to a root node, which rotates `up` to +y and restores Scene::origin.
@@ -25,7 +24,6 @@ class GltfTextures {
     /// Adds a texture of reflectance and opacity. @param material  Has a transmittance texture.
     /// @param peak  Divisor of the reflectance.
     void cut_out(Json& json, const Material& material, const Rgb& peak = Rgb(1));
-    /// @param peak  Divisor of the texels.
     Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));
 
   private:

@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Whether the file keeps the material's texture; vertices then store its factor.
+/// If true, vertices store the texture's factor.
 bool keeps_texture(const Material& material) {
     return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
 }
@@ -28,7 +28,7 @@ struct LitVertex {
     V2f coordinate;
 };
 
-/// Returns the largest texel per channel, 1 for black channels. Division by it gives vertex colours their full range.
+/// Returns 1 for black channels.
 Rgb peak_of(const Scene& scene, const Material& material) {
     Rgb peak = material.transmittance_texture == none
                    ? largest_texel(scene.textures[material.reflectance_texture])
@@ -60,7 +60,7 @@ class VertexLight {
   private:
     const Scene& scene_;
     float scale_;
-    std::vector<Rgb> brightest_;  // per textured material: reflectance of the brightest texel
+    std::vector<Rgb> brightest_;
 };
 
 using LitPrimitive = WeldedVertices<LitVertex>;

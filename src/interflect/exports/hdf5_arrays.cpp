@@ -24,7 +24,7 @@ void prepare_hdf5() {
     errno = 0;
 }
 
-/// Returns an empty text unless a disk is full or fails.
+/// Returns "" unless a disk is full or fails.
 std::string reason_of_disk() {
     const bool is_of_disk = errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO;
     return is_of_disk ? std::string(": ") + std::strerror(errno) : std::string();
@@ -65,7 +65,7 @@ hid_t native_type<std::byte>() {
     return H5T_NATIVE_UCHAR;
 }
 
-/// Chunks of about 1 MB limit the memory of compression.
+/// Chunks of 1 MB limit the memory of compression.
 void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
     constexpr hsize_t most_rows = hsize_t{1} << 16;
     constexpr unsigned deflate_level = 4;  // 9 takes seven times as long for 2% less
@@ -76,7 +76,6 @@ void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
     require(H5Pset_deflate(properties, deflate_level), "cannot compress an array");
 }
 
-/// @param compressed_size  Empty for an uncompressed array.
 Hdf5Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
                        std::span<const hsize_t> compressed_size = {}) {
     const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, no_properties);

@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 class Hdf5Handle {
   public:
-    /// @throws std::runtime_error with the failed operation `what` for an invalid `id`.
+    /// @throws std::runtime_error with `what` for an invalid `id`.
     Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const char* what);
     ~Hdf5Handle() { close_(id_); }
     Hdf5Handle(const Hdf5Handle&) = delete;
@@ -29,7 +29,7 @@ class Hdf5Handle {
     herr_t (*close_)(hid_t);
 };
 
-/// HDF5 is not thread-safe in every build: readers and writers exclude those of other threads.
+/// Excludes readers and writers of other threads, because HDF5 may not be thread-safe.
 class Hdf5Lock {
   public:
     Hdf5Lock() : lock_(mutex()) {}
@@ -46,7 +46,7 @@ class Hdf5Reader {
     explicit Hdf5Reader(const std::filesystem::path& path);
 
     bool has(const std::string& name) const;
-    /// The array is one-dimensional if `columns` is 1, otherwise two-dimensional.
+    /// Arrays are one-dimensional if `columns` is 1, else two-dimensional.
     template <class T>
     std::vector<T> read(const std::string& name, std::size_t columns = 1) const;
 
@@ -74,7 +74,7 @@ class Hdf5Writer {
     FileRange write_joined(const std::string& name, const std::vector<std::span<const std::byte>>& parts);
     /// Must be the last call.
     void flush();
-    /// Returns the file in memory. Must be the last call.
+    /// Must be the last call.
     std::string image();
 
   private:

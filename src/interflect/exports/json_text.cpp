@@ -12,7 +12,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Visits all values except objects and arrays. @param name  Innermost key.
+/// @param name  Innermost key.
 template <class Change>
 void change_values(Json& json, const std::string& name, const Change& change) {
     if (!json.is_structured()) return change(name, json);

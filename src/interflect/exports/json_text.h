@@ -12,10 +12,10 @@ using Json = nlohmann::ordered_json;
 /// @throws std::runtime_error naming a number that is not finite.
 std::string json_text(Json json, int indent = -1);
 
-/// Inverse of json_text(). @throws nlohmann::json::exception
+/// Inverse of json_text(). @throws Json::exception
 Json parse_json_text(std::string_view text);
 
-/// Returns the double with the fewest digits that identify `value`: 0.1f becomes 0.1.
+/// Returns the double with the fewest digits that identify `value`.
 double shortest_number(float value);
 
 template <class Vector>

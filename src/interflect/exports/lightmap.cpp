@@ -27,14 +27,12 @@ namespace interflect::detail {
 
 namespace {
 
-/// Evaluation point of a texel.
 struct TexelPlace {
     std::uint32_t patch = none;
     Parameters at;
     bool is_inside = false;
 };
 
-/// Finds nearest points in the chart's plane.
 class NearestPatch {
   public:
     explicit NearestPatch(const LightmapChart& chart) : patches_(chart.patches) {
@@ -114,7 +112,7 @@ Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const
     return geometry.parameters_of(is_inside ? x : nearest);
 }
 
-/// Moves a point to at least `distance` from the border, or less for narrow patches.
+/// Keeps `distance` from the border, or less in narrow patches.
 Parameters inset(const PatchGeometry& geometry, Parameters p, float distance) {
     const auto& shape = geometry.shape();
     const auto share = [&](const V3f& edge) { return std::min(distance / edge.length(), 0.25f); };
@@ -263,7 +261,7 @@ Monitor part_of(const Monitor& whole, std::size_t part, std::size_t count) {
     return monitor;
 }
 
-/// Evaluates each light group alone. The lightmap is their sum, including noise.
+/// The lightmap is the sum of its groups, including noise.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
                      const ExportOptions& options, Lightmap& lightmap) {
     SourceGroups groups = source_groups(scene);

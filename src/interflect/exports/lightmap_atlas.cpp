@@ -53,7 +53,6 @@ Packing pack(std::vector<stbrp_rect> rectangles, int width, int height) {
     return packing;
 }
 
-/// @param lying  Makes the longer sides horizontal.
 std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen,
                                       int gutter, bool lying) {
     std::vector<stbrp_rect> rectangles;
@@ -65,7 +64,7 @@ std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, 
     return rectangles;
 }
 
-/// Returns the smallest packing over many widths, or fills an image of full size if none is complete.
+/// Returns the smallest complete packing, or else a full image.
 Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen, int gutter,
                      int max_size) {
     constexpr std::size_t many_charts = 2000;
@@ -79,7 +78,7 @@ Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector
             area += static_cast<double>(r.w) * r.h;
             widest = std::max(widest, r.w);
         }
-        const double narrowest = std::max<double>(widest, std::sqrt(area / 2));  // at most about twice as high as wide
+        const double narrowest = std::max<double>(widest, std::sqrt(area / 2));
         const double broadest = std::max(narrowest, std::min<double>(max_size, std::sqrt(2 * area)));
         for (int i = 0; i <= trials; ++i) {
             const double width = narrowest + (broadest - narrowest) * i / trials;

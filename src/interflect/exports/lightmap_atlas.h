@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// Packs charts with gutters into images; may rotate charts.
+/// Packs charts into images; may rotate them.
 /// @param max_size  Largest side, a multiple of 4; must hold each chart with gutters.
 /// @return          Sizes of the images, multiples of 4.
 std::vector<Imath::V2i> pack_charts(std::vector<LightmapChart>& charts, int gutter, int max_size);

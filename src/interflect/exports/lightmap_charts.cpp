@@ -18,17 +18,17 @@ namespace interflect::detail {
 
 namespace {
 
-/// Width of gaps that separate charts [texels].
+/// [texels]
 constexpr double narrow_gap = 2;
 
-/// Edge, or part of an edge, without adjacent patch.
+/// Part of an edge without adjacent patch.
 struct BorderEdge {
     std::uint32_t patch;
     V3f a, b;
     V3f inwards;  // unit vector in the plane
 };
 
-/// Keeps joints within objects; pairs each edge with the first of its group.
+/// Keeps joints within objects.
 Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     Joints joints = smooth.seams;
     std::vector<std::uint32_t> first(smooth.edges.count, none);
@@ -46,7 +46,6 @@ Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     return joints;
 }
 
-/// Adjacency of patches on each side of flat surfaces, and their border.
 class Neighbourhood {
   public:
     Neighbourhood(const Scene& scene, const Joints& joints)
@@ -73,7 +72,6 @@ class Neighbourhood {
   private:
     using Intervals = std::vector<std::pair<float, float>>;
 
-    /// @param inner  Parts of the edge with adjacent patches.
     void add_border(std::uint32_t edge, Intervals inner) {
         constexpr float rounding = 1e-5f;
         const Patch& patch = scene_.patches[edge / 4];
@@ -213,7 +211,7 @@ Rectangle smallest_rectangle(const Points& hull) {
             high = {std::max(high.x, q.x), std::max(high.y, q.y)};
         }
         const Imath::V2d size = high - low;
-        constexpr double rounding = 1e-6;  // the first of equal rectangles wins
+        constexpr double rounding = 1e-6;
         if (size.x * size.y < least * (1 - rounding)) {
             least = size.x * size.y;
             best = {x * low.x + y * low.y, x, size};

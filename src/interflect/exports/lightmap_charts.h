@@ -9,8 +9,7 @@
 
 namespace interflect::detail {
 
-/// Patches in a plane, and their rectangle in a lightmap. The outermost texel centres lie on its border, where
-/// interpolation is exact.
+/// Patches in a plane, and their rectangle in a lightmap, with the outermost texel centres on its border.
 struct LightmapChart {
     FlatPatches patches;  ///< From texel (0, 0) along columns and rows [m].
     Imath::V2d size;      ///< [m]
@@ -21,8 +20,8 @@ struct LightmapChart {
 };
 
 /// Makes charts from the objects' own layouts (kept_layouts()). Unfolds other smooth surfaces (unfolded()), split at
-/// discontinuities of light and at gaps narrower than two texels. Cost: O(n log n) for n patches.
-/// @param warnings  Receives objects with unusable layouts; may be null.
+/// discontinuities of light and at gaps narrower than two texels.
+/// @param warnings  As for kept_layouts().
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings = nullptr);
 

@@ -16,7 +16,7 @@ namespace {
 /// In the unit square; above the rounding of 16-bit coordinates.
 constexpr double layout_rounding = 0x1p-15;
 
-/// Returns the layout in the unit square, v downwards.
+/// v points downwards.
 FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
     const Patch& patch = scene.patches[p];
     FlatPatch flat{p, patch.vertex_count()};
@@ -27,7 +27,7 @@ FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
     return flat;
 }
 
-/// Minimum share of the rectangle in use; low for objects that share a map.
+/// Low for objects that share a map.
 constexpr double least_filled = 0.1;
 
 bool is_mostly_empty(const FlatPatches& layout) {

@@ -7,10 +7,10 @@
 
 namespace interflect::detail {
 
-/// Exports binary glTF 2.0 (docs/export.md), y up, with light at vertices or in lightmaps.
+/// Exports binary glTF 2.0 (docs/export.md), y up.
 std::vector<ExportedFile> make_glb(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
-/// Exports JSON with embedded binary data.
+/// Embeds the binary data in JSON.
 std::vector<ExportedFile> make_gltf(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                     const ExportOptions& options);
 

@@ -15,9 +15,9 @@ namespace interflect::detail {
 /// Leaves as convex polygons without T-junctions (ElementMesh); equal corners share a vertex.
 struct LitPolygons {
     struct Vertex {
-        std::uint32_t point;  ///< Index into `points`.
-        Rgb irradiance;       ///< H [lm/m^2 or W/m^2].
-        Rgb radiosity;        ///< B = M + rho H [unit of H], textures included.
+        std::uint32_t point;
+        Rgb irradiance;  ///< H [lm/m^2 or W/m^2].
+        Rgb radiosity;   ///< B = M + rho H [unit of H], textures included.
         bool operator==(const Vertex&) const = default;
     };
 
@@ -26,13 +26,13 @@ struct LitPolygons {
     std::vector<std::uint32_t> leaves;
     std::vector<std::uint32_t> ends;     ///< End of each polygon in `corners`.
     std::vector<std::uint32_t> corners;  ///< Indices into `vertices`, counter-clockwise seen from the lit side.
-    std::vector<Parameters> parameters;  ///< Per corner.
+    std::vector<Parameters> parameters;
 
     std::size_t size() const { return leaves.size(); }
     std::uint32_t begin(std::size_t polygon) const { return polygon == 0 ? 0 : ends[polygon - 1]; }
 };
 
-/// Omits leaves without area. Cost: as ElementMesh.
+/// Omits leaves without area.
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution);
 
 /// Returns radiance times 2^exposure, within_display_range(), as 8-bit sRGB. @param radiosity  [lm/m^2 or W/m^2]

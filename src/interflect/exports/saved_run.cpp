@@ -1,4 +1,4 @@
-// Solver::save() and Solver::open() are here because the solver is independent of file formats.
+// Solver::save() and open() are here because the solver is independent of file formats.
 
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ using namespace detail;
 
 namespace {
 
-/// Archives options that solution files omit because they depend on the machine.
+/// Archives options that depend on the machine.
 void archive_options(StateArchive& archive, SolveOptions& options) {
     options.refinement.max_elements =
         archive.by_value("options/max_elements", std::vector{options.refinement.max_elements}).at(0);
@@ -46,7 +46,7 @@ Solver Solver::open(const std::filesystem::path& path) {
         solver.run_->archive(state);
         return solver;
     } catch (const std::bad_alloc&) {
-        throw;  // not a fault of the file
+        throw;
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("a run that cannot go on: {}", e.what()));
     }

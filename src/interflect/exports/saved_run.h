@@ -9,10 +9,10 @@ namespace interflect::detail {
 
 struct SavedRun {
     SolvedScene solved;  ///< Sources are undimmed; apply Solution::dimming.
-    StateArchive state;  ///< Open for reading.
+    StateArchive state;
 };
 
-/// @throws InputError as read_solution(), and if the state is missing or from another version of Interflect.
+/// @throws InputError as read_solution(), and if the state is missing or from another version.
 SavedRun read_saved_run(const std::filesystem::path& path);
 
 /// Omits a null state. @throws as the public write_solution().

@@ -11,9 +11,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Limits of dark sides: black beside lit rooms, about the light of a moonless night.
-constexpr double most_dark = 1e-3;          // [lm/m^2]
-constexpr double most_dark_of_mean = 1e-4;  // relative to the mean
+/// Black beside lit rooms, about the light of a moonless night.
+constexpr double most_dark = 1e-3;  // [lm/m^2]
+constexpr double most_dark_of_mean = 1e-4;
 /// Limit inside solids: invisible, but above stray rays at seams (2e-4 in a room with 5 million rays).
 constexpr double most_stray_of_mean = 1e-3;
 

@@ -7,9 +7,8 @@
 
 namespace interflect::detail {
 
-/// Returns whether to export each patch as a lit surface. Excludes patches that would show through at edges: those
-/// covered by coincident faces, dark sides of faces, and encased_patches(). A face dark on both sides keeps its first.
-/// Uses light before dim(), so all states of a solution export the same patches.
+/// Excludes patches covered by coincident faces, dark sides of faces and encased_patches() from export. A face that is
+/// dark on both sides keeps its first. Uses light before dim(), so all states of a solution export the same patches.
 std::vector<bool> shown_patches(const Scene& scene, const Solution& solution);
 
 }  // namespace interflect::detail

@@ -48,7 +48,6 @@ std::vector<Vector> grouped(const std::vector<float>& numbers) {
     return v;
 }
 
-/// Four vertices, material, object, other side and surface.
 constexpr std::size_t numbers_per_patch = 8;
 
 std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
@@ -109,7 +108,7 @@ constexpr std::array<ElementNumbers, 5> element_numbers = {
      {"/solution/view_importance", "view importance", &Solution::view_importance, true, 2},
      {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true, 2}}};
 
-/// Requires finite, non-negative numbers. @return  The fault, or an empty string.
+/// Returns the fault, or an empty string.
 std::string fault_of(std::span<const float> numbers, std::size_t per_element, const ElementForest& forest,
                      const char* what) {
     if (numbers.size() != per_element * forest.size()) return fmt::format("{} and elements differ in number", what);
@@ -225,7 +224,7 @@ struct VerifiedFile {
 };
 
 VerifiedFile verified(const std::filesystem::path& path) {
-    // HDF5 also searches for its signature further on. Files without checksums begin with it.
+    // Files without checksums begin with the signature.
     const bool has_checksums = !has_hdf5_signature(path, 0);
     if (has_checksums) verify_checksums(path);
     return {has_checksums, Hdf5Reader(path)};
@@ -320,13 +319,12 @@ void require_solution_file(const std::filesystem::path& path) {
     if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
 }
 
-/// Converts exceptions of `read` to an InputError with `fault`.
 template <class Read>
 auto read_or_refuse(const std::filesystem::path& path, const char* fault, const Read& read) {
     try {
         return read();
     } catch (const std::bad_alloc&) {
-        throw;  // not a fault of the file
+        throw;
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("{}: {}", fault, e.what()));
     }

@@ -110,7 +110,7 @@ struct RowReader {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Ambiguous names begin with their group's. @param access  Writer or Reader.
+/// Ambiguous names begin with their group's.
 template <class Options, class Access>
 void for_each_option(Options& options, const Access& access) {
     auto& limits = options.limits;
@@ -143,7 +143,6 @@ void for_each_option(Options& options, const Access& access) {
     access.field("beta", o.beta);
 }
 
-/// Renames options of older versions.
 Json with_present_names(Json json) {
     if (json.contains("time")) return json;
     json["time"] = json.at("seconds");
@@ -156,7 +155,6 @@ Json with_present_names(Json json) {
     return json;
 }
 
-/// @param access  Writer, Reader, RowWriter or RowReader.
 template <class Report, class Access>
 void for_each_number(Report& r, const Access& access) {
     access.field("iteration", r.iteration);

@@ -9,17 +9,16 @@
 
 namespace interflect::detail {
 
-/// Uses the names of the command line. Unset limits are null. Omits seed and method, stored beside the options, and
-/// max_elements, which depends on the machine.
+/// Uses the names of the command line. Unset limits are null. Omits seed, method and max_elements.
 Json json_of(const SolveOptions& options);
 
-/// Inverse of json_of(). @throws nlohmann::json::exception, InputError for missing or unknown values.
+/// Inverse of json_of(). @throws Json::exception, InputError for missing or unknown values.
 void read_options(const Json& stored, SolveOptions& options);
 
 /// Omits the duration, so equal input gives equal text. Unknown errors are null.
 Json json_of(const IterationReport& report);
 
-/// Inverse of json_of(). @throws nlohmann::json::exception
+/// Inverse of json_of(). @throws Json::exception
 IterationReport report_of(const Json& json);
 
 /// Return unknown errors as infinity.
@@ -31,7 +30,7 @@ IterationReport report_of_row(std::span<const double> row);
 Json json_of(const View& view);
 View view_of(const Json& json);
 
-/// @throws nlohmann::json::exception
+/// @throws Json::exception
 template <class Vector>
 Vector vector_of(const Json& json) {
     using Number = decltype(Vector::x);

@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-// Textures in a solution file: metadata as JSON, texels and coordinates as arrays.
+// Metadata of textures as JSON; texels and coordinates as arrays.
 
 Json json_of(const Texture& texture);
 Json json_of(const std::vector<Texture>& textures);

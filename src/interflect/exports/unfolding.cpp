@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Limit per layout: each new piece is compared with all its patches.
+/// Each new piece is compared with all patches of its layout.
 constexpr std::size_t most_patches_unfolded = 4096;
 
 /// Maximum relative change of edge lengths.
@@ -18,10 +18,8 @@ constexpr double most_stretch = 0.1;
 /// Maximum relative change of areas at corners.
 constexpr double most_shear = 0.2;
 
-/// Relative rounding.
 constexpr double flat_rounding = 1e-4;
 
-/// Rotation and translation of the plane.
 struct RigidMotion {
     Imath::V2d from, to, cos_sin;
 
@@ -150,7 +148,6 @@ class Unfolding {
         });
     }
 
-    /// Pairs points of the piece with their positions in the layout.
     std::vector<PointPair> common_points(std::uint32_t piece, std::uint32_t number, bool& has_seams) const {
         std::vector<PointPair> pairs;
         for (const FlatPatch& flat : pieces_[piece])
@@ -178,7 +175,6 @@ class Unfolding {
         return flat.corners[start] * (1 - share) + flat.corners[end] * share;
     }
 
-    /// Whether a patch overlaps no other and is close only to patches close in space.
     bool has_room(const FlatPatch& flat) const {
         const Imath::Box2d box = flat.box();
         const double rounding = flat_rounding * box.size().length();
@@ -204,15 +200,15 @@ class Unfolding {
     const ChartConflicts& conflicts_;
     std::vector<FlatPatches> pieces_;
     double gap_;
-    std::vector<std::uint32_t> piece_of_;                // by patch
-    std::vector<std::uint32_t> layout_of_;               // by piece
-    std::vector<std::vector<std::uint32_t>> joints_of_;  // by piece
+    std::vector<std::uint32_t> piece_of_;
+    std::vector<std::uint32_t> layout_of_;
+    std::vector<std::vector<std::uint32_t>> joints_of_;
 
     // The current layout:
     FlatPatches layout_;
     std::vector<Imath::Box2d> boxes_;
-    std::unordered_map<std::uint32_t, Imath::V2d> position_;          // by group of corners
-    std::unordered_map<std::uint32_t, std::size_t> place_in_layout_;  // by patch
+    std::unordered_map<std::uint32_t, Imath::V2d> position_;
+    std::unordered_map<std::uint32_t, std::size_t> place_in_layout_;
 };
 
 }  // namespace

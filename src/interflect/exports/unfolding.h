@@ -13,15 +13,13 @@ namespace interflect::detail {
 /// For each patch, patches that must be in other charts.
 using ChartConflicts = std::vector<std::vector<std::uint32_t>>;
 
-/// Edges, or parts of them, that join two patches of a smooth surface.
+/// Edges, or parts of edges, between patches of a smooth surface.
 using Joints = std::vector<SmoothSurfaces::Seam>;
 
-/// Unfolds smooth surfaces by joining flat pieces at common edges: exact for developable surfaces, otherwise with
-/// deformation (most_stretch, most_shear). A piece that would deform more, overlap, or come closer than `gap` [m] to a
-/// piece further away in space starts another layout.
-/// Cost: O(n) for n pieces (most_patches_unfolded).
+/// Unfolds smooth surfaces by joining flat pieces at common edges, with deformations up to most_stretch and most_shear.
+/// A piece that would deform more, overlap, or come closer than `gap` [m] to a piece further away in space starts
+/// another layout.
 /// @param corners  From find_smooth_surfaces().
-/// @param joints   Between pieces. @param conflicts  Between patches.
 std::vector<FlatPatches> unfolded(const Scene& scene, const SmoothSurfaces::Groups& corners, const Joints& joints,
                                   const ChartConflicts& conflicts, std::vector<FlatPatches> pieces, double gap);
 

@@ -9,7 +9,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// @param value  Returns a number or a vector of three.
 template <class Value>
 VtkArray vtk_array(std::string name, std::size_t count, const Value& value) {
     using Result = std::remove_cvref_t<decltype(value(std::size_t{0}))>;

@@ -20,12 +20,12 @@ struct VtkArray {
         numbers;
 };
 
-/// A solved scene as VTK grid with leaves as cells. Creates one array at a time, on request.
+/// A solved scene with leaves as cells.
 class VtkGrid {
   public:
     using Sink = std::function<void(const VtkArray&)>;
 
-    /// Keeps references. Cost: as lit_polygons().
+    /// Keeps references.
     VtkGrid(const Scene& scene, const Solution& solution)
         : scene_(scene), solution_(solution), polygons_(lit_polygons(scene, solution)) {}
 

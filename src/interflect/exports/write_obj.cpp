@@ -27,7 +27,6 @@ std::string opacity_png(const Texture& opacity) {
     return codecs::encode_png(image);
 }
 
-/// @param images  Receives images of cut-outs.
 std::string materials_text(const std::filesystem::path& path, const Scene& scene, std::vector<ExportedFile>& images) {
     const std::vector<std::string> names = material_names(scene);
     std::string text = fmt::format("# Interflect {}\n", INTERFLECT_VERSION);

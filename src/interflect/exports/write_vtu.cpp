@@ -19,7 +19,6 @@ constexpr const char* vtk_type() {
     if constexpr (std::is_same_v<Number, std::uint8_t>) return "UInt8";
 }
 
-/// A VTK XML file with appended raw numbers.
 class VtkDocument {
   public:
     void open(const std::string& tag) { xml_ += "<" + tag + ">\n"; }

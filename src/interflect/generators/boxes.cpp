@@ -18,7 +18,7 @@ namespace {
 
 using namespace building;
 
-constexpr float cell = 1.2f;                                       // side of a box's square of floor [m]
+constexpr float cell = 1.2f;                                       // side of the floor per box [m]
 constexpr float luminaire_pitch = 3.6f;                            // [m]
 constexpr Interval half_side{.10f, .36f}, box_height{.10f, 1.4f};  // [m]
 
@@ -34,7 +34,7 @@ void add_box(Scene& scene, const V3f& cell_centre, std::uint32_t object, const P
 }
 
 void add_textures(Scene& scene, const Palette& palette, std::uint32_t floor) {
-    constexpr float tiles = 1.2f;  // side of the image on the floor [m]
+    constexpr float tiles = 1.2f;  // [m]
     scene.materials[floor].reflectance_texture = add_texture(scene, make_tiles());
     const std::uint32_t label = add_texture(scene, make_label()), louvres = add_texture(scene, make_louvres());
     for (const std::uint32_t paper : palette.papers) scene.materials[paper].reflectance_texture = label;

@@ -10,13 +10,13 @@ struct BoxesOptions {
     static constexpr std::uint32_t most_boxes = 100'000;
 
     std::uint32_t boxes = 20;  ///< 1 to most_boxes.
-    std::uint64_t seed = 1;    ///< Equal options give equal scenes.
+    std::uint64_t seed = 1;
     bool texture = false;
 };
 
-/// Creates a closed, square room about the origin, 2.8 m high, with ceiling luminaires and about one box per 1.4 m^2 of
-/// floor, of random size, rotation and colour. A box or luminaire has six one-sided patches, the room ten. Boxes are at
-/// least 4 mm apart. Textured patches have their own vertices. Views "room-0" and "overview". Linear in the boxes.
+/// Creates a closed, square room about the origin, 2.8 m high, with ceiling luminaires and a random box per 1.4 m^2 of
+/// floor, at least 4 mm apart. A box or luminaire has six one-sided patches, the room ten. Views "room-0" and
+/// "overview".
 /// @throws InputError if the number of boxes is out of range.
 Scene make_boxes(const BoxesOptions& options);
 

@@ -20,7 +20,7 @@ namespace {
 
 using namespace building;
 
-constexpr float one_luminaire = 100;  // pitch wider than any room [m]
+constexpr float one_luminaire = 100;  // wider than any room [m]
 
 /// Large pieces first, because later ones may not fit.
 const std::array wall_furniture{&bookcase, &bookcase, &workstation, &workstation, &low_bookcase, &cabinet,
@@ -33,7 +33,6 @@ void require_valid(const MazeOptions& options) {
         throw InputError(fmt::format("the share of extra doors must be 0 to 1, not {}", options.extra_doors));
 }
 
-/// Rooms have independent sequences.
 RandomSequence sequence_of(const MazeOptions& options, std::uint32_t room) {
     return RandomSequence(mix(options.seed, std::uint64_t{room} + 1));
 }
@@ -79,7 +78,7 @@ Scene make_maze(const MazeOptions& options) {
 }
 
 std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options) {
-    constexpr std::uint32_t sample = 64;  // enough for an accurate mean
+    constexpr std::uint32_t sample = 64;  // enough for the mean
     MazeOptions small = options;
     small.rooms = sample;
     const double patches_per_room = static_cast<double>(make_maze(small).patches.size()) / sample;

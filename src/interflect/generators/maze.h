@@ -11,22 +11,19 @@ struct MazeOptions {
 
     std::uint32_t rooms = 9;  ///< 1 to most_rooms.
     bool furniture = false;
-    float extra_doors = 0.15f;  ///< Fraction of the remaining walls that get a doorway, 0 to 1.
-    std::uint64_t seed = 1;     ///< Equal options give equal scenes.
+    float extra_doors = 0.15f;  ///< Fraction of other walls with a doorway, 0 to 1.
+    std::uint64_t seed = 1;
 };
 
-/// Creates a maze of rooms, for tests of importance: each view sees a small part, and most light is indirect. Rooms of
-/// 5 to 7 m, 2.8 m high, form a nearly square grid about the origin, z up, connected by doorways. Each has its own
-/// colours and a luminaire of about 8,000 lm.
-///
-/// All faces are one-sided. add_shell() makes the rooms; furniture consists of closed convex solids, at least 4 mm
-/// apart. A room has about 50 patches, with furniture 2,590; nine such rooms match the scene in Prikryl et al. 2000
-/// (23,182 patches). Views are "overview" and, for the first 64 rooms, "room-0" and so on. Linear in the rooms.
+/// Creates a maze to test importance: each view sees a small part, and most light is indirect. Rooms of 5 to 7 m, 2.8 m
+/// high, form a nearly square grid about the origin, z up, each with a luminaire of about 8,000 lm. Faces are
+/// one-sided; furniture consists of closed convex solids, at least 4 mm apart. A room has about 50 patches, with
+/// furniture 2,590; nine match the scene in Prikryl et al. 2000 (23,182). Views "overview" and, for the first 64 rooms,
+/// "room-0" and so on. Equal options give equal scenes.
 /// @throws InputError if an option is out of range.
 Scene make_maze(const MazeOptions& options);
 
-/// Returns the number of rooms for about `patches` patches; ignores options.rooms.
-/// @throws InputError if it exceeds most_rooms.
+/// Returns the number of rooms for about `patches` patches; ignores options.rooms. @throws InputError above most_rooms.
 std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options);
 
 }  // namespace interflect::detail

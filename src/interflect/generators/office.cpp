@@ -41,7 +41,6 @@ FloorPlan plan_office(const OfficeOptions& options) {
                             .seed = options.seed});
 }
 
-/// Chairs face south.
 void add_desks(const Room& room, const OfficeOptions& options, Furnisher& furnisher) {
     for (std::uint32_t row = 0; row < options.desk_rows; ++row)
         for (std::uint32_t desk = 0; desk < options.desks_per_row; ++desk)

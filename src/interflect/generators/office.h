@@ -12,12 +12,11 @@ struct OfficeOptions {
     std::uint32_t rooms = 1;          ///< 1 to most_rooms.
     std::uint32_t desk_rows = 3;      ///< Per room, 1 to most_rows.
     std::uint32_t desks_per_row = 4;  ///< 1 to most_desks_per_row.
-    std::uint64_t seed = 1;           ///< Equal options give equal scenes.
+    std::uint64_t seed = 1;
 };
 
-/// Creates one floor of equal rooms, connected by doorways, with rows of desks below a grid of luminaires and furniture
-/// along the walls. Other properties as make_maze(). A desk has about 230 patches; two rows share a bookcase of 650.
-/// Linear in the desks.
+/// Creates one floor of equal rooms with rows of desks, a grid of luminaires and furniture along the walls; otherwise
+/// as make_maze(). A desk has about 230 patches; two rows share a bookcase of 650.
 /// @throws InputError if an option is out of range.
 Scene make_office(const OfficeOptions& options);
 

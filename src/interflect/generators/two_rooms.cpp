@@ -60,7 +60,7 @@ Scene make_two_rooms(const TwoRoomsOptions& options) {
 
     const float radians = options.turn * std::numbers::pi_v<float> / 180;
     const auto wall = building::Placement::turned(V3f(length / 2, width / 2, 0), radians);
-    // A straight partition ends at the outer walls; the corners of a rotated one lie behind them.
+    // The corners of a rotated partition lie behind the outer walls.
     const float half = options.turn == 0 ? width / 2 : width / 2 / std::cos(radians) + 0.1f;
     building::Solids(scene, wall, add_object(scene, "wall"))
         .box({-thickness / 2, -half, 0}, {thickness / 2, half, height}, white);

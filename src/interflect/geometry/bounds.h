@@ -22,8 +22,8 @@ inline Imath::Box3f bounds_of(const Scene& scene, const Patch& patch) {
     return box;
 }
 
-/// Returns whether a box is within `distance` [m] of a plane with a unit `normal`.
-/// @param height  Signed distance of a point from the plane (V3d -> [m]).
+/// Whether a box is within `distance` [m] of a plane with unit `normal`.
+/// @param height  Signed distance from the plane (V3d -> [m]).
 template <class Height>
 bool meets_plane(const Imath::Box3f& box, const Imath::V3d& normal, const Height& height, double distance) {
     const Imath::V3d centre = (Imath::V3d(box.min) + Imath::V3d(box.max)) * 0.5, half = Imath::V3d(box.max) - centre;

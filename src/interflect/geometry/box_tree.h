@@ -12,12 +12,11 @@
 namespace interflect::detail {
 
 struct Boxed {
-    Imath::Box3f box;  ///< After arrange_box_tree(): bounds of the whole subtree.
+    Imath::Box3f box;  ///< After arrangement: bounds of the subtree.
     std::uint32_t index = 0;
 };
 
-/// Arranges `elements` in place as an implicit bounding volume hierarchy. The middle element is the root; its subtrees
-/// precede and follow it. O(n log n).
+/// Arranges a bounding volume hierarchy in place: the middle element is the root, between its subtrees.
 inline void arrange_box_tree(std::span<Boxed> elements) {
     if (elements.empty()) return;
     Imath::Box3f all, centres;  // centres are doubled
@@ -43,8 +42,7 @@ inline void arrange_box_tree(std::span<Boxed> elements) {
     elements[middle].box = all;
 }
 
-/// Calls visit(index) for each element whose enclosing subtree boxes all satisfy reaches(box). Boxes of inner elements
-/// are not stored, so visited elements may lie outside.
+/// Calls visit(index) for each element whose subtree boxes all satisfy reaches(box); its own box may not.
 template <class Reaches, class Visit>
 void visit_box_tree(std::span<const Boxed> tree, const Reaches& reaches, const Visit& visit) {
     if (tree.empty()) return;

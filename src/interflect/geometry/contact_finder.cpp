@@ -17,7 +17,7 @@ namespace {
 using Imath::V2d;
 using Imath::V3d;
 
-/// Minimum sine of the angle between intersecting faces (1 degree). Flatter intersections bound no shadow.
+/// 1 degree: flatter intersections bound no shadow.
 constexpr double least_angle_sine = 0.0175;
 
 }  // namespace

@@ -14,15 +14,14 @@
 
 namespace interflect::detail {
 
-/// Segment in which another face meets a facet.
 struct FoundSegment {
     PlanarSegment segment;  ///< `a` is the lexicographically lower end.
-    int outline = 0;        ///< Side of a coplanar face bounded by the segment: 1 left, -1 right; 0: other contacts.
+    int outline = 0;        ///< Side of a coplanar face: 1 left, -1 right; 0 otherwise.
 };
 
 class ContactFinder {
   public:
-    /// @param rank  rank_by_flat_surface() of the scene.
+    /// @param rank  rank_by_flat_surface().
     ContactFinder(const Scene& scene, const Facet& facet, std::span<const std::uint32_t> rank, double touch_distance);
 
     const PlanarPolygon& polygon() const { return polygon_; }
@@ -32,13 +31,13 @@ class ContactFinder {
     float reach() const;
     bool plane_meets(const Imath::Box3f& box) const;
     void add_contacts_with(const Facet& other);
-    /// Returns the segments in connected components at least `least_extent` [m] wide.
+    /// Returns the connected components at least `least_extent` [m] wide.
     std::vector<PlanarSegment> segments(double least_extent);
 
   private:
-    /// Removes duplicates, and borders between coplanar faces that cover the facet on both sides.
+    /// Removes duplicates and shared borders of coplanar faces.
     std::vector<PlanarSegment> distinct_segments();
-    /// Returns the component of each segment, as its lowest index. Segments with a common end are connected.
+    /// Returns the lowest index of each segment's component. Common ends connect segments.
     std::vector<std::uint32_t> connected(const std::vector<PlanarSegment>& segments) const;
 
     bool is_two_sided(const Facet& f) const { return scene_.patches[f.face].other_side != none; }
@@ -52,7 +51,6 @@ class ContactFinder {
 
     void add(const Imath::V3d& a, const Imath::V3d& b, int outline);
     void add_outline(const Facet& other);
-    /// Adds the intersection of `other` with this facet's plane.
     void add_section(const Facet& other, const std::array<double, 4>& height, double touching);
 
     const Scene& scene_;

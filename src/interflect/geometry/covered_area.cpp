@@ -16,11 +16,9 @@ namespace {
 using Imath::V2d;
 using Imath::V3d;
 
-/// Fraction of the patch's area below which areas are rounding error.
+/// Relative area of rounding errors.
 constexpr double negligible_share = 1e-12;
-/// Number of polygons above which the patch is halved first.
 constexpr std::size_t cut_at_once = 4;
-/// Polygons that still overlap are subtracted one by one.
 constexpr int most_halvings = 24;
 
 double area_of(const PlanarPolygon& polygon) { return 0.5 * doubled_area(polygon); }
@@ -44,7 +42,7 @@ PlanarPolygon intersection(PlanarPolygon polygon, const PlanarPolygon& other) {
     return polygon;
 }
 
-/// Returns [m^2]; areas up to `negligible` [m^2] count as 0.
+/// In [m^2]; areas up to `negligible` [m^2] count as 0.
 double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygon*> others, double negligible,
                     int halvings) {
     const double area = area_of(polygon);
@@ -72,7 +70,7 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
     }
     const PlanarPolygon& first = *others.back();
     others.pop_back();
-    PlanarPolygon rest = polygon;  // part inside all processed edges of `first`
+    PlanarPolygon rest = polygon;
     for (std::size_t i = 0; i < first.size() && rest.size() > 2; ++i) {
         const V2d &a = first[i].position, &b = first[(i + 1) % first.size()].position;
         outside += area_outside(half_of(rest, a, b, false), others, negligible, halvings);
@@ -81,7 +79,6 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
     return outside;
 }
 
-/// s along the first edge, t perpendicular.
 class PatchPlane {
   public:
     PatchPlane(const Scene& scene, const Patch& patch) : scene_(scene), origin_(vertex(patch, 0)) {

@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// Union-find over 0 ... size - 1 with path halving. The lowest member represents its set.
+/// Union-find. The lowest member represents its set.
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }

@@ -15,7 +15,7 @@ using Imath::V2d;
 
 constexpr std::size_t candidates_per_cut = 24;
 
-/// height() is the signed distance, positive on the left.
+/// height() is positive on the left.
 struct Line {
     V2d origin, direction;
 
@@ -61,7 +61,6 @@ double chord_length(const PlanarPolygon& polygon, const Line& line) {
     return std::max(0.0, to - from);
 }
 
-/// Penalises divided segments, free length (without contact) and imbalance of the halves.
 double cost_of(const Piece& piece, const Line& line, double tolerance) {
     constexpr double of_division = 2, of_free_length = 1, of_imbalance = 0.5;
     std::size_t divided = 0;
@@ -90,7 +89,6 @@ Line best_cut(const Piece& piece, double tolerance) {
     return Line(choice[best]);
 }
 
-/// Corners on the line belong to both halves.
 struct Halves {
     PlanarPolygon left, right;
     PlanarSegment chord;
@@ -130,7 +128,6 @@ PlanarSegment moved_onto(const PlanarSegment& edge, const PlanarSegment& s) {
     return {moved(s.a), moved(s.b)};
 }
 
-/// Segments on the line become contacts.
 void distribute(const std::vector<PlanarSegment>& segments, const Line& line, const PlanarSegment& chord,
                 double tolerance, Piece& left, Piece& right, std::vector<PlanarSegment>& contacts) {
     const auto add_to = [&](Piece& piece, PlanarSegment s) {
@@ -183,7 +180,6 @@ void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::ve
                            between(3, 2, i / parts)});
 }
 
-/// Cuts a long sliver across into parts of equal length.
 std::vector<PlanarPolygon> slices_of(const PlanarPolygon& polygon, double longest) {
     constexpr double most_parts = 64, sliver_aspect = 16;
     PlanarSegment edge{polygon[0].position, polygon[0].position};
@@ -280,7 +276,7 @@ void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, 
     std::array<PlanarPolygon, 2> best;
     double most = -1;
     for (std::size_t first = 0; first < n; ++first)
-        for (const std::size_t step : {2, 3}) {  // cut off a triangle or a quadrilateral
+        for (const std::size_t step : {2, 3}) {
             std::array<PlanarPolygon, 2> parts{part_of(polygon, first, (first + step) % n),
                                                part_of(polygon, (first + step) % n, first)};
             const double worse = std::min(compactness(parts[0]), compactness(parts[1]));

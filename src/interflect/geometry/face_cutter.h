@@ -9,18 +9,16 @@
 namespace interflect::detail {
 
 /// Clips `segment` to the polygon's interior.
-/// @return  False, without a change, if less than `tolerance` [m] remains or the rest is within `tolerance` of one
-///          edge.
+/// @return  False, without a change, if the rest is shorter than `tolerance` [m] or lies along an edge.
 bool clip_to_interior(const PlanarPolygon& polygon, double tolerance, PlanarSegment& segment);
 
 struct CutPolygon {
     std::vector<PlanarPolygon> pieces;    ///< Convex.
-    std::vector<PlanarSegment> contacts;  ///< Segments, moved onto the edges of the cuts.
-    bool reached_limit = false;           ///< Whether segments still cross some pieces.
+    std::vector<PlanarSegment> contacts;  ///< Moved onto the cuts.
+    bool reached_limit = false;           ///< Segments still cross some pieces.
 };
 
-/// Partitions a convex polygon by segments in its interior (BSP). Each line cuts only the piece that
-/// contains its segment.
+/// Partitions a convex polygon by segments in its interior (BSP).
 /// @param tolerance  Width of lines and minimum width of pieces [m].
 /// @param most_pieces  > 0.
 CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segments, double tolerance,
@@ -29,12 +27,12 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
 struct PieceShape {
     double largest_aspect = std::numeric_limits<double>::infinity();  ///< Length over width of a quadrilateral.
     double least_width = 0;  ///< Narrower quadrilaterals may have any length [m].
-    /// Longer slivers are cut across first, at any width [m].
+    /// Longer slivers are cut across first [m].
     double longest_sliver = std::numeric_limits<double>::infinity();
 };
 
-/// Divides a convex polygon into compact triangles and quadrilaterals, because elements inherit the shape of
-/// their patch. Cuts long quadrilaterals into at most 16 parts, slivers into at most 64.
+/// Divides a convex polygon into compact patches, because elements inherit their shape: long quadrilaterals into at
+/// most 16 parts, slivers into at most 64.
 void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches);
 
 }  // namespace interflect::detail

@@ -15,12 +15,12 @@ namespace {
 
 using V3d = Imath::V3d;
 
-/// Minimum cosine between coplanar faces. Rejects low upright faces; tolerates the noisy normals of small faces.
+/// Minimum cosine: rejects low upright faces, tolerates noisy normals of small faces.
 constexpr double least_facing = 0.7;
 
 constexpr std::size_t search_grain = 1024;
 
-/// Clipping adds at most four corners to a face.
+/// Clipping adds up to four corners.
 struct ClippedFace {
     std::array<V3d, 8> corners;
     std::size_t count = 0;
@@ -60,7 +60,6 @@ ClippedFace clipped(const ClippedFace& polygon, const HalfSpace& half_space) {
     return result;
 }
 
-/// The larger face of a pair: its plane and the half-spaces that bound its prism.
 class LargerFace {
   public:
     LargerFace(const Scene& scene, std::uint32_t face, std::span<const float> tolerance)

@@ -9,23 +9,22 @@
 
 namespace interflect::detail {
 
-/// Overlapping faces, identified by their first patches.
+/// Faces, identified by their first patches.
 struct FacePair {
     std::uint32_t larger, smaller;  ///< By area; at equal areas the later face is larger.
 };
 
-/// Returns the distance within which two faces coincide [m]: the smaller face's tolerance, but at least the rounding of
-/// the larger one's plane, an eighth of its tolerance.
+/// Returns the distance within which two faces coincide [m]. The larger face's plane has a rounding of an eighth of its
+/// tolerance.
 inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pair) {
     return std::max(tolerance[pair.smaller], tolerance[pair.larger] / 8);
 }
 
-/// Finds all pairs of overlapping, nearly coplanar faces. The smaller one reaches more than pair_tolerance() into the
-/// larger; the common part lies within that distance of the larger one's plane. Skips one-sided faces with opposite
-/// normals, which intercept different rays.
+/// Finds pairs of faces whose smaller one reaches more than pair_tolerance() into the larger, within that distance of
+/// its plane. Skips one-sided faces with opposite normals, which intercept different rays.
 /// @param ignored    Per patch.
 /// @param tolerance  Per patch [m], > 0.
-/// @return           Sorted by larger face. O(n log n + pairs) for bounded local density.
+/// @return           Sorted by larger face.
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance);
 

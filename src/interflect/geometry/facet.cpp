@@ -13,10 +13,10 @@ namespace {
 
 using Imath::V3d;
 
-/// Minimum detail relative to a face's diameter: 40 um at 10 m.
+/// Relative to a face's diameter: 40 um at 10 m.
 constexpr double least_detail = 4e-6;
 
-/// Four float roundings, relative to the largest coordinate.
+/// Four float roundings of the largest coordinate.
 constexpr double relative_rounding = 0x1p-22;
 
 }  // namespace

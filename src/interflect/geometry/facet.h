@@ -12,7 +12,7 @@
 
 namespace interflect::detail {
 
-/// Planar convex polygon: a face, or half of a warped quadrilateral.
+/// Face, or half of a warped quadrilateral.
 struct Facet {
     std::uint32_t face = none;  ///< Front patch.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
@@ -20,14 +20,14 @@ struct Facet {
     std::array<Imath::V3d, 4> corners;  ///< [m]
     Imath::V3d normal;                  ///< Unit length.
     double diameter = 0;                ///< [m]
-    double rounding = 0;                ///< Rounding error of the corners [m].
+    double rounding = 0;                ///< Rounding error of corners [m].
 
     /// @param corner_vertices  Three or four.
     Facet(const Scene& scene, std::uint32_t face_index, std::span<const std::uint32_t> corner_vertices);
 
     double area() const { return area_; }  ///< [m^2]
 
-    /// Signed distance from the plane [m].
+    /// Returns the signed distance from the plane [m].
     double height(const Imath::V3d& x) const { return normal.dot(x - corners[0]); }
     /// Length below which features are ignored [m].
     double detail() const;
@@ -40,7 +40,7 @@ struct Facet {
 
 std::vector<Facet> facets_of(const Scene& scene);
 
-/// Right-handed frame in a facet's plane, with x along its longest edge.
+/// Right-handed; x is along the facet's longest edge.
 class PlaneFrame {
   public:
     explicit PlaneFrame(const Facet& facet);

@@ -16,20 +16,18 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum cosine between coplanar neighbours (0.8 degrees): tolerates rounded normals of small patches, keeps modelled
-/// creases.
+/// 0.8 degrees: tolerates rounded normals of small patches, keeps modelled creases.
 constexpr float same_plane_cosine = 0.9999f;
 
 constexpr std::size_t patches_at_once = 4096;
 
-/// Bounds the comparisons at an edge.
 constexpr std::size_t most_faces_at_edge = 8;
 
-/// Relative difference of areas that count as equal despite division and rounding.
+/// Relative difference after division and rounding.
 constexpr double equal_areas = 1e-4;
 
 struct Edge {
-    std::uint64_t vertices;  // lower index in the upper half
+    std::uint64_t vertices;
     std::uint32_t patch;
 };
 
@@ -39,7 +37,6 @@ std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
 
 bool is_back(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
 
-/// Maps each vertex to one index per position.
 std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     std::vector<std::uint32_t> joined(scene.vertices.size());
     std::iota(joined.begin(), joined.end(), 0u);
@@ -66,7 +63,7 @@ std::vector<Edge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Returns the position of each surface by area. Indexed by representative, like `area`.
+/// Indexed by representative, like `area`.
 std::vector<std::uint32_t> order_of_surfaces(const Scene& scene, const std::vector<std::uint32_t>& surface,
                                              const std::vector<double>& area) {
     std::vector<std::uint32_t> order;

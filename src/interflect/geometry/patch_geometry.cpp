@@ -7,12 +7,12 @@ namespace interflect::detail {
 
 namespace {
 
-/// Relative twist below which a quadrilateral counts as a parallelogram.
+/// Relative twist.
 constexpr float parallelogram_tolerance = 1e-5f;
 
 /// Inverts the cumulative distribution of the density (a + b x) / (a + b / 2) on [0, 1]; a, a + b >= 0.
 float warp_linear(float a, float b, float uniform) {
-    // Solves a x + b x^2 / 2 = uniform (a + b / 2) without cancellation for small b.
+    // Avoids cancellation for small b.
     const float target = uniform * (a + 0.5f * b);
     const float root = std::sqrt(std::max(0.0f, a * a + 2 * b * target));
     return a + root > 0 ? std::clamp(2 * target / (a + root), 0.0f, 1.0f) : uniform;
@@ -35,7 +35,7 @@ PatchGeometry::PatchGeometry(const Scene& scene, const Patch& patch) : triangle_
         parallelogram_ = true;  // x is affine in (u, v)
     } else {
         shape_.twist = x[2] - x[1] - shape_.edge_v;
-        // normal . (dx/du x dx/dv); the u v term is zero for a planar quadrilateral.
+        // The u v term is zero for a planar quadrilateral.
         jacobian_ = {normal_.dot(shape_.edge_u.cross(shape_.edge_v)), normal_.dot(shape_.edge_u.cross(shape_.twist)),
                      normal_.dot(shape_.twist.cross(shape_.edge_v))};
         parallelogram_ =
@@ -58,14 +58,13 @@ float PatchGeometry::jacobian(Parameters p) const { return jacobian_[0] + p.u * 
 Parameters PatchGeometry::uniform_parameters(float a, float b, Parameters corner, float size) const {
     Parameters local{a, b};
     if (triangle_) {
-        // Continuous, area-preserving map (Heitz 2019, 'A Low-Distortion Map').
+        // Area-preserving map (Heitz 2019, 'A Low-Distortion Map').
         if (b > a)
             local = {0.5f * a, b - 0.5f * a};
         else
             local = {a - 0.5f * b, 0.5f * b};
     } else if (!parallelogram_) {
-        // Samples u from its marginal density (the Jacobian at the middle of v), then v given u. Both densities are
-        // linear.
+        // Samples u from its marginal density, the Jacobian at the middle of v, then v given u.
         const auto density = [&](float s, float t) {
             return std::max(0.0f, jacobian({corner.u + size * s, corner.v + size * t}));
         };
@@ -79,8 +78,7 @@ Parameters PatchGeometry::parameters_of(const V3f& x) const {
     const V3f d = x - shape_.origin;
     Parameters p{inverse_u_.dot(d), inverse_v_.dot(d)};
     if (!parallelogram_) {
-        // Solves d = u edge_u + v edge_v + u v twist, quadratic in v. The root inside stays finite for a vanishing
-        // twist.
+        // Solves d = u edge_u + v edge_v + u v twist for v. This root stays finite for a vanishing twist.
         using Imath::V3d;
         const V3d n(normal_), h(d), e(shape_.edge_u), f(shape_.edge_v), g(shape_.twist);
         const auto cross = [&](const V3d& a, const V3d& b) { return n.dot(a.cross(b)); };

@@ -16,7 +16,6 @@ struct Parameters {
 
 class PatchGeometry {
   public:
-    /// x = origin + u edge_u + v edge_v + u v twist.
     struct Shape {
         V3f origin, edge_u, edge_v, twist{0, 0, 0};
 
@@ -27,28 +26,27 @@ class PatchGeometry {
     PatchGeometry(const Scene& scene, const Patch& patch);
 
     float area() const { return area_; }    ///< [m^2]
-    V3f normal() const { return normal_; }  ///< Unit length, towards the lit side.
+    V3f normal() const { return normal_; }  ///< Towards the lit side.
     bool is_triangle() const { return triangle_; }
     V3f centre() const;  ///< Mean of the vertices [m].
 
     const Shape& shape() const { return shape_; }
     V3f point(Parameters p) const { return shape_.point(p); }
 
-    /// Maps uniform (a, b) in the unit square to points uniform over the patch's area, or over its part corner + size
-    /// (s, t) with (s, t) in the parameter domain.
+    /// Maps the unit square (a, b) uniformly to the area of the part corner + size (s, t), by default the patch.
     Parameters uniform_parameters(float a, float b, Parameters corner = {}, float size = 1) const;
 
-    /// Inverts point() for x on or near the patch. Clamps to the patch.
+    /// Inverts point() for x near the patch; clamps to it.
     Parameters parameters_of(const V3f& x) const;
 
-    /// Returns |dx/du x dx/dv| [m^2]: 2 area() on a triangle; linear in u and v on a planar quadrilateral. A cell's
-    /// area is its size in parameter space times the value at its centre.
+    /// Returns |dx/du x dx/dv| [m^2]. It is linear in u and v, so a cell's area is its parameter area times the value
+    /// at its centre.
     float jacobian(Parameters p) const;
 
   private:
     Shape shape_;
     V3f normal_;
-    V3f inverse_u_, inverse_v_;        // rows of the inverse of (edge_u edge_v), for parallelograms
+    V3f inverse_u_, inverse_v_;        // rows of the inverse of (edge_u edge_v)
     std::array<float, 3> jacobian_{};  // constant, u and v coefficients [m^2]
     float area_ = 0;
     bool triangle_ = false, parallelogram_ = false;

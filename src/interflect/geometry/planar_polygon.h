@@ -12,7 +12,7 @@ namespace interflect::detail {
 
 struct PlanarCorner {
     Imath::V2d position;          ///< In the plane's frame [m].
-    std::uint32_t vertex = none;  ///< In the scene; none if new.
+    std::uint32_t vertex = none;  ///< In the scene, unless new.
 };
 
 /// Convex, counter-clockwise.
@@ -23,7 +23,7 @@ struct PlanarSegment {
     double length() const { return (b - a).length(); }
 };
 
-/// Twice the area [m^2].
+/// [m^2]
 inline double doubled_area(const PlanarPolygon& polygon) {
     double sum = 0;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)

@@ -21,7 +21,7 @@ namespace {
 using Imath::V3d;
 using Loop = std::vector<std::uint32_t>;
 
-/// Float roundings of the largest coordinate below which a height is noise: three vertices and their differences.
+/// Smaller heights are noise: float roundings of three vertices and their differences.
 constexpr double noise_in_roundings = 4;
 
 V3d position(const Scene& scene, std::uint32_t vertex) { return V3d(scene.vertices[vertex]); }
@@ -34,7 +34,7 @@ Loop without_repeats(const Scene& scene, const Loop& loop) {
     return kept;
 }
 
-/// Newell's formula, relative to the first vertex against cancellation.
+/// Relative to the first vertex against cancellation.
 V3d doubled_area(const Scene& scene, const Loop& loop) {
     const V3d origin = position(scene, loop[0]);
     V3d sum(0);
@@ -68,7 +68,6 @@ struct OutlinePlane {
     }
 
   private:
-    /// Returns the outline's maximum distance from the chord through its first vertex and the farthest one.
     static double width(const Scene& scene, const Loop& outline) {
         const V3d start = position(scene, outline[0]);
         V3d chord(0);
@@ -147,12 +146,11 @@ class Triangulation {
     Scene& scene_;
     const OutlinePlane& frame_;
     V3d origin_;
-    std::deque<std::uint32_t> handles_;  // targets of GLU's vertex pointers; a deque keeps addresses valid
+    std::deque<std::uint32_t> handles_;  // for GLU's pointers; a deque keeps addresses valid
     std::vector<std::uint32_t> corners_;
     bool failed_ = false;
 };
 
-/// Reuses a neighbour at the crossing's position.
 std::uint32_t Triangulation::combined(const V3d& x, void* const* neighbours, const GLfloat* weights) {
     std::vector<std::uint32_t> vertices;
     std::vector<float> weights_of_vertices;
@@ -175,7 +173,7 @@ std::vector<std::uint32_t> Triangulation::operator()(std::span<const Loop> loops
     gluTessCallback(t, GLU_TESS_VERTEX_DATA, callback(&emit));
     gluTessCallback(t, GLU_TESS_COMBINE_DATA, callback(&combine));
     gluTessCallback(t, GLU_TESS_ERROR_DATA, callback(&fail));
-    // With this callback GLU emits separate triangles instead of strips and fans.
+    // Makes GLU emit separate triangles instead of strips and fans.
     gluTessCallback(t, GLU_TESS_EDGE_FLAG_DATA, callback(&ignore_edge_flag));
 
     gluTessBeginPolygon(t, this);

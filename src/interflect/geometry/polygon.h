@@ -10,18 +10,16 @@ namespace interflect::detail {
 
 enum class PolygonResult {
     added,
-    degenerate,     ///< Narrower than the rounding of its vertices; not added.
-    self_crossing,  ///< The outline crosses itself and its areas cancel; not added.
+    degenerate,     ///< Narrower than its vertices' rounding; not added.
+    self_crossing,  ///< Opposite areas of the outline cancel; not added.
 };
 
-/// Adds a polygon to `scene`: triangles and convex planar quadrilaterals (planarity.h) as one patch, others
-/// triangulated. Patches keep the vertex order. Each back follows its front, in reverse order from the same vertex.
-/// Merges consecutive vertices at one position. Omits patches below smallest_face_area, and triangles with a height
-/// below four float roundings of their largest coordinate, because their normal would be noise.
-/// @param loops      Indices into scene.vertices: the outline, counter-clockwise seen from the front, then holes in any
-///                   direction. The outline may touch itself along a seam to a hole. Points inside an odd number of
-///                   loops are inside. Crossings become new vertices with interpolated attributes.
-/// @param two_sided  Adds the back of each patch.
+/// Adds triangles and convex planar quadrilaterals (planarity.h) as one patch, and triangulates others. Keeps the
+/// vertex order; merges consecutive vertices at one position. Omits patches below smallest_face_area, and triangles
+/// lower than four float roundings of their largest coordinate, whose normal would be noise.
+/// @param loops      Outline, counter-clockwise from the front, then holes in any direction (even-odd rule). A seam may
+///                   join outline and hole. Crossings become new vertices with interpolated attributes.
+/// @param two_sided  Adds a back after each front, in reverse order from the same vertex.
 PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
                           std::uint32_t object, bool two_sided);
 

@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Along the first and the last edge; equal for a triangle.
+/// Along the first and last edge; equal for a triangle.
 struct Pieces {
     std::uint64_t u = 1, v = 1;
 };
@@ -38,7 +38,6 @@ Pieces pieces_of(const Scene& scene, const Patch& patch, float largest_edge) {
     return {std::max(edge(0, 1), edge(3, 2)), std::max(edge(1, 2), edge(0, 3))};
 }
 
-/// @param vertex  Returns the vertex at (i, j): i along the first edge, j along the last.
 template <class Vertex, class AddPiece>
 void split_quadrilateral(Pieces n, const Vertex& vertex, const AddPiece& add_piece) {
     for (std::uint64_t j = 0; j < n.v; ++j)
@@ -80,7 +79,7 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
     VertexWeld weld(split);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
-        if (patch.other_side != none && patch.other_side < i) continue;  // added with its front
+        if (patch.other_side != none && patch.other_side < i) continue;
         const PatchGeometry geometry(scene, patch);
         const Pieces n = pieces_of(scene, patch, largest_edge);
         const auto vertex = [&](std::uint64_t along_first, std::uint64_t along_last) {

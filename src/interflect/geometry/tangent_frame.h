@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Unit vectors s, t that form a right-handed frame with the unit vector n (Duff et al. 2017).
+/// Right-handed frame of unit vectors s, t, n (Duff et al. 2017).
 struct TangentFrame {
     V3f s, t;
     explicit TangentFrame(const V3f& n) {

@@ -10,10 +10,10 @@ namespace {
 
 constexpr std::int64_t texels_per_sum = 8;
 
-/// Maximum number of texel lines crossed by a border; takes 0.1 s.
+/// Texel lines crossed by a border; takes 0.1 s.
 constexpr double most_crossings = 1 << 20;
 
-/// Minimum height of a triangle in texels. Avoids division by a zero area; barely changes the mean.
+/// Minimum height of a triangle [texels]; avoids division by zero.
 constexpr double least_height = 1e-3;
 
 std::int64_t floor_of(double x) { return static_cast<std::int64_t>(std::floor(x)); }
@@ -25,7 +25,6 @@ std::int64_t wrapped(std::int64_t i, std::int64_t n) {
 
 double doubled_area(const std::array<Imath::V2d, 3>& x) { return (x[1] - x[0]).cross(x[2] - x[0]); }
 
-/// Raises the corner opposite the longest edge to the minimum height.
 void widen(std::array<Imath::V2d, 3>& x) {
     std::size_t longest = 0;
     const auto edge = [&](std::size_t i) { return x[(i + 1) % 3] - x[i]; };
@@ -55,13 +54,13 @@ TextureIntegral::TextureIntegral(const Texture& texture)
     }
 }
 
-// Below, x counts columns to the right and y rows downwards; texel centres are at integers.
+// Below, x counts columns and y rows downwards; texel centres are at integers.
 
 inline std::size_t TextureIntegral::wrapped_row(std::int64_t row) const {
     return static_cast<std::size_t>(wrapped(row, texture_.height));
 }
 
-/// Integrates the interpolated row from texel 0 to `column`.
+/// Integrates from texel 0 to `column`.
 RgbD TextureIntegral::row_integral(std::int64_t column, std::size_t row) const {
     const std::int64_t width = texture_.width, within = wrapped(column, width);
     const RgbD* sums = &sums_[row * sums_per_row_];
@@ -88,7 +87,7 @@ RgbD TextureIntegral::value_at(const V2d& x) const {
 RgbD TextureIntegral::integral_within_cell(const V2d& a, const V2d& b, std::int64_t origin) const {
     const V2d middle = (a + b) * 0.5;
     const std::int64_t column = floor_of(middle.x), row = floor_of(middle.y);
-    std::array<RgbD, 2> before, first, rise;  // per row, above and below
+    std::array<RgbD, 2> before, first, rise;
     const std::int64_t left = wrapped(column, texture_.width), right = wrapped(column + 1, texture_.width);
     for (std::size_t k = 0; k < 2; ++k) {
         const std::size_t y = wrapped_row(row + static_cast<std::int64_t>(k));
@@ -108,7 +107,6 @@ RgbD TextureIntegral::integral_along(const V2d& a, const V2d& b, std::int64_t or
     RgbD sum(0, 0, 0);
     const V2d d = b - a;
     if (d.y == 0) return sum;
-    // Next line of texel centres per axis, and its position along the edge.
     std::array<double, 2> line{}, at{};
     const auto position = [&](int axis) { return d[axis] == 0 ? 2 : (line[axis] - a[axis]) / d[axis]; };
     for (int axis = 0; axis < 2; ++axis) {
@@ -150,7 +148,7 @@ Rgb TextureIntegral::mean(const std::array<V2f, 3>& corners) const {
     bool in_one_cell = true;
     for (int axis = 0; axis < 2; ++axis)
         for (std::size_t i = 1; i < 3; ++i) in_one_cell &= floor_of(x[i][axis]) == floor_of(x[0][axis]);
-    // Within a cell the texture is quadratic: the edge midpoints give the exact mean.
+    // Exact within a cell, where the texture is quadratic.
     const RgbD mean =
         in_one_cell
             ? RgbD((value_at((x[0] + x[1]) / 2) + value_at((x[1] + x[2]) / 2) + value_at((x[2] + x[0]) / 2)) / 3)

@@ -11,16 +11,16 @@
 
 namespace interflect::detail {
 
-/// Exact means of a texture over triangles, filtered and repeated as in texel_at(). Green's theorem reduces the
-/// integral of f over a triangle to F dy along its border, dF/dx = f. F is cubic between texel lines, so Simpson's rule
-/// is exact. Memory: 3 bytes per texel.
+/// Exact means over triangles of a texture as filtered by texel_at(). Integrates F dy along the border instead of f
+/// over the area (Green's theorem, dF/dx = f). F is cubic between texel lines, so Simpson's rule is exact. 3 bytes per
+/// texel.
 class TextureIntegral {
   public:
-    /// @param texture  Without faults; must outlive this object.
+    /// @param texture  Without faults; must outlive this.
     explicit TextureIntegral(const Texture& texture);
 
-    /// Returns the mean over a triangle in texture coordinates, or over a line if it has no area. Clamped to the
-    /// largest texel. Cost: O(texels along the border); above a million, returns the mean of the whole texture.
+    /// Returns the mean over a triangle or line in texture coordinates. O(texels along the border); above a million,
+    /// the mean of the whole texture.
     Rgb mean(const std::array<V2f, 3>& corners) const;
 
   private:

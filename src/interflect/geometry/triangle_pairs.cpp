@@ -15,13 +15,12 @@ namespace {
 
 using Imath::V3d;
 
-/// Minimum sine of the turn at each corner.
+/// Minimum sine of the turn at a corner.
 constexpr double least_turn = 0.1;
-/// Maximum deviation of texture coordinates from a linear map.
 constexpr double coordinate_tolerance = 1e-4;
 
 struct Edge {
-    std::uint64_t vertices = 0;  // lower index in the upper half
+    std::uint64_t vertices = 0;
     std::uint32_t triangle = 0;
     std::uint32_t corner = 0;
 
@@ -120,7 +119,7 @@ class PairFinder {
 
     const Scene& scene_;
     std::span<const std::uint32_t> triangles_;
-    std::vector<FaceVertices> faces_;  // first vertex invalid: merged into another
+    std::vector<FaceVertices> faces_;  // invalid after a merge into another
 };
 
 }  // namespace

@@ -9,8 +9,8 @@
 namespace interflect::detail {
 
 struct VertexCoordinates {
-    std::optional<V2f> texture;   ///< Missing values are stored and compared as (0, 0).
-    std::optional<V2f> lightmap;  ///< Missing values are stored as NaN.
+    std::optional<V2f> texture;   ///< Stored and compared as (0, 0) if missing.
+    std::optional<V2f> lightmap;  ///< Stored as NaN if missing.
     V3f normal{0, 0, 0};          ///< Zero if missing.
 
     friend bool operator==(const VertexCoordinates& a, const VertexCoordinates& b) {
@@ -21,16 +21,15 @@ struct VertexCoordinates {
 
 VertexCoordinates coordinates_of(const Scene& scene, std::uint32_t vertex);
 
-/// Interpolates vertex attributes. A lightmap coordinate or normal is missing if any vertex lacks it.
+/// Leaves lightmap coordinate and normal missing if any vertex lacks them.
 /// @param weights  One per vertex; sum 1.
 VertexCoordinates interpolated(const Scene& scene, std::span<const std::uint32_t> vertices,
                                std::span<const float> weights);
 
-/// Normalises and rounds a normal from a file, to weld vertices with nearly equal normals. Returns zero for a
-/// vector that is zero or not finite.
+/// Normalises and rounds a normal, to weld nearly equal ones. Returns zero for zero and non-finite vectors.
 V3f welded_normal(const Imath::V3d& normal);
 
-/// Adds a vertex and returns its index. Once a vertex has an attribute, all vertices store it.
+/// Returns the index. Once a vertex has an attribute, all vertices store it.
 std::uint32_t add_vertex(Scene& scene, const V3f& position, const VertexCoordinates& coordinates);
 
 }  // namespace interflect::detail

@@ -26,7 +26,6 @@ std::uint64_t hash(const V3f& x, const VertexCoordinates& coordinates) {
 
 }  // namespace
 
-/// Returns the vertex's slot, or the empty slot for its insertion.
 std::uint32_t& VertexWeld::slot_of(const V3f& position, const VertexCoordinates& coordinates) {
     const auto is_other = [&](std::uint32_t v) {
         return scene_.vertices[v] != position || coordinates_of(scene_, v) != coordinates;

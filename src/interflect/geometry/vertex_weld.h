@@ -8,14 +8,13 @@
 
 namespace interflect::detail {
 
-/// Merges vertices with equal position and attributes (-0 equals 0). Hash table with linear probing, at most 16 bytes
-/// per vertex.
+/// Merges vertices with equal position and attributes (-0 equals 0). At most 16 bytes per vertex.
 class VertexWeld {
   public:
     /// @param scene  Receives new vertices. Vertices added elsewhere are not found.
     explicit VertexWeld(Scene& scene) : scene_(scene), slots_(16, none) {}
 
-    /// Returns the vertex's index; adds it if new. All numbers must be finite.
+    /// Finds or adds a vertex. Requires finite numbers.
     std::uint32_t vertex(const V3f& position, const VertexCoordinates& coordinates = {});
 
   private:
@@ -23,7 +22,7 @@ class VertexWeld {
     void grow();
 
     Scene& scene_;
-    std::vector<std::uint32_t> slots_;  // size: a power of two; at most half full
+    std::vector<std::uint32_t> slots_;  // a power of two; at most half full
     std::size_t used_ = 0;
 };
 

@@ -7,8 +7,8 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr double ignored_value_share = 0.005;  // at each end of a logarithmic scale
-constexpr float most_ratio = 1e6f;             // between the ends of a logarithmic scale
+constexpr double ignored_value_share = 0.005;  // at each end
+constexpr float most_ratio = 1e6f;
 
 /// Oklab [Ottosson 2020] to linear Rec. 709.
 Rgb rgb_of_oklab(const V3f& lab) {
@@ -24,8 +24,7 @@ Rgb rgb_of_oklab(const V3f& lab) {
 }  // namespace
 
 Rgb false_colour(float position) {
-    // Parabola in Oklab, found by search: longest in the gamut of Rec. 709 with a speed that varies by at most a
-    // quarter.
+    // Longest parabola in Oklab inside Rec. 709 whose speed varies by at most a quarter.
     constexpr V3f violet(0.27f, 0.101f, -0.078f), teal(0.595f, -0.212f, -0.097f), yellow(0.92f, -0.075f, 0.189f);
     const float t = std::clamp(position, 0.0f, 1.0f), u = 1 - t;
     const Rgb colour = rgb_of_oklab(u * u * violet + 2 * t * u * teal + t * t * yellow);

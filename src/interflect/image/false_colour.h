@@ -7,8 +7,7 @@
 
 namespace interflect::detail {
 
-/// Colour map from violet through teal to yellow. Equal steps look about equal, also in grey and to colour-blind
-/// viewers.
+/// Maps positions to violet, teal and yellow with about equal perceived steps, also in grey.
 /// @param position  Clamped to [0, 1]. @return  Linear Rec. 709 in [0, 1]; NaN for NaN.
 Rgb false_colour(float position);
 
@@ -26,11 +25,10 @@ struct ColourScale {
 };
 
 /// Fits a scale to the finite values. Linear: from 0, or a negative minimum, to the maximum. Logarithmic: at most six
-/// decades of positive values, without 0.5% at each end. Without values: 0 ... 1, or 0.1 ... 1 if logarithmic.
+/// decades of positive values, without 0.5% at each end. Without values, `high` is 1.
 ColourScale fit_scale(std::vector<float> values, Spacing spacing);
 
-/// Fits a linear scale from 0 to a round number that at most 2% of the positive, finite values exceed. Without values:
-/// 0 ... 1.
+/// Fits a linear scale from 0 to a round number that at most 2% of the positive, finite values exceed.
 ColourScale fit_round_scale(std::vector<float> values);
 
 /// Converts the first channel. 0 becomes black; pixels that are not finite stay unchanged.

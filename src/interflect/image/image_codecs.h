@@ -15,7 +15,7 @@ namespace interflect::detail::codecs {
 /// @throws std::runtime_error unless 1 <= width * height <= most_pixels.
 void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels);
 
-/// Bytes before compression, and their limit: stb counts them as int and doubles its arrays.
+/// Bytes before compression. stb counts them as int and doubles its arrays.
 constexpr std::int64_t png_bytes(int width, int height, int channels = 3) {
     return (std::int64_t{channels} * width + 1) * height;
 }

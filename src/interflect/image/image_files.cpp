@@ -89,7 +89,7 @@ auto read_with(const fs::path& path, const Read& read) {
     try {
         return read(format, path);
     } catch (const std::bad_alloc&) {
-        throw;  // not a fault of the file
+        throw;
     } catch (const std::exception& fault) {
         throw InputError(path, 0, fmt::format("cannot read this image: {}", fault.what()));
     }

@@ -22,7 +22,7 @@ using V2f = Imath::V2f;
 // [dots of the font]
 constexpr float line_width = 1, shortest_line = 16, label_spacing = 160;
 constexpr int label_margin = 2;
-/// Relative difference of neighbouring pixels on different surfaces or across shadow edges.
+/// Relative difference of pixels across an edge of a surface or shadow.
 constexpr float jump = 0.15f;
 
 struct Field {
@@ -55,13 +55,13 @@ Field field_of(const Image& image) {
     return smoothed(smoothed(field, 1, 0), 0, 1);
 }
 
-/// Part of a line between four pixel centres [pixels].
+/// [pixels]
 struct Segment {
     V2f a, b;
     std::uint32_t line = 0;  // an edge_id() of the line
 };
 
-/// Lines of one level by marching squares.
+/// Marching squares.
 class Contour {
   public:
     Contour(const Field& field, float level) : field_(field), level_(level), edges_(2 * field.values.size()) {
@@ -72,7 +72,7 @@ class Contour {
     }
 
     const std::vector<Segment>& segments() const { return segments_; }
-    /// Returns the length of the segment's whole line [pixels].
+    /// Length of the whole line [pixels].
     float length(const Segment& segment) const { return lengths_.at(segment.line); }
 
   private:
@@ -82,7 +82,6 @@ class Contour {
         return static_cast<std::uint32_t>(2 * field_.index(x, y) + (is_vertical ? 1 : 0));
     }
 
-    /// Returns the crossing between a pixel's centre and its right or lower neighbour's.
     V2f crossing(int x, int y, bool is_vertical) const {
         const float a = field_.at(x, y), b = is_vertical ? field_.at(x, y + 1) : field_.at(x + 1, y);
         const float t = (level_ - a) / (b - a);
@@ -173,7 +172,6 @@ struct Label {
     }
 };
 
-/// Labels long lines from the middle row outwards, without overlap and far from equal labels.
 void place_labels(const Contour& contour, float level, int dot, const Image& image, std::vector<Label>& labels) {
     Label label{.text = fmt::format("{:.4g}", level)};
     label.width = text_width(label.text, dot) + 2 * label_margin * dot;

@@ -17,7 +17,7 @@ namespace {
 constexpr int margin = 6, title_top = 5, strip_top = 17, strip_bottom = 27, tick_bottom = 30, numbers_top = 32,
               legend_bottom = 43;
 constexpr int least_values = 3;
-/// Width per number, and minimum space between numbers [dots].
+/// [dots]
 constexpr int number_width = 64, number_gap = 8;
 
 void require_valid(const ColourScale& scale) {
@@ -32,7 +32,6 @@ void require_printable(const std::string& title) {
         throw InputError("the title of a legend '" + title + "': expected printable ASCII");
 }
 
-/// Returns the largest of 1, 2 and 5 times a power of ten <= x.
 double round_below(double x) {
     const double power = std::pow(10, std::floor(std::log10(x)));
     for (const double factor : {5.0, 2.0})
@@ -40,7 +39,7 @@ double round_below(double x) {
     return power;
 }
 
-constexpr double rounding = 1e-5;  // relative, of ends and steps
+constexpr double rounding = 1e-5;  // relative
 
 std::vector<float> multiples(const ColourScale& scale, double step) {
     std::vector<float> values;
@@ -60,7 +59,7 @@ std::vector<float> multiples_of_powers(const ColourScale& scale, const std::vect
     return values;
 }
 
-/// Length between the margins [pixels].
+/// [pixels]
 int strip_length(const Image& image, int dot) { return std::max(1, image.width - 2 * margin * dot); }
 
 void draw_strip(Image& image, int top, int dot) {
@@ -70,7 +69,6 @@ void draw_strip(Image& image, int top, int dot) {
              false_colour((static_cast<float>(x) + 0.5f) / static_cast<float>(length)));
 }
 
-/// Omits numbers that would overlap the previous one.
 void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
     const int left = margin * dot, length = strip_length(image, dot);
     int free_from = left;

@@ -8,16 +8,16 @@
 
 namespace interflect::detail {
 
-/// Adds a title and a strip of colours with round values below a picture; clips parts without room.
+/// Adds a title and a colour strip below a picture; clips parts without room.
 /// @param picture  Tone-mapped, linear Rec. 709 in [0, 1].
-/// @param title    Printable ASCII: quantity and unit.
+/// @param title    Printable ASCII.
 /// @throws InputError for more than most_image_pixels or an invalid title or scale.
 Image with_legend(const Image& picture, const ColourScale& scale, const std::string& title);
 
 /// [pixels]
 int legend_height(int width);
 
-/// Whether an unclipped legend takes at most half of the picture [pixels].
+/// Returns whether an unclipped legend takes at most half of the picture.
 /// @throws InputError for a title that is not printable ASCII.
 bool legend_fits(int width, int height, const std::string& title);
 

@@ -1,5 +1,4 @@
-// Radiance pictures (Ward 1991): text header, then scanlines of RGB mantissas with a common exponent. stb's reader does
-// not terminate on truncated files.
+// Radiance pictures (Ward 1991). stb's reader does not terminate on truncated files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +21,7 @@ constexpr int exponent_bias = 128, mantissa_bits = 8;
 constexpr int least_encoded_width = 8, most_encoded_width = 0x7fff;
 /// Larger length bytes repeat the next byte (length - longest_literal) times.
 constexpr int longest_literal = 128, longest_run = 127;
-constexpr int least_run = 4;  // shorter runs save no space
+constexpr int least_run = 4;
 
 constexpr float largest_value = 0x1p126f;
 
@@ -38,7 +37,7 @@ Rgbe to_rgbe(const Rgb& colour) {
     const Rgb c = representable(colour);
     int exponent = 0;
     const float mantissa = std::frexp(largest_channel(c), &exponent);  // in [1/2, 1), or 0
-    if (mantissa >= 255.5f / 256) ++exponent;                          // would round up to 256
+    if (mantissa >= 255.5f / 256) ++exponent;
     if (mantissa == 0 || exponent <= -exponent_bias) return {0, 0, 0, 0};
     const auto byte = [&](float v) {
         return static_cast<std::uint8_t>(std::lround(std::ldexp(v, mantissa_bits - exponent)));
@@ -120,7 +119,7 @@ std::string shown(std::string_view resolution) {
     return is_one ? fmt::format("'{}'", resolution) : "none";
 }
 
-/// Parses '-Y height +X width' alone: rows from the top, pixels from the left.
+/// Parses '-Y height +X width' alone.
 Size parse_resolution(std::string_view line) {
     Size size{0, 0};
     const char* end = line.data() + line.size();
@@ -158,7 +157,7 @@ void read_header(RadianceReader& reader) {
 }
 
 void read_encoded_line(RadianceReader& reader, std::vector<Rgbe>& line) {
-    reader.pixel();  // the marker
+    reader.pixel();
     for (int component = 0; component < 4; ++component)
         for (std::size_t x = 0; x < line.size();) {
             const int code = reader.byte();
@@ -194,7 +193,7 @@ Image decode_radiance(std::string_view bytes, std::int64_t most_pixels) {
     read_header(reader);
     const Size size = parse_resolution(reader.line());
     require_allowed_size(size.width, size.height, most_pixels);
-    // The densest encoding uses eight bytes for 127 pixels; checked before allocation.
+    // The densest encoding uses eight bytes for 127 pixels.
     const std::int64_t least_bytes = std::int64_t{size.width} * size.height / 16;
     if (static_cast<std::int64_t>(reader.bytes_left()) < least_bytes) throw std::runtime_error("it ends too early");
 

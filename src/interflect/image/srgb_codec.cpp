@@ -1,4 +1,3 @@
-// Encodes with stb; stored_image.cpp decodes.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -22,7 +21,7 @@ namespace interflect::detail::codecs {
 namespace {
 
 constexpr int channels = 3;
-constexpr int jpeg_quality = 95;  // of 100: no visible blocks on smooth walls
+constexpr int jpeg_quality = 95;  // no visible blocks on smooth walls
 
 std::vector<std::uint8_t> srgb_bytes(const Image& image, std::span<const float> opacity = {}) {
     std::vector<std::uint8_t> bytes;

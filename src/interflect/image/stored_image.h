@@ -21,7 +21,6 @@ struct StoredImage {
     }
 };
 
-/// Checks the size before it allocates memory.
 /// @throws std::runtime_error if the data is no PNG, truncated, damaged or too large.
 StoredImage decode_stored_png(std::string_view bytes, std::int64_t most_pixels);
 

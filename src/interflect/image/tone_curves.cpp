@@ -11,14 +11,13 @@ namespace {
 
 constexpr float reinhard_white = 4.0f;
 
-/// Keeps 0.18 at 0.18.
 constexpr float filmic_scale = 0.72317f;
 
 float narkowicz(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f); }
 
 /// Range of the logarithm [stops].
 constexpr float mid_grey = 0.18f, stops_below = 10, stops_above = 6.5f;
-/// The sigmoid has this slope at (pivot_in, pivot_out); the powers bend its ends to 0 and 1.
+/// `contrast` is the slope at (pivot_in, pivot_out); the powers bend the ends to 0 and 1.
 constexpr float pivot_in = stops_below / (stops_below + stops_above), pivot_out = 0.5f, contrast = 2, toe_power = 3,
                 shoulder_power = 3.25f;
 constexpr float display_power = 2.2f;
@@ -26,7 +25,7 @@ constexpr float display_power = 2.2f;
 /// Returns half of a sigmoid: from 0 with slope `contrast` to `height` at `width`.
 float bend(float x, float width, float height, float power) {
     const float straight = contrast * width;
-    const float limit = straight / std::pow(std::pow(straight / height, power) - 1, 1 / power);  // for infinite x
+    const float limit = straight / std::pow(std::pow(straight / height, power) - 1, 1 / power);
     const float t = contrast * x / limit;
     return limit * t / std::pow(1 + std::pow(t, power), 1 / power);
 }
@@ -45,7 +44,7 @@ float logarithmic(float v) {
 
 Rgb reinhard_curve(const Rgb& v) {
     const float l = luminance(v);
-    return v * ((1 + l / (reinhard_white * reinhard_white)) / (1 + l));  // Eq. 4
+    return v * ((1 + l / (reinhard_white * reinhard_white)) / (1 + l));
 }
 
 Rgb filmic_curve(const Rgb& v) {
@@ -54,7 +53,7 @@ Rgb filmic_curve(const Rgb& v) {
 
 Rgb agx_curve(const Rgb& v) {
     if (v == Rgb(0)) return v;  // avoids rounding errors of the sigmoid
-    // Rows: new positions of Rec. 709 primaries. Columns sum to 1 to preserve greys.
+    // Columns sum to 1 to preserve greys.
     static const Imath::M33f inset(0.8424f, 0.0423f, 0.0424f,  //
                                    0.0784f, 0.8785f, 0.0784f,  //
                                    0.0792f, 0.0792f, 0.8792f);

@@ -10,7 +10,7 @@ namespace {
 /// C_max of Tumblin et al. 1999, who give 30 to 100.
 constexpr float display_contrast = 100;
 
-/// gamma of Tumblin et al. 1999, after Stevens and Stevens.
+/// gamma of Tumblin et al. 1999.
 float brightness_exponent(float adapted) {
     return adapted > 100 ? 2.655f : 1.855f + 0.4f * std::log10(adapted + 2.3e-5f);
 }
@@ -32,7 +32,7 @@ float ward_factor(float adapted, float white) {
 TumblinOperator::TumblinOperator(float adapted, float white) : adapted_(adapted) {
     const float middle = white / std::sqrt(display_contrast);
     exponent_ = brightness_exponent(adapted) / brightness_exponent(middle);
-    // m of Tumblin et al. keeps dim scenes below the middle of the display's range.
+    // m of Tumblin et al. darkens dim scenes.
     scale_ = std::pow(std::sqrt(display_contrast), exponent_ - 1) * middle / white;
 }
 

@@ -4,33 +4,31 @@
 
 namespace interflect::detail {
 
-// Operators that match perception at the display to perception in the scene (docs/tone-mapping.md). Luminances are in
-// cd/m^2. `adapted` > 0 is the scene's adaptation luminance L_wa, `white` > 0 the display's white L_dmax.
+// Operators that match perception at the display to the scene (docs/tone-mapping.md). Luminances are in cd/m^2;
+// `adapted` > 0 is the scene's adaptation L_wa, `white` > 0 the display's white L_dmax. Results are relative to white
+// and not clipped.
 
-/// Ward 1994, Graphics Gems IV. The display's observer is adapted to white / 2.
+/// Ward 1994, Graphics Gems IV.
 /// @return  Factor from luminance to [0, 1].
 float ward_factor(float adapted, float white);
 
-/// Tumblin and Rushmeier 1993, with the constants of Tumblin, Hodgins and Guenter 1999. The display's observer is
-/// adapted to white / sqrt(display_contrast).
+/// Tumblin and Rushmeier 1993, with the constants of Tumblin, Hodgins and Guenter 1999.
 class TumblinOperator {
   public:
     TumblinOperator(float adapted, float white);
 
-    /// Relative to white; not clipped.
     float operator()(float luminance) const;
 
   private:
     float adapted_, exponent_, scale_;
 };
 
-/// Ferwerda et al. 1996, without acuity and time course. The display's observer is adapted to white / 2.
+/// Ferwerda et al. 1996, without acuity and time course.
 class FerwerdaOperator {
   public:
     /// @param rods_adapted  Scotopic, > 0.
     FerwerdaOperator(float adapted, float rods_adapted, float white);
 
-    /// Relative to white; not clipped.
     Rgb operator()(const Rgb& radiance) const;
 
   private:
@@ -41,8 +39,7 @@ class FerwerdaOperator {
 float cone_threshold(float adapted);
 float rod_threshold(float adapted);
 
-/// Scotopic luminance of a Rec. 709 radiance [scotopic cd/m^2]: Y (1.33 (1 + (Y + Z) / X) - 1.68), Larson et al. 1997,
-/// at the primaries.
+/// Scotopic luminance of a Rec. 709 radiance [scotopic cd/m^2], by Larson et al. 1997 at the primaries.
 constexpr float scotopic_luminance(const Rgb& c) { return 0.085f * c.x + 1.969f * c.y + 0.519f * c.z; }
 
 }  // namespace interflect::detail

@@ -13,7 +13,7 @@ struct SkyGrid {
     std::size_t columns, rows;
 
     std::size_t size() const { return columns * rows; }
-    /// Returns the cosine of the zenith angle at a row's upper edge.
+    /// Returns the cosine at a row's upper edge.
     double edge_cosine(std::size_t row) const;
     double solid_angle(std::size_t row) const;  ///< Per cell in the row [sr].
     SkyPlace middle(std::size_t column, std::size_t row) const;
@@ -21,16 +21,16 @@ struct SkyGrid {
     std::size_t column_of(float s) const;
 };
 
-/// Samples cells by weight, uniformly in solid angle within a cell. Immutable; 4 bytes per cell.
+/// Samples cells by weight, uniform in solid angle within a cell. Immutable; 4 bytes per cell.
 class DirectionTable {
   public:
     /// @param weights  Per cell, >= 0.
     DirectionTable(const SkyGrid& grid, std::span<const float> weights);
 
-    double sum() const { return sum_; }  ///< Sampling requires > 0.
+    double sum() const { return sum_; }  ///< Must be > 0 to sample.
     /// @param u, v  In (0, 1); u selects the column, v the row.
     SkyPlace sample(float u, float v) const;
-    /// Per solid angle [1/sr].
+    /// [1/sr]
     float density(const SkyPlace& place) const;
 
   private:

@@ -29,21 +29,21 @@ Imath::Box3f box_around(const Scene& scene) {
     return box;
 }
 
-/// Samples the cosine between a ray and its beam's axis, v in (0, 1]. Intensity is constant within `inner`, then
-/// proportional to (c - outer)^2.
+/// Samples the cosine c to a beam's axis, v in (0, 1]. Intensity is constant within `inner`, then proportional to (c -
+/// outer)^2.
 float sample_cosine(float v, float inner, float outer, float inner_share) {
     if (v <= inner_share) return 1 - (1 - inner) * (v / inner_share);
     return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));
 }
 
-/// Rotates about the axis by `turn` full turns.
+/// @param turn  In full turns.
 V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float sine, float turn) {
     const float angle = 2 * pi * turn;
     return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
 }
 
 struct BoxSide {
-    V3f corner, edge_u, edge_v, normal;  // the normal points inwards
+    V3f corner, edge_u, edge_v, normal;
 };
 
 std::array<BoxSide, 6> sides_of(const V3f& low, const V3f& size) {
@@ -68,10 +68,9 @@ constexpr std::array<SkyComponent, 4> map_components = {
      {Rgb(0, 1, 0), [](const Rgb& c) { return c.y - least_channel(c); }},
      {Rgb(0, 0, 1), [](const Rgb& c) { return c.z - least_channel(c); }}}};
 
-/// Returns the sampling table of a box side: amount of the component times cosine.
 DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<const Rgb> integrals,
                          const SkyComponent& component, const V3f& normal) {
-    std::vector<float> of_horizon(grid.columns);  // cosines at the horizon
+    std::vector<float> of_horizon(grid.columns);
     for (std::size_t column = 0; column < grid.columns; ++column)
         of_horizon[column] = -normal.dot(frame.direction({grid.middle(column, 0).s, 0}));
     const float of_zenith = -normal.dot(frame.zenith);
@@ -87,7 +86,7 @@ DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<c
     return {grid, weights};
 }
 
-/// Interval of a ray's line within a box [m]; negative before the ray's origin.
+/// Part of a ray's line in a box [m]; negative before its origin.
 struct Crossing {
     float begin, end;  // begin > end: missed
 };
@@ -173,7 +172,6 @@ void Emission::add(const DirectionalLight& light) {
 }
 
 /// Uniform diffuse emission by a convex surface, here a box, has equal radiance in all directions inside.
-/// box.
 void Emission::add(const UniformSky& sky) {
     for (std::size_t b = 0; b < boxes_.size(); ++b)
         for (const BoxSide& side : sides_of(boxes_[b].min, boxes_[b].size())) {
@@ -196,7 +194,7 @@ void Emission::add(const EnvironmentMap& map) {
     add_sky(std::make_shared<SkyRadiance>(map), finest, map_components);
 }
 
-/// Samples directions by radiance times cosine. Parallel sides of different boxes share their tables.
+/// Parallel sides of different boxes share tables of radiance times cosine.
 void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
                        std::span<const SkyComponent> components) {
     const std::vector<Rgb> integrals = sky->cell_integrals(grid);
@@ -230,7 +228,7 @@ void Emission::add_window(Window window, const Rgb& exitance, std::size_t box) {
 void Emission::add(const MeasuredLight& light) {
     std::shared_ptr<const WebSampler>& sampler = samplers_[light.web.get()];
     if (!sampler) sampler = std::make_shared<WebSampler>(*light.web);
-    float reach = 0;  // largest coordinate
+    float reach = 0;
     for (const V3f& corner : {boxes_.front().min, boxes_.front().max})
         for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(corner[k]));
     constexpr float relative_offset = 0x1p-17f;  // as RayCaster::ray_offset()
@@ -287,8 +285,8 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-/// Moves a ray's origin to the scene's box if its line crosses `box` but no later one. Otherwise returns a ray that
-/// misses the scene.
+/// Moves a ray's origin to the scene's box. Returns a ray that misses the scene if its line misses `box` or crosses a
+/// later one.
 Ray Emission::of_box(const Ray& ray, std::size_t box) const {
     const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };
     const auto own = boxes_.begin() + static_cast<std::ptrdiff_t>(box);
@@ -354,7 +352,7 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
                        emitter.rating * (pi * side->component.amount(side->sky->towards(-ray.direction))));
     const Window& window = std::get<Window>(emitter.shape);
     if (window.is_sky()) return of_side(window.direction, window.part_area, emitter.rating);
-    // Far enough for equal direction and distance over the whole scene.
+    // Far enough for equal direction and distance over the scene.
     const float far = 100 * boxes_.front().size().length();
     return {ray.origin - far * ray.direction, window.direction, emitter.rating * (far * far)};
 }

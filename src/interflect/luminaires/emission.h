@@ -20,35 +20,35 @@
 
 namespace interflect::detail {
 
-/// Part of a sky's radiance with one colour, for equal power per ray.
+/// Part of a sky's radiance in one colour, for equal power per ray.
 struct SkyComponent {
     Rgb colour;
     float (*amount)(const Rgb& radiance);
 };
 
-/// Returns whether the infinite line of a ray crosses a box.
+/// Whether a ray's infinite line crosses a box.
 bool line_crosses(const Imath::Box3f& box, const Ray& ray);
 
-/// Generates rays from luminaires. Divides emission into parts of equal power: by direction (point, spot and measured
-/// lights) or position (directional lights and skies). Targets are boxes of high importance for outside light; each
-/// line is sampled from the last box that it crosses. Immutable, thread-safe.
+/// Generates rays from luminaires, in parts of equal power per emitter: by direction (point, spot and measured lights)
+/// or position (directional lights and skies). Targets are boxes of high importance for outside light; each line is
+/// sampled from the last box it crosses. Immutable, thread-safe.
 class Emission {
   public:
     Emission() = default;  ///< No luminaires.
-    /// @param targets  Boxes inside the scene's box.
+    /// @param targets  Inside the scene's box.
     explicit Emission(const Scene& scene, std::span<const Imath::Box3f> targets = {});
 
     std::size_t part_count() const { return emitters_.size() * parts_per_emitter; }
-    /// Returns a part's power [lm or W], for outside light through its box (the scene's or a target). Rays start on
-    /// the scene's box; rays on lines of another box miss the scene.
+    /// Returns the power [lm or W]; outside light counts through the part's box. Rays start on the scene's box; rays on
+    /// lines of another box miss the scene.
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
     /// Counts outside light through the scene's box.
     RgbD total_power() const { return power_of_boxes(0, 1); }
-    /// Returns the power of the parts of all targets.
+    /// Returns the power of all targets' parts.
     RgbD repeated_power() const { return power_of_boxes(1, boxes_.size()); }
-    /// Index in Scene::luminaires.
+    /// Returns an index into Scene::luminaires.
     std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }
-    /// Consecutive parts of one luminaire or side of a sky have comparable importance.
+    /// Consecutive parts of an emitter have comparable importance.
     static constexpr std::size_t cells_per_side = 8, parts_per_emitter = cells_per_side * cells_per_side;
 
     bool has_sky() const;
@@ -60,22 +60,21 @@ class Emission {
     std::size_t box_count() const { return boxes_.size(); }
     std::size_t box(std::size_t part) const { return emitters_[part / parts_per_emitter].box; }
 
-    /// Part of outside light that emits along a line.
     struct PartAlong {
         std::size_t part;
         double brightness;  ///< Sum of channels: radiance of a sky, or irradiance facing the sun.
     };
     /// @param light  Line in the direction of the light.
-    /// @param sun    Index; without one, parts of skies.
+    /// @param sun    Index; `none` for parts of skies.
     std::vector<PartAlong> parts_along(const Ray& light, std::uint32_t sun) const;
 
-    /// Generates samples first_sample ... of a part, all with equal power.
+    /// Generates a part's samples first_sample ..., of equal power.
     /// @param key     Of the part's point sequence (fill_points).
     /// @param points  Working memory.
     void shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                std::span<Ray> rays) const;
 
-    /// Point source that replaces a part near one of its rays, to estimate received power.
+    /// Point source that replaces a part near a ray from it, to estimate received power.
     struct Proxy {
         V3f position{0, 0, 0};  ///< [m]
         V3f normal{0, 0, 0};    ///< Emission is proportional to the cosine to it; zero: isotropic.
@@ -102,7 +101,6 @@ class Emission {
         bool is_sky() const { return sine == 1; }
         Ray ray(float u, float v, float c, float d) const;
     };
-    /// Side of a box that emits like a sky.
     struct SkySide {
         V3f corner, edge_u, edge_v, normal;
         std::shared_ptr<const SkyRadiance> sky;
@@ -111,7 +109,7 @@ class Emission {
         float part_area;  // as in Window
         Ray ray(float u, float v, float c, float d) const;
     };
-    /// Photometric web; rays start `offset` above its opening, which may lie in a surface.
+    /// Rays start `offset` above the opening, which may lie in a surface.
     struct Web {
         std::shared_ptr<const WebSampler> sampler;
         std::shared_ptr<const PhotometricWeb> light;

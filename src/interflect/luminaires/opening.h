@@ -11,10 +11,10 @@ struct OpeningPoint {
 
 /// Samples the surface visible along -d, uniformly in projection.
 /// @param d     Unit direction of emission.
-/// @param u, v  Uniform in (0, 1).
+/// @param u, v  In (0, 1).
 OpeningPoint sample_opening(const LuminousOpening& opening, const V3f& d, float u, float v);
 
-/// Returns [m^2].
+/// [m^2]
 float projected_area(const LuminousOpening& opening, const V3f& d);
 
 /// Unit axes in the scene.

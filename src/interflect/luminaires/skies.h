@@ -7,12 +7,12 @@
 
 namespace interflect::detail {
 
-/// Unoccluded radiance of skies and suns. Samples bright directions. Immutable, thread-safe.
+/// Unoccluded radiance of skies and suns. Immutable, thread-safe.
 class Skies {
   public:
     explicit Skies(const Scene& scene);
 
-    /// Returns the radiance without suns [cd/m^2 or W/(m^2 sr)]; unit direction.
+    /// Returns the radiance without suns [cd/m^2 or W/(m^2 sr)]. @param direction  Unit length.
     Rgb radiance(const V3f& direction) const;
     /// Includes the discs of suns.
     Rgb seen(const V3f& direction) const;
@@ -20,9 +20,9 @@ class Skies {
     bool can_sample() const { return !sampled_.empty(); }
     struct Sample {
         V3f direction{0, 0, 1};
-        float density = 0;  ///< Per solid angle, over all sampled skies [1/sr].
+        float density = 0;  ///< Over all sampled skies [1/sr].
     };
-    /// Samples by the radiance of non-uniform skies.
+    /// Samples non-uniform skies by radiance.
     /// @param sky  Selects the sky; all arguments in (0, 1).
     Sample sample(double sky, float u, float v) const;
     float density(const V3f& direction) const;

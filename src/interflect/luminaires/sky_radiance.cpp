@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Overlap of a cell with a texel in [0, 1].
+/// Overlap of a cell with a texel, in [0, 1].
 struct Overlap {
     std::size_t cell;
     double from, to;

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns x in [0, 1]: the integral of a linear function from a to b reaches `share` of its total.
+/// Returns x in [0, 1] where the integral of a linear function from a to b reaches `share` of its total.
 double invert_linear(double a, double b, double share) {
     const double whole = (a + b) / 2;
     if (!(whole > 0)) return share;
@@ -17,7 +17,7 @@ double invert_linear(double a, double b, double share) {
     return std::clamp(2 * whole * share / (a + root), 0.0, 1.0);
 }
 
-/// Returns t in [t0, t1] [rad]: the integral of sin t times a linear function from a to b reaches `target`.
+/// Returns t in [t0, t1] [rad] where the integral of sin t times a linear function from a to b reaches `target`.
 double invert_band(double t0, double t1, double a, double b, double target) {
     constexpr int most_steps = 24;
     constexpr double precision = 1e-9;  // [radians]

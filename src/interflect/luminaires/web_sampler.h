@@ -6,15 +6,15 @@
 
 namespace interflect::detail {
 
-/// Samples directions exactly by a photometric web's interpolated intensity. Immutable, thread-safe.
+/// Samples directions exactly by a web's interpolated intensity. Immutable, thread-safe.
 class WebSampler {
   public:
     /// @param web  Without web_fault().
     explicit WebSampler(const PhotometricWeb& web);
 
     double flux() const { return azimuth_flux_.back(); }  ///< [lm or W]
-    /// Returns a unit direction in the luminaire's frame for u (azimuth), v (polar angle) uniform in (0, 1). Equal
-    /// areas of (u, v) have equal flux.
+    /// Returns a unit direction in the luminaire's frame. Equal areas of (u, v) have equal flux.
+    /// @param u, v  In (0, 1), for azimuth and polar angle.
     V3f direction(float u, float v) const;
 
   private:

@@ -26,8 +26,7 @@ constexpr double most_pixels_per_degree = 1000;  // eight times the resolution o
 
 // --- Colour spaces
 
-/// Linear Rec. 709 to XYZ relative to white (D65), exact. Columns contain the weights of one coordinate, since Imath
-/// multiplies rows by matrices.
+/// Linear Rec. 709 to XYZ relative to white (D65), exact. Transposed, since Imath multiplies rows by matrices.
 const M33d xyz_of_rgb(10135552.0 / 23359437, 2613072.0 / 12288897, 1425312.0 / 80288307,  //
                       8788810.0 / 23359437, 8788810.0 / 12288897, 8788810.0 / 80288307,   //
                       4435075.0 / 23359437, 887015.0 / 12288897, 70074185.0 / 80288307);
@@ -139,7 +138,7 @@ Channel filter(const Channel& plane, const Kernel& along_x, const Kernel& along_
 
 // --- The colour pipeline
 
-/// Term of a contrast sensitivity function: a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees.
+/// Contrast sensitivity term a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees.
 struct Gaussian {
     double a, b;
 };
@@ -159,7 +158,6 @@ Opponent opponent_colours(const Image& image) {
     return planes;
 }
 
-/// Filters with weights that sum to 1.
 Channel seen(const Channel& plane, std::span<const Gaussian> sensitivity, double pixels_per_degree) {
     using std::numbers::pi;
     const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * pixels_per_degree));
@@ -192,7 +190,7 @@ V3d perceived_colour(const Opponent& planes, std::size_t pixel) {
     return perceived_colour(clamped(xyz_of_opponent(opponent) * rgb_of_xyz));
 }
 
-/// HyAB distance of Abasi et al. 2020, valid for large differences, compressed by a power.
+/// Power of the HyAB distance (Abasi et al. 2020), valid for large differences.
 double compressed_distance(const V3d& a, const V3d& b) {
     constexpr double colour_exponent = 0.7;
     return std::pow(std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z), colour_exponent);
@@ -221,7 +219,7 @@ struct Features {
     Channel edges, points;
 };
 
-/// First and second derivatives of a Gaussian with the width of edge detectors in the eye.
+/// Derivatives of a Gaussian, as wide as edge detectors in the eye.
 Features find_features(const Channel& achromatic_channel, double pixels_per_degree) {
     constexpr double width = 0.082;  // from peak to trough [degrees]
     const double deviation = 0.5 * width * pixels_per_degree;

@@ -19,7 +19,7 @@ namespace {
 
 /// Limits relative differences in dark areas.
 constexpr double dark_share = 0.01;
-constexpr double trimmed_share = 0.99;  // of the blocks, without the worst ones
+constexpr double trimmed_share = 0.99;  // of the blocks
 
 double quotient(double numerator, double denominator) { return numerator == 0 ? 0 : numerator / denominator; }
 

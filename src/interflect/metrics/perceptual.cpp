@@ -65,7 +65,7 @@ double weighted_power(const std::vector<Complex>& rows, std::size_t width, doubl
             power += seen * seen * std::norm(spectrum[v]);
         }
     }
-    const auto count = static_cast<double>(rows.size());  // kissfft omits the factor 1/N of D
+    const auto count = static_cast<double>(rows.size());  // kissfft omits the factor 1/N
     return power / (count * count);
 }
 

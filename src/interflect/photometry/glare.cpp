@@ -20,11 +20,10 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Sample of a source.
 struct Place {
     V3f towards;
     float distance = 0;          // [m]
-    std::uint32_t patch = none;  // required hit of the ray; default: free up to `distance`
+    std::uint32_t patch = none;  // required hit; default: free up to `distance`
     Rgb radiance{0, 0, 0};       // [cd/m^2]
     double solid_angle = 0;      // [sr]
     double position_index = 1;
@@ -62,7 +61,7 @@ class SourcePlaces {
     std::vector<Sums>& sums() { return sums_; }
 
   private:
-    /// Divides a patch into cells with nearly constant directions.
+    /// Cells have nearly constant directions.
     void add_patch(std::uint32_t index) {
         constexpr float cells_per_distance = 8;
         constexpr int fewest = 2, most = 16;
@@ -126,7 +125,6 @@ class SourcePlaces {
     std::map<std::string, std::size_t> by_name_;
 };
 
-/// Returns 0, 1, or the transmittance of panes.
 Rgb transmittance_to(const Place& place, Ray ray, Hit hit, const Panes& panes, const RayCaster& ray_caster) {
     Rgb transmittance(1);
     float left = place.distance;

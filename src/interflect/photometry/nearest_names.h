@@ -26,7 +26,7 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-/// Lists the names most similar to an unknown name. "top" also finds "desk.top".
+/// Lists the most similar names. "top" also finds "desk.top".
 inline std::string text_of_nearest(const std::string& name, std::span<const std::string> names) {
     constexpr std::size_t most_told = 5, most_compared = 10'000;
     struct Candidate {

@@ -9,7 +9,7 @@ namespace interflect {
 
 namespace {
 
-/// Integrates luminance times cosine exactly on the side of the zenith.
+/// Integrates luminance times cosine exactly above the horizon.
 double horizontal_illuminance(const EnvironmentMap& map) {
     const Texture& image = *map.image;
     const auto height_squared = [&](std::uint32_t edge) {

@@ -21,11 +21,11 @@ namespace {
 
 /// Cosine of 0.8 degrees.
 constexpr float same_plane_cosine = 0.9999f;
-/// Distance between faces of one plane, relative to the extent of all faces.
+/// Relative to the extent of all faces.
 constexpr double same_plane_distance = 1e-4;
 /// Objects with more planes are curved.
 constexpr std::size_t most_planes = 256;
-/// Relative difference of areas that count as equal.
+/// Relative difference.
 constexpr double equal_areas = 0.01;
 /// Cosine of 10 degrees.
 constexpr float facing_cosine = 0.98481f;
@@ -34,7 +34,6 @@ bool is_part_of(const std::string& name, const std::string& object) {
     return name == object || (name.starts_with(object) && name[object.size()] == '.');
 }
 
-/// Scenes made by programs may have no objects.
 std::string object_name(const Scene& scene, std::uint32_t patch) {
     const std::uint32_t object = scene.patches[patch].object;
     return object < scene.objects.size() ? scene.objects[object] : std::string();
@@ -67,7 +66,6 @@ std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& obj
     return patches;
 }
 
-/// Sorts the planes by area, largest first.
 std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<std::uint32_t> patches, const std::string& name) {
     std::vector<PatchGeometry> geometry;
     geometry.reserve(patches.size());

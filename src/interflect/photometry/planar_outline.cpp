@@ -13,7 +13,7 @@ namespace {
 using V2d = Imath::V2d;
 using V3d = Imath::V3d;
 
-/// Distance of points on a line, relative to the area's size; exceeds the rounding of vertices.
+/// Distance relative to the area's size; exceeds the rounding of vertices.
 constexpr double on_line = 1e-5;
 
 double tolerance_of(const Imath::Box2d& box) { return on_line * (box.max - box.min).length(); }
@@ -48,7 +48,7 @@ Imath::Box2d turned_box(const std::vector<V2d>& points, double angle) {
     return box;
 }
 
-/// Returns the rotation to the smallest enclosing rectangle, parallel to a hull side. In (-45, 45] degrees; prefers 0.
+/// Returns the rotation to the smallest enclosing rectangle, in (-45, 45] degrees; prefers 0.
 double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
     constexpr double quarter = std::numbers::pi / 2, better = 1 - 1e-4;
     const auto area = [&](double angle) {

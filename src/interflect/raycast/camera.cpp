@@ -17,8 +17,7 @@ namespace {
 
 using V3d = Imath::V3d;
 
-/// Minimum pixel angle [rad]: ray directions have float steps of 6e-8. Also limits the rounding of a distant eye to a
-/// quarter of a pixel.
+/// Ray directions have float steps of 6e-8 rad. Limits the rounding of a distant eye to a quarter of a pixel.
 constexpr double smallest_pixel = 0x1p-22;
 
 double largest_coordinate(const V3d& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); }

@@ -44,7 +44,7 @@ bool have_same_corners(const Scene& scene, const Patch& p, const Patch& q) {
     return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
 
-/// Returns whether `p` answers every ray that `q` would; both must have the same corners.
+/// Whether `p` answers every ray that `q` would; both must have the same corners.
 bool answers_for(const Scene& scene, const Patch& p, const Patch& q) {
     if (p.other_side != none) return true;
     return q.other_side == none && PatchGeometry(scene, p).normal().dot(PatchGeometry(scene, q).normal()) > 0;
@@ -88,8 +88,8 @@ CoincidentFaces::CoincidentFaces(const Scene& scene, std::span<const float> tole
     measure_uncovered(scene, tolerance);
 }
 
-/// Visits faces with equal corners by rank. Hides those for which an earlier face answers; at most three remain, one
-/// per side and one for both.
+/// Hides faces whose rays an earlier face with equal corners answers. At most three remain: one per side and one for
+/// both.
 void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank) {
     struct KeyedFace {
         std::uint64_t key;
@@ -167,7 +167,7 @@ void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uin
         arrange_box_tree(std::span(overlaps_).subspan(first_[i], first_[i + 1] - first_[i]));
 }
 
-/// A side is covered where a face of higher priority intercepts its rays.
+/// Counts a side as covered where a face of higher priority intercepts its rays.
 void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const float> tolerance) {
     struct CoveredSide {
         std::uint32_t patch;
@@ -222,7 +222,7 @@ const CoincidentFaces::PriorityFace* CoincidentFaces::find_priority_face(std::ui
 std::uint32_t CoincidentFaces::answering_patch(std::uint32_t face, const V3f& x, const V3f& direction,
                                                float x_error) const {
     std::uint32_t answer = none;
-    // Coincidence within a tolerance is not transitive: follow the chain of priority faces.
+    // Coincidence within a tolerance is not transitive: follow the chain.
     while (overlapped_[face]) {
         const PriorityFace* priority_face = find_priority_face(face, x, direction, x_error);
         if (!priority_face) break;

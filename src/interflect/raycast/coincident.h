@@ -13,41 +13,37 @@
 
 namespace interflect::detail {
 
-/// Resolves hits on coincident faces, such as paper on a desk. A ray tracer reports whichever face it tests first; here
-/// the same face always answers (is reported). Priority: smaller flat surface (flat_surfaces.h), then emitters, then
-/// scene order. One-sided faces answer only rays to their front.
-///
-/// Faces coincide if they have the same corners, or as defined by overlapping_faces(). A face is identified by its
-/// first patch. Memory: 1 bit per patch; with coincident faces 5, plus 96 bytes per priority face and 28 per pair.
+/// Resolves hits on coincident faces, where a ray tracer reports whichever face it tests first. Faces answer (are
+/// reported) by priority: smaller flat surface (flat_surfaces.h), then emitters, then scene order. One-sided faces
+/// answer only rays to their front. Faces, identified by their first patches, coincide if they have the same corners or
+/// are overlapping_faces(). Memory: 1 bit per patch; with coincident faces 5, plus 96 bytes per priority face and 28
+/// per pair.
 class CoincidentFaces {
   public:
-    /// Finds all coincident faces: O(n log n) for n patches of bounded local density.
     /// @param scene      Valid (scene_faults), with convex quadrilaterals.
     /// @param tolerance  Coordinate error per patch [m], > 0.
     CoincidentFaces(const Scene& scene, std::span<const float> tolerance);
     CoincidentFaces(const Scene& scene, float tolerance)
         : CoincidentFaces(scene, std::vector<float>(scene.patches.size(), tolerance)) {}
 
-    /// Returns whether a face with the same corners answers all its rays.
+    /// Whether a face with the same corners answers all its rays.
     bool is_hidden(std::uint32_t face) const { return hidden_[face]; }
 
-    /// Returns whether a face of higher priority covers a part; hits then require answering_patch().
+    /// Whether a face of higher priority covers a part; hits require answering_patch().
     bool is_overlapped(std::uint32_t face) const { return overlapped_[face]; }
 
-    /// Returns the patch that answers a first hit at x on the overlapped `face`: the visible side of a face with
-    /// priority, or `none` for `face` itself. O(log k) for k overlaps.
+    /// Returns the patch that answers a first hit at x on the overlapped `face`, or `none` for `face` itself.
     /// @param x_error  Maximum distance of x from the face [m].
     std::uint32_t answering_patch(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
 
-    /// Returns the fraction of a patch's area that answers rays; the rest must not emit. Slivers within the
-    /// tolerance count as covered.
+    /// Returns the fraction of a patch's area that answers rays; the rest must not emit. Slivers count as covered.
     float uncovered_share(std::uint32_t patch) const {
         return covered_[patch] ? uncovered_share_[covered_.rank(patch)] : 1.0f;
     }
 
     bool has_covered_patches() const { return !uncovered_share_.empty(); }
 
-    /// Largest pair_tolerance() of an overlapping face [m]. Sorted by face.
+    /// Largest pair_tolerance() [m] per overlapping face, sorted by face.
     struct Reach {
         std::uint32_t face;
         float tolerance;
@@ -56,14 +52,13 @@ class CoincidentFaces {
 
     std::size_t hidden_count() const { return hidden_count_; }
     std::size_t overlapped_count() const { return first_.size() - 1; }
-    std::size_t pair_count() const { return overlaps_.size(); }  ///< Overlaps among faces that are not hidden.
+    std::size_t pair_count() const { return overlaps_.size(); }  ///< Excludes hidden faces.
     std::size_t memory() const;                                  ///< [bytes]
 
   private:
     struct PriorityFace {
         PriorityFace(const Scene& scene, std::uint32_t face, float margin);
 
-        /// Returns whether x, in the face's plane, is inside and the ray's side exists.
         bool answers(const V3f& x, const V3f& direction) const;
         std::uint32_t side_towards(const V3f& direction) const;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Differences between Embree 3 and 4, only for this folder.
+// Embree 3 or 4; private to this folder.
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -74,7 +74,7 @@ class EmbreeContext {
 };
 #endif
 
-/// Faces of one Embree geometry, by primitive number. The back of a face follows its front.
+/// One Embree geometry. The back of a face follows its front.
 struct Faces {
     std::vector<std::uint32_t> fronts;
     bool triangles = false, two_sided = false;

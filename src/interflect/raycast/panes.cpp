@@ -31,7 +31,7 @@ Ray Panes::behind(const Ray& ray, const Hit& hit) const {
 void Panes::trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vector<HitBehind>& behind) const {
     behind.clear();
     if (!any_) return;
-    std::vector<HitBehind> passing;  // with the transmittance so far
+    std::vector<HitBehind> passing;
     std::vector<Ray> rest;
     const auto pass = [&](std::uint32_t ray, const Rgb& so_far, const Hit& hit) {
         const Rgb through = so_far * transmittance(rays[ray], hit);

@@ -10,17 +10,16 @@
 
 namespace interflect::detail {
 
-/// Continues rays straight through panes: thin glass and perforated faces (Material::transmittance). Immutable,
-/// thread-safe. Its arguments must outlive it.
+/// Continues rays straight through thin glass and perforated faces (Material::transmittance). Immutable, thread-safe.
+/// Its arguments must outlive it.
 class Panes {
   public:
     Panes(const Scene& scene, const RayCaster& ray_caster);
 
     bool empty() const { return !any_; }
-    /// Returns the transmittance at a hit; 0 for escaped rays and opaque surfaces.
+    /// Returns 0 for escaped rays and opaque surfaces.
     Rgb transmittance(const Ray& ray, const Hit& hit) const;
 
-    /// Returns the part of a ray behind the pane it hit.
     Ray behind(const Ray& ray, const Hit& hit) const;
 
     struct HitBehind {
@@ -29,10 +28,8 @@ class Panes {
         Hit hit;            ///< Distance from the ray's origin. Includes escaped rays.
     };
     /// Finds all hits behind panes, sorted by ray, then depth.
-    /// @param behind  Receives the result.
     void trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vector<HitBehind>& behind) const;
 
-    /// Maximum number of consecutive panes.
     static constexpr int most_in_a_row = 32;
 
   private:

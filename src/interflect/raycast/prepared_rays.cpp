@@ -24,7 +24,6 @@ void set_ray(Packet& packet, std::size_t lane, const Ray& ray) {
     packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
 }
 
-/// The last packet may have empty lanes (see valid_lanes).
 template <class Packet>
 std::vector<Packet> packed(std::span<const Ray> rays, std::size_t lanes) {
     std::vector<Packet> packets((rays.size() + lanes - 1) / lanes);

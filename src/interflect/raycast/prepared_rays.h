@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 enum class RayInterface { single, packet8, packet16, stream };
 
-/// Rays in Embree's layout, traced without conversion: upper bound of the solver's ray rate.
+/// Rays in Embree's layout, without conversion: upper bound of the solver's ray rate.
 class PreparedRays {
   public:
     PreparedRays(std::span<const Ray> rays, RayInterface interface);
@@ -20,7 +20,7 @@ class PreparedRays {
 
     /// Groups have 1024 rays; the last may have fewer.
     std::size_t group_count() const;
-    /// Once per group, because Embree overwrites the rays.
+    /// Once per group: Embree overwrites the rays.
     void trace_group(const RayCaster& ray_caster, std::size_t group);
     std::size_t hit_count() const;
 

@@ -23,10 +23,9 @@ using namespace detail;
 
 namespace {
 
-/// Distance within which faces coincide, relative to the largest coordinate. Embree resolves larger distances.
+/// Distance of coincident faces, relative to the largest coordinate. Embree resolves larger distances.
 constexpr auto relative_tolerance = static_cast<float>(relative_planarity);
 
-/// Ray offset relative to the tolerance for coincident faces.
 constexpr float offset_over_tolerance = 4;
 
 /// Maximum distance of a hit from its face, relative to its largest coordinate plus the ray's length (16 roundings).
@@ -34,7 +33,7 @@ constexpr float relative_hit_error = 0x1p-20f;
 
 float largest_coordinate(const V3f& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Returns the tolerance of each patch [m]: > 0, and at least the warp of a quadrilateral.
+/// Returns [m]; > 0, and at least the warp of a quadrilateral.
 std::vector<float> tolerances(const Scene& scene) {
     constexpr std::size_t at_once = 4096;
     std::vector<float> tolerance(scene.patches.size());
@@ -68,7 +67,7 @@ bool count_memory(void* counter, ssize_t bytes, bool) {
     return true;
 }
 
-/// Embree filter that rejects hits of one-sided faces from behind. Ng follows the vertex order.
+/// Embree filter; Ng follows the vertex order.
 void reject_backs(const RTCFilterFunctionNArguments* a) {
     for (unsigned i = 0; i < a->N; ++i) {
         if (a->valid[i] == 0) continue;
@@ -116,8 +115,8 @@ void RayCaster::Embree::add_faces(const Scene& source, Faces faces) {
 }
 
 void RayCaster::Embree::commit() {
-    // Robust mode closes gaps at shared edges. High quality builds depend on threads, which could change the order of
-    // equally distant hits.
+    // Robust mode closes gaps at shared edges. High quality builds depend on threads, which could reorder hits at equal
+    // distance.
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
     rtcCommitScene(scene);

@@ -15,9 +15,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Approximate. Amortises the cost of a batch, fits the cache.
+/// Amortises the cost of a batch.
 constexpr std::size_t rays_per_batch = 4096;
-/// Keeps many threads busy.
 constexpr std::size_t batches_per_report = 256;
 
 void require_valid(const CameraSampling& sampling) {

@@ -14,25 +14,24 @@
 namespace interflect::detail {
 
 struct CameraSampling {
-    int width = 1, height = 1;  ///< [pixels], as the camera's.
+    int width = 1, height = 1;  ///< [pixels]
     int samples = 16;           ///< Per pixel, >= 1.
     std::uint64_t seed = 1;
 };
 
-/// Offset from a sample [pixels]: right and down.
+/// Offset to the right and down [pixels].
 struct PixelOffset {
     float x = 0, y = 0;
 };
 
-/// Rays and hits of one pixel. Rays of one sample are adjacent.
+/// Rays and hits of one pixel, ordered by sample.
 struct PixelSamples {
     std::size_t pixel = 0;  ///< y * width + x.
     std::span<const Ray> rays;
     std::span<const Hit> hits;
 };
 
-/// Traces one camera ray per sample and offset. Calls `visit` once per pixel, from any thread and in any order. The
-/// rays depend on the seed only.
+/// Traces one camera ray per sample and offset. Calls `visit` once per pixel, from any thread and in any order.
 /// @throws InputError for less than one sample or pixel.
 void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
                   std::span<const PixelOffset> offsets, const Monitor& monitor,
@@ -44,19 +43,18 @@ inline void trace_pixels(const Camera& camera, const RayCaster& ray_caster, cons
     trace_pixels(camera, ray_caster, sampling, {&none_at_all, 1}, monitor, visit);
 }
 
-/// The ray must not escape.
+/// The ray must hit a patch.
 inline Parameters parameters_of_hit(const ElementForest& forest, const Ray& ray, const Hit& hit) {
     return forest.geometry(hit.patch).parameters_of(ray.origin + hit.distance * ray.direction);
 }
 
-/// Returns the leaf that was hit, or none.
+/// Returns `none` if the ray escaped.
 inline std::uint32_t leaf_of_hit(const ElementForest& forest, const Ray& ray, const Hit& hit) {
     if (hit.patch == none || forest.is_leaf(hit.patch)) return hit.patch;
     return forest.leaf_at(hit.patch, parameters_of_hit(forest, ray, hit));
 }
 
-/// @throws InputError unless each element has one value.
-/// @param what  Names the values in the message.
+/// @throws InputError with the name of the values unless each element has one.
 void require_values_of_elements(const ElementForest& forest, std::size_t value_count, const char* what);
 
 }  // namespace interflect::detail

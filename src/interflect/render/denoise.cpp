@@ -16,11 +16,11 @@ using namespace detail;
 namespace {
 
 constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2;  // [pixels]
-/// k^2 of Rousselle et al. 2012: share of the noise variance that divides squared differences.
+/// k^2 of Rousselle et al. 2012.
 constexpr float noise_share = 0.45f * 0.45f;
-constexpr float least_albedo = 0.01f;  // lower bound of divisors
-constexpr float normal_scale = 0.1f;   // of squared differences: about 18 degrees
-constexpr float plane_scale = 1.5f;    // distance from the tangent plane over the pixel spacing
+constexpr float least_albedo = 0.01f;
+constexpr float normal_scale = 0.1f;  // about 18 degrees
+constexpr float plane_scale = 1.5f;   // relative to the pixel spacing
 
 /// Approximates exp(-d).
 float fall(float d) {
@@ -28,7 +28,7 @@ float fall(float d) {
     return t4 * t4;
 }
 
-/// Direct or indirect light from half of the samples, as irradiance / pi.
+/// Irradiance / pi.
 struct Field {
     std::array<std::vector<float>, 3> value;
     std::vector<float> grey, variance;
@@ -38,7 +38,6 @@ std::size_t pixel_at(int x, int y, int width) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
 }
 
-/// The variance of a few batches is too noisy per pixel.
 std::vector<float> box_mean(const std::vector<float>& values, int width, int height, int radius) {
     std::vector<float> means(values.size());
     parallel_for_ranges(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
@@ -75,14 +74,13 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
     return field;
 }
 
-using Fields = std::array<Field, 2>;  // direct and indirect light
+using Fields = std::array<Field, 2>;
 
 Fields make_fields(const SampledLight& light, const Image& albedo) {
     return {make_field(light.direct, light.direct_variance, albedo),
             make_field(light.indirect, light.indirect_variance, albedo)};
 }
 
-/// Filters a range of rows.
 class Band {
   public:
     Band(const PictureLayers& layers, const std::array<Fields, 2>& halves, int first_row, int end_row)
@@ -122,14 +120,12 @@ class Band {
     }
 
   private:
-    using Sums = std::array<std::vector<float>, 4>;  // three channels and the weights
+    using Sums = std::array<std::vector<float>, 4>;
 
     std::size_t at(int x, int y) const { return pixel_at(x, y, width_); }
-    /// Columns with a neighbour in the picture.
     std::pair<int, int> columns(int dx) const { return {std::max(0, -dx), std::min(width_, width_ - dx)}; }
     bool has_row(int y) const { return y >= 0 && y < height_; }
 
-    /// Computes shape_: weights by normals and tangent planes.
     void compare_shapes(int dx, int dy) {
         std::fill(shape_.begin(), shape_.end(), 0.0f);
         const float steps = std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy)));
@@ -150,7 +146,7 @@ class Band {
         }
     }
 
-    /// Computes difference_: squared differences beyond the noise, relative to it. Row 0 is first_ - patch_radius.
+    /// Relative to the noise. Row 0 is first_ - patch_radius.
     void compare_light(const Field& field, int dx, int dy) {
         constexpr float tiny = 1e-20f;
         std::fill(difference_.begin(), difference_.end(), 0.0f);

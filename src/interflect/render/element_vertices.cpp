@@ -19,19 +19,17 @@ using Corners = std::array<std::uint32_t, 4>;
 
 std::uint32_t corner_count(const Corners& corners) { return corners[3] == none ? 3 : 4; }
 
-/// Children's corners as places in the parent: 0 to 3 its corners, 4 to 7 the midpoints of the edges from there, 8 its
-/// centre.
+/// Corners of the children in their parent: its corners 0 to 3, midpoints 4 to 7 of the edges from them, centre 8.
 using Places = std::array<std::array<std::uint32_t, 4>, 4>;
 constexpr Places quadrilateral_children{{{0, 4, 8, 7}, {4, 1, 5, 8}, {7, 8, 6, 3}, {8, 5, 2, 6}}};
-constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};  // place 3 is unused
+constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};
 
-/// Linear probing; here several times as fast as std::unordered_map.
+/// Several times faster than std::unordered_map here.
 class KeyTable {
   public:
     explicit KeyTable(std::size_t most) : entries_(std::bit_ceil(most + most / 2 + 1)) {}
 
     std::uint32_t find(std::uint64_t key) const { return entries_[slot(key)].number; }
-    /// Inserts `number` if the key is missing.
     std::uint32_t find_or_insert(std::uint64_t key, std::uint32_t number) {
         TableEntry& entry = entries_[slot(key)];
         if (entry.number == none) entry = {key, number};
@@ -54,7 +52,6 @@ class KeyTable {
     std::vector<TableEntry> entries_;
 };
 
-/// Assigns vertices to elements, parents first. Elements share midpoints of common edges.
 class VertexBuilder {
   public:
     VertexBuilder(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options)
@@ -95,8 +92,7 @@ class VertexBuilder {
         const std::uint32_t a = corners[c], b = corners[(c + 1) % corner_count(corners)];
         return {std::min(a, b), std::max(a, b)};
     }
-    /// Key of edge c, equal for all its elements. Whole patch edges use their group, because two creases can have the
-    /// same ends.
+    /// Patch edges use their group, because two creases can have the same ends.
     std::uint64_t edge_key(std::uint32_t e, std::uint32_t c) const {
         const auto key = [](std::uint64_t low, std::uint64_t high) { return high << 32 | low; };
         if (e < forest_.patch_count()) return key(surfaces_.edges.group[4 * e + c], surfaces_.edges.group[4 * e + c]);
@@ -130,22 +126,22 @@ class VertexBuilder {
         for (std::uint32_t c = 0; c < corner_count(corners_[leaf]); ++c)
             if (const std::uint32_t middle = middles_.find(edge_key(leaf, c)); middle != none) hangs[middle] = true;
     }
-    /// Returns whether v halves one half of an edge with a hanging midpoint. Earlier vertices must be marked.
+    /// Vertices before v must be marked.
     bool lies_on_half_of_a_leafs_edge(std::uint32_t v, const std::vector<bool>& hangs) const {
         const auto [end, later_end] = edges_of_[v];
         return later_end != none && hangs[later_end] &&
                (edges_of_[later_end][0] == end || edges_of_[later_end][1] == end);
     }
 
-    /// Edge of a leaf on an edge of its patch.
+    /// Leaf edge on an edge of its patch.
     struct LeafEdge {
         std::array<std::uint32_t, 2> vertices;
-        std::array<float, 2> at;  // parameters along the patch edge, ascending
+        std::array<float, 2> at;  // along the patch edge, ascending
 
         float size() const { return at[1] - at[0]; }
     };
 
-    /// Collects leaf edges in [from, to] of a patch's edge; `e` covers [low, high].
+    /// `e` covers [low, high] of the patch's edge.
     void collect_leaf_edges(std::uint32_t e, std::uint32_t c, float low, float high, float from, float to,
                             std::vector<LeafEdge>& found) const {
         if (high <= from || low >= to) return;
@@ -154,7 +150,6 @@ class VertexBuilder {
             found.push_back({{corners_[e][c], corners_[e][next]}, {low, high}});
             return;
         }
-        // Edge c consists of the edges c of two children.
         constexpr std::array<std::uint32_t, 4> child_at_corner{0, 1, 3, 2};
         const auto child = [&](std::uint32_t corner) {
             return forest_.first_child(e) + (corners == 3 ? corner : child_at_corner[corner]);
@@ -166,7 +161,7 @@ class VertexBuilder {
 
     struct SeamSide {
         std::vector<LeafEdge> leaves;
-        float length;  // of the patch's edge [m]
+        float length;  // [m]
     };
     using SeamSides = std::array<SeamSide, 2>;
 
@@ -186,7 +181,6 @@ class VertexBuilder {
         return sides;
     }
 
-    /// Vertex on one side of a seam, and the leaf edge on the other side that contains it.
     struct SeamVertex {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
@@ -194,10 +188,9 @@ class VertexBuilder {
         float edge_length;  // [m]
     };
 
-    /// Finds vertices of side k. The angle is pi, or pi / 2 at the seam's ends.
     static void add_seam_vertices(const SmoothSurfaces::Seam& seam, const SeamSides& sides, std::size_t k,
                                   std::vector<SeamVertex>& found) {
-        constexpr float margin = 1e-5f;  // relative to the patch's edge
+        constexpr float margin = 1e-5f;
         const std::size_t other = 1 - k;
         const auto& leaves = sides[other].leaves;
         const auto add = [&](std::uint32_t vertex, float at) {
@@ -216,11 +209,10 @@ class VertexBuilder {
         if (!sides[k].leaves.empty()) add(sides[k].leaves.back().vertices[1], sides[k].leaves.back().at[1]);
     }
 
-    /// A vertex hangs on an edge longer than its own edges; otherwise it is coupled to the edge.
     void find_vertices_on_seams(std::vector<ElementVertices::Hanging>& hanging,
                                 std::vector<ElementVertices::Coupling>& couplings) const {
         std::vector<SeamVertex> found;
-        std::unordered_map<std::uint32_t, float> longest_own;  // edge at a vertex [m]
+        std::unordered_map<std::uint32_t, float> longest_own;  // [m]
         for (const SmoothSurfaces::Seam& seam : surfaces_.seams) {
             const SeamSides sides = sides_of(seam);
             for (std::size_t k = 0; k < 2; ++k) {
@@ -246,9 +238,9 @@ class VertexBuilder {
 
     const ElementForest& forest_;
     const SmoothSurfaces surfaces_;
-    std::vector<Corners> corners_;  // per element
-    std::vector<Ends> edges_of_;    // ends of the edge that each vertex halves
-    KeyTable middles_;              // by edge_key
+    std::vector<Corners> corners_;
+    std::vector<Ends> edges_of_;  // ends of the halved edge
+    KeyTable middles_;
 };
 
 float angle_between(const V3f& a, const V3f& b) { return std::atan2(a.cross(b).length(), a.dot(b)); }

@@ -8,13 +8,13 @@
 
 namespace interflect::detail {
 
-/// Receiver of irradiance: a small plane, or the mean over an arc of normals, such as a cylinder.
+/// Receiver of irradiance: a small plane, or the mean over an arc of normals.
 struct Gauge {
-    V3f position{0, 0, 0};  // relative to the scene's origin [m]
-    V3f normal{0, 0, 1};    // middle of the arc
-    V3f tangent{0, 0, 0};   // perpendicular, in the arc's plane; both have unit length
-    float half_arc = 0;     // [rad]
-    float offset = 0;       // of ray origins along the normal [m]
+    V3f position{0, 0, 0};       // relative to the scene's origin [m]
+    V3f normal{0, 0, 1};         // middle of the arc
+    V3f tangent{0, 0, 0};        // perpendicular, in the arc's plane; both have unit length
+    float half_arc = 0;          // [rad]
+    float offset = 0;            // of ray origins along the normal [m]
     std::uint32_t patch = none;  // that it lies on, if known
     float spacing = 0;           // distance to the nearest other gauge on the patch [m]
 

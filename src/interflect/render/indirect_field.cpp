@@ -136,8 +136,7 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
                                        least_spacings * p.spacing, most_spacings * p.spacing);
         const Rgb irradiance = Rgb(batches[i].indirect * (std::numbers::pi / paths_per_record));
         tree_.push_back({{}, static_cast<std::uint32_t>(records_.size())});
-        records_.push_back(
-            {p.position, p.normal, p.patch, reach, distance_to_contact(p.position, reach), irradiance});
+        records_.push_back({p.position, p.normal, p.patch, reach, distance_to_contact(p.position, reach), irradiance});
     }
     for (std::uint32_t i = 0; i < records_.size(); ++i) {
         const Record& r = records_[i];
@@ -150,9 +149,8 @@ float IndirectField::distance_to_contact(const V3f& x, float most) const {
     const auto is_near = [&](const Imath::Box3f& box) {
         return (Imath::closestPointInBox(x, box) - x).length() < most;
     };
-    visit_box_tree(std::span<const Boxed>(contact_tree_), is_near, [&](std::uint32_t i) {
-        most = std::min(most, (nearest_on(contacts_[i], x) - x).length());
-    });
+    visit_box_tree(std::span<const Boxed>(contact_tree_), is_near,
+                   [&](std::uint32_t i) { most = std::min(most, (nearest_on(contacts_[i], x) - x).length()); });
     return most;
 }
 

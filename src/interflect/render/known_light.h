@@ -13,7 +13,7 @@
 namespace interflect::detail {
 
 /// Light of a solution for final gathering. Samples a patch by reflected power, then an element by received power.
-/// Immutable, thread-safe. Memory: 4 bytes per element, 132 per patch.
+/// Thread-safe.
 class KnownLight {
   public:
     /// @param irradiance  Per element; only leaves are used. Arguments must outlive this object.
@@ -27,16 +27,16 @@ class KnownLight {
     Place place(std::uint32_t patch, const V3f& x) const;
     int level(std::uint32_t patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
-    /// Returns the reflected radiance rho H / pi.
+    /// Returns rho H / pi.
     Rgb reflected_radiance(const Place& place) const;
 
-    /// Returns whether the leaf's solid angle A / d^2 is at most 0.25 sr.
+    /// Returns whether A / d^2 <= 0.25 sr.
     bool is_far(const Place& place, float distance2) const {
         constexpr float largest_angle = 0.25f;
         return forest_.area(place.leaf) <= largest_angle * distance2;
     }
 
-    /// Samples a point that may illuminate x on a surface with normal n. Patch is none without such a point.
+    /// Samples a point that may illuminate x on a surface with normal n; the result can lack a patch.
     /// @param uniform  In (0, 1).
     /// @param u, v     In [0, 1).
     Place sample(const V3f& x, const V3f& n, double uniform, float u, float v) const;
@@ -48,7 +48,7 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> received_;  // sum of channels [lm or W]
+    std::vector<float> received_;  // [lm or W]
     LightTree tree_;
 };
 

@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t bin_count = 16;  // candidate splits per node; more have no measurable benefit
+constexpr std::size_t bin_count = 16;  // more have no measurable benefit
 
 V3f smaller(const V3f& a, const V3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 V3f absolute(const V3f& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
@@ -50,14 +50,14 @@ LightTree::Cone LightTree::bounding_cone(const Cone& a, const Cone& b) {
     if (std::min(between + of_a, pi) <= of_b + parallel) return {b.axis, std::cos(std::min(pi, of_b + parallel))};
     const float joint = 0.5f * (of_a + between + of_b);
     if (joint >= pi || between > pi - parallel) return {a.axis, -1};
-    const float turn = joint - of_a;  // from a towards b
+    const float turn = joint - of_a;
     const V3f axis = (std::sin(between - turn) * a.axis + std::sin(turn) * b.axis).normalized();
     return {axis, std::cos(joint)};
 }
 
 namespace {
 
-/// Exitance for sampling patches, sum of channels [lm/m^2 or W/m^2].
+/// Sum of channels [lm/m^2 or W/m^2].
 class SampledExitance {
   public:
     explicit SampledExitance(const Scene& scene) : scene_(scene), largest_(largest_texels(scene)) {
@@ -140,8 +140,7 @@ struct LightTree::Bin {
         power += other.power;
         normals += other.normals;
     }
-    /// Surface area orientation heuristic, approximate: power x area x solid angle, from pi (parallel normals) to 4 pi
-    /// (all directions).
+    /// Approximates the surface area orientation heuristic: power x area x solid angle.
     float cost() const {
         if (power <= 0) return 0;
         return (box.high - box.low).length2() * (4 * power - 3 * normals.length());
@@ -156,10 +155,10 @@ LightTree::Split LightTree::best_split(std::span<const Light> lights, const Box&
         Split split{axis, centres.low[axis], static_cast<float>(bin_count) / extent};
         std::array<Bin, bin_count> bins;
         for (const Light& l : lights) {
-            const float evenness = std::max(0.0f, l.cone.cosine);  // 0: at least a hemisphere
+            const float evenness = std::max(0.0f, l.cone.cosine);
             bins[split.bin_of(l.centre())].add({l.power, l.box, l.cone.axis * (l.power * evenness)});
         }
-        std::array<float, bin_count> cost{};  // of a split before each bin
+        std::array<float, bin_count> cost{};
         Bin below, above;
         for (std::size_t b = 1; b < bin_count; ++b) {
             below.add(bins[b - 1]);
@@ -202,7 +201,7 @@ void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     const Split split = best_split(lights, centres);
     const auto middle = std::stable_partition(
         lights.begin(), lights.end(), [&](const Light& l) { return split.bin_of(l.centre()) < split.first_above; });
-    // Both halves are non-empty unless all centres coincide, because the outermost bins are occupied.
+    // If all centres coincide, one half is empty.
     std::size_t first_half = static_cast<std::size_t>(middle - lights.begin());
     if (first_half == 0 || first_half == lights.size()) first_half = lights.size() / 2;
 
@@ -215,8 +214,7 @@ void LightTree::build(std::uint32_t node, std::span<Light> lights) {
     finish(bounding_cone(nodes_[child].cone, nodes_[child + 1].cone), nodes_[child].power + nodes_[child + 1].power);
 }
 
-// Cosines use the box's nearest point, which favours wide nodes around x. Lamps facing down at height h and distance d
-// contribute h^2 / d^4; the centre's distance is only a mean.
+// Cosines use the box's nearest point, which favours wide nodes around x.
 float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
     const V3f to_centre = node.centre - x;
     const V3f& axis = node.cone.axis;
@@ -238,7 +236,7 @@ float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
 
 LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) const {
     if (nodes_.empty()) return {};
-    constexpr double below_one = 0x1.fffffffffffffp-1;  // rounding must not reach 1
+    constexpr double below_one = 0x1.fffffffffffffp-1;
     std::uint32_t node = 0;
     float probability = 1;
     if (nodes_[0].is_leaf() && importance(nodes_[0], x, n) <= 0) return {};

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Candidates per point. Four reduce noise by 2 to 5% but take 20 to 60% longer.
+/// Four reduce noise by 2 to 5% but take 20 to 60% longer.
 constexpr int candidate_count = 2;
 
 /// Outside the cone, intensity must fall at least like the cosine.
@@ -31,7 +31,7 @@ std::optional<LightTree::Light> bounds(const SpotLight& light) {
     return bounded(light.position, V3f(0), light.intensity, {light.direction.normalized(), std::cos(angle)});
 }
 
-/// Returns the largest nadir angle in a table cell [rad].
+/// Returns [rad].
 float farthest_from_nadir(const PhotometricWeb& web, std::size_t azimuth, std::size_t polar) {
     if (web.pole == PhotometricWeb::Pole::nadir) return static_cast<float>(radians(web.polar[polar + 1]));
     float farthest = 0;
@@ -43,7 +43,6 @@ float farthest_from_nadir(const PhotometricWeb& web, std::size_t azimuth, std::s
     return farthest;
 }
 
-/// Smallest cone around the nadir that is valid for every table cell.
 std::optional<LightTree::Light> bounds(const MeasuredLight& light) {
     const PhotometricWeb& web = *light.web;
     const float peak = web.peak();
@@ -86,7 +85,7 @@ LuminaireChoice::LuminaireChoice(const Scene& scene)
 Illumination LuminaireChoice::choose(const V3f& x, const V3f& n, const LightSample& sample) const {
     Illumination chosen;
     double all = 0, uniform = sample.light;
-    // Replaces the light with probability `share`; the rescaled number is uniform again.
+    // The rescaled number is uniform again.
     const auto consider = [&](std::uint32_t luminaire, float chance) {
         Illumination light = illumination(scene_.luminaires[luminaire], x, sample.u, sample.v);
         light.irradiance *= std::max(0.0f, n.dot(light.towards)) / chance;

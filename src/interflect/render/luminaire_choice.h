@@ -10,16 +10,14 @@
 
 namespace interflect::detail {
 
-/// Samples a luminaire by unoccluded irradiance: a LightTree proposes candidates, their exact irradiance decides
-/// (resampled importance sampling, Talbot et al. 2005). Directional light is always a candidate. Immutable,
-/// thread-safe. Cost: logarithmic in the number of other luminaires.
+/// Samples a luminaire by unoccluded irradiance (resampled importance sampling, Talbot et al. 2005). A LightTree
+/// proposes candidates; directional lights are always candidates. Thread-safe.
 class LuminaireChoice {
   public:
     /// @param scene  Must outlive this object.
     explicit LuminaireChoice(const Scene& scene);
 
-    /// Returns one luminaire's light at x on a surface with normal n, divided by its probability. On average, the
-    /// surface receives the unoccluded irradiance of all luminaires.
+    /// Returns one luminaire's light at x on a surface with normal n, divided by its probability. Excludes skies.
     Illumination choose(const V3f& x, const V3f& n, const LightSample& sample) const;
 
   private:

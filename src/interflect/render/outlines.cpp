@@ -14,7 +14,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// At the sample, one line width right, and one below.
 constexpr std::size_t rays_per_sample = 3;
 
 float outlined_share(const PixelSamples& samples, const ElementForest& forest) {
@@ -42,7 +41,7 @@ Image draw_outlines(const Image& picture, const Scene& scene, const ElementFores
     require_valid(options);
     require_pixels(picture);
     const Camera camera(view, picture.width, picture.height, scene.origin);
-    const float half = 0.5f * options.width;  // on each side of a border
+    const float half = 0.5f * options.width;
     const std::array<PixelOffset, rays_per_sample> offsets{{{-half, -half}, {half, -half}, {-half, half}}};
     Image outlined = picture;
     trace_pixels(camera, ray_caster, {picture.width, picture.height, samples, seed}, offsets, monitor,

@@ -9,15 +9,14 @@
 namespace interflect::detail {
 
 struct OutlineOptions {
-    float width = 1;             ///< [pixels], > 0; slanted lines are up to 1.4 times as wide.
-    float opacity = 0.6f;        ///< In [0, 1]; below 1 the picture stays visible behind small leaves.
-    Rgb colour{1, 0.35f, 0.0f};  ///< Linear Rec. 709; visible on bright and dark surfaces.
+    float width = 1;             ///< [pixels], > 0.
+    float opacity = 0.6f;        ///< In [0, 1].
+    Rgb colour{1, 0.35f, 0.0f};  ///< Linear Rec. 709.
 };
 
-/// Draws borders and silhouettes of visible leaves, where two points within the line width show different leaves.
-/// @param picture  Tone-mapped, linear Rec. 709 in [0, 1]; has the camera's size.
-/// @param samples  Per pixel, >= 1; three rays each.
-/// @return         The same bits for the same seed.
+/// Draws borders and silhouettes of visible leaves.
+/// @param picture  Tone-mapped, linear Rec. 709 in [0, 1].
+/// @param samples  Per pixel, >= 1.
 /// @throws InputError as render() does, and for options out of range.
 Image draw_outlines(const Image& picture, const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
                     const View& view, int samples, std::uint64_t seed, const OutlineOptions& options = {},

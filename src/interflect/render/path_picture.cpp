@@ -31,7 +31,7 @@ namespace {
 constexpr int least_batches = 8, least_hybrid_batches = 2;
 /// Larger batches stratify little better; more batches improve the error estimate.
 constexpr int largest_batch = 64;
-/// Approximate. Amortises the cost of a call, fits the cache.
+/// Amortises the cost of a call.
 constexpr std::size_t paths_per_tile = 2048;
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
 
@@ -132,8 +132,6 @@ class PathPicture {
 
     bool stopped() const { return monitor_.stop && *monitor_.stop; }
 
-    /// At most doubles each pixel's batches.
-    /// @return  Whether a pixel needs more.
     bool want_more(std::vector<std::uint32_t>& wanted, std::uint32_t most) {
         const std::vector<double> needed = needed_batches(pixels_, options_);
         bool more = false;
@@ -148,7 +146,6 @@ class PathPicture {
         return more;
     }
 
-    /// At most one batch per pixel at a time.
     void trace_round(const std::vector<std::uint32_t>& wanted) {
         const std::size_t per_chunk = paths_per_chunk / s_.batch_size;
         std::vector<std::uint32_t> present(pixels_.size());
@@ -186,7 +183,6 @@ class PathPicture {
         report(std::min(1.0, static_cast<double>(batches_done_) / foreseen_));
     }
 
-    /// Updates the error, which visits all pixels, after about one new path per pixel.
     void report(double fraction) {
         if (!monitor_.on_progress) return;
         const auto new_batches = static_cast<std::size_t>(batches_done_ - batches_of_error_);
@@ -232,7 +228,8 @@ std::vector<SurfacePoint> points_of(const PathScene& scene, const Monitor& monit
     PathScene finding = scene.with(scene.start, 1);
     finding.smooth_normals = scene.smooth_normals;
     finding.finds_points = true;
-    const std::size_t pixels = static_cast<std::size_t>(scene.options.width) * static_cast<std::size_t>(scene.options.height);
+    const std::size_t pixels =
+        static_cast<std::size_t>(scene.options.width) * static_cast<std::size_t>(scene.options.height);
     std::vector<std::vector<SurfacePoint>> found((pixels + paths_per_tile - 1) / paths_per_tile);
     parallel_for_ranges(pixels, paths_per_tile, [&](std::size_t begin, std::size_t end) {
         if (monitor.stop && *monitor.stop) return;
@@ -262,17 +259,17 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     std::optional<KnownLight> known_light;
     if (known) known_light.emplace(scene, geometry, known->forest, known->irradiance);
     PathScene path_scene{scene,
-                               ray_caster,
-                               start,
-                               geometry,
-                               lights,
-                               luminaires,
-                               skies,
-                               options,
-                               batch_size_for(options.samples, is_hybrid ? least_hybrid_batches : least_batches),
-                               panes,
-                               !panes.empty() || std::any_of(scene.materials.begin(), scene.materials.end(), is_mirror),
-                               known_light ? &*known_light : nullptr};
+                         ray_caster,
+                         start,
+                         geometry,
+                         lights,
+                         luminaires,
+                         skies,
+                         options,
+                         batch_size_for(options.samples, is_hybrid ? least_hybrid_batches : least_batches),
+                         panes,
+                         !panes.empty() || std::any_of(scene.materials.begin(), scene.materials.end(), is_mirror),
+                         known_light ? &*known_light : nullptr};
     SmoothNormals smooth_normals;
     std::optional<IndirectField> indirect_field;
     const UnoccludedLight unoccluded(scene, geometry);
@@ -284,7 +281,8 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
         indirect_field.emplace(path_scene, points_of(path_scene, monitor), monitor.stop);
         path_scene.indirect_field = &*indirect_field;
         path_scene.unoccluded = &unoccluded;
-        path_scene.directions_find_light = !unoccluded.has_patches() || skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
+        path_scene.directions_find_light =
+            !unoccluded.has_patches() || skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
         if (const char* e = getenv("HYB_SHADOW")) path_scene.hybrid_shadow_rays = atoi(e);
         if (const char* e = getenv("HYB_DIR")) path_scene.paths_per_direction = atoi(e);
         fprintf(stderr, "records %zu rays %ld\n", indirect_field->records(), (long)indirect_field->rays());

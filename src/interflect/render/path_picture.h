@@ -9,7 +9,6 @@
 
 namespace interflect::detail {
 
-/// Irradiance per element, at which final gathering ends paths.
 struct KnownIrradiance {
     const ElementForest& forest;
     std::span<const Rgb> irradiance;
@@ -18,10 +17,9 @@ struct KnownIrradiance {
 /// @throws InputError for inconsistent sizes or a forest of another scene.
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
 
-/// Peak memory of trace_picture() [bytes], measured with 2048 x 2048 pixels and 1.4 million emitting patches.
+/// Peak memory of trace_picture() [bytes], measured with 1.4 million emitting patches.
 inline constexpr std::size_t path_bytes_per_pixel = 600, path_bytes_per_patch = 250;
 
-/// Traces a picture, in rounds if it has an error target.
 /// @param start  Starts of options.width x options.height pixels.
 /// @param known  Null: Russian roulette ends paths.
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,

@@ -10,28 +10,25 @@ namespace interflect::detail {
 /// Samples directions around n with density cosine / pi (Malley's method); a, b uniform in (0, 1).
 V3f cosine_direction(const V3f& n, float a, float b);
 
-/// Random numbers that continue a path.
 struct VertexSample {
     float direction_u, direction_v;
     float roulette;
 };
 
-/// Random numbers of shadow rays to an emitting patch and a luminaire.
 struct LightSample {
-    double light;      // selects the emitting patch
-    float u, v;        // select the point
+    double light;
+    float u, v;
     float candidates;  // selects candidate luminaires, among which `light` selects
 };
 
-/// Random numbers that sample a KnownLight::Place.
 struct PlaceSample {
     double patch;
-    float u, v;  // select the point
+    float u, v;
 };
 
 struct SkySample {
     double sky;
-    float u, v;  // select the direction
+    float u, v;
 };
 
 /// Returns Sobol' points at a path's first vertices, then pseudo-random numbers.
@@ -43,12 +40,11 @@ LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uin
 PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 
-/// Returns the density per solid angle of a point on an emitting patch [1/sr].
-/// @param probability  Of the patch.
-/// @param distance2    Squared distance to the point [m^2].
+/// Returns the density of a point on a patch that is sampled with `probability` [1/sr].
+/// @param distance2  Squared distance [m^2].
 float density_per_solid_angle(const PatchGeometry& patch, float probability, const V3f& direction, float distance2);
 
-/// Balance heuristic: weight of density p against density q.
+/// Balance heuristic.
 inline float balance(float p, float q) { return p / (p + q); }
 
 }  // namespace interflect::detail

@@ -16,14 +16,14 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Throughput below which Russian roulette starts. Lower: less variance, longer paths; 0.25 to 1 are equally efficient.
+/// Lower values reduce variance but lengthen paths; 0.25 to 1 are equally efficient.
 constexpr float roulette_threshold = 0.5f;
 
-/// Shadow rays for direct light in final gathering. Squared error times time, one ray = 1, in maze, office-graz,
-/// office2 (16 samples, filtered): two rays 0.75, 0.82, 0.66; four 0.63, 0.76, 0.51.
+/// Squared error times time in maze, office-graz and office2 (16 samples, filtered; one ray: 1): two rays 0.75, 0.82,
+/// 0.66; four rays 0.63, 0.76, 0.51.
 constexpr std::uint32_t gathered_shadow_rays = 4;
 
-/// Projects x onto its patch, against rounding, and lifts it off.
+/// Projects x onto its patch, against rounding.
 V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
     const PatchGeometry& geometry = s.geometry[patch];
     return geometry.point(geometry.parameters_of(x)) + geometry.normal() * s.ray_caster.ray_offset(patch);
@@ -110,7 +110,7 @@ void PathWavefront::advance_paths() {
 
 void PathWavefront::split_paths() {
     if (!s_.splits || shows_irradiance()) return;
-    constexpr int most_splits = Panes::most_in_a_row;  // panes and mirrors in a row
+    constexpr int most_splits = Panes::most_in_a_row;
     std::size_t first = 0;
     for (int round = 0; round < most_splits && first < rays_.size(); ++round) {
         const std::size_t end = rays_.size();
@@ -204,7 +204,7 @@ bool PathWavefront::leave(Ray& ray, Path& path) {
         const std::uint32_t index = path.index % size * count + k;
         const LightSample sample = light_sample(key, vertex_, index);
         if (samples_emitters) connect_to_patch(ray.origin, path, sample);
-        // With every EmitterSampling: reflected paths cannot hit luminaires other than skies.
+        // Reflected paths cannot hit luminaires other than skies.
         if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
         if (samples_emitters && s_.skies.can_sample()) connect_to_sky(ray.origin, path, index);
     }
@@ -270,8 +270,8 @@ void PathWavefront::add_sky(const Ray& ray, const Path& path) {
     Rgb radiance = s_.skies.uniform_radiance();  // no shadow rays sample it
     if (s_.skies.can_sample()) {                 // otherwise sampled_radiance() is 0
         const auto count = static_cast<float>(shadow_rays_at(vertex_ - 1));
-        const float weight = direction_weight(direction_density(path, ray.direction),
-                                              count * s_.skies.density(ray.direction));
+        const float weight =
+            direction_weight(direction_density(path, ray.direction), count * s_.skies.density(ray.direction));
         radiance += s_.skies.sampled_radiance(ray.direction) * weight;
     }
     add(path.index, vertex_ - 1, path.throughput * radiance);
@@ -313,7 +313,7 @@ bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Pat
     if (!s_.known->is_far(place, distance2)) return false;
     const float light_density = density_towards(place, start_of(ray, path), path.normal, ray.direction, distance2);
     const float weight = balance(path.normal.dot(ray.direction) / pi, light_density);
-    // The place reflects once more than its emitted light, which add_emission() has added.
+    // Reflected once more than the place's own emission.
     add(path.index, vertex_, path.throughput * s_.known->reflected_radiance(place) * weight);
     return true;
 }
@@ -335,7 +335,7 @@ void PathWavefront::connect_to_known_light(const V3f& x, const Path& path) {
     connections_.push_back(
         {place.patch, path.index,
          path.throughput * s_.known->reflected_radiance(place) * (direction_density / light_density * weight), 0,
-         vertex_ + 1});  // the place reflects once more
+         vertex_ + 1});
 }
 
 float PathWavefront::density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
@@ -438,7 +438,7 @@ void PathWavefront::pass_panes() {
 }
 
 bool PathWavefront::is_unoccluded(const Connection& connection, const Hit& hit) {
-    // Escaped rays towards luminaires and skies are equal: both patches are none.
+    // Escaped rays match luminaires and skies: neither has a patch.
     return hit.patch == connection.patch || (connection.patch == none && hit.distance > connection.distance);
 }
 

@@ -25,44 +25,45 @@
 
 namespace interflect::detail {
 
-/// Starts of paths, one per pixel: camera or gauges.
+/// Camera, or one gauge per pixel.
 struct PathStart {
     std::optional<Camera> camera;
-    float pixel_angle = 0;  // side of a central pixel [rad]; 0 if orthographic
+    float pixel_angle = 0;  // [rad]
     std::span<const Gauge> gauges{};
-    float pixel_size = 0;  // side of an orthographic pixel [m]
+    float pixel_size = 0;  // [m]
 };
 
 struct PathScene {
     const Scene& scene;
     const RayCaster& ray_caster;
     const PathStart& start;
-    std::span<const PatchGeometry> geometry;  // per patch
+    std::span<const PatchGeometry> geometry;
     const LightTree& lights;
     const LuminaireChoice& luminaires;
     const Skies& skies;
     const PathOptions& options;
     std::size_t batch_size;
     Panes panes;
-    bool splits;                        // at panes or mirrors
-    const KnownLight* known = nullptr;  // ends paths; null: only Russian roulette ends them
-    const SmoothNormals* smooth_normals = nullptr;   // of the surfaces that the camera sees; null: flat patches
-    const IndirectField* indirect_field = nullptr;   // replaces reflected paths at the first vertex
-    const UnoccludedLight* unoccluded = nullptr;     // at the first vertex, shadow rays only estimate its visible share
+    bool splits;                                    // at panes or mirrors
+    const KnownLight* known = nullptr;              // ends paths; null: only Russian roulette ends them
+    const SmoothNormals* smooth_normals = nullptr;  // of the surfaces that the camera sees; null: flat patches
+    const IndirectField* indirect_field = nullptr;  // replaces reflected paths at the first vertex
+    const UnoccludedLight* unoccluded = nullptr;    // at the first vertex, shadow rays only estimate its visible share
     std::uint32_t hybrid_shadow_rays = 1;
-    bool directions_find_light = true;               // of hybrid shading: some light is not exact
-    std::uint32_t paths_per_direction = 4;           // of hybrid shading: one path in these finds emitters by its direction
-    bool is_indirect_only = false;                   // without light that is reflected once
-    bool finds_points = false;                       // paths end at the first vertex, see PathWavefront::points()
+    bool directions_find_light = true;      // of hybrid shading: some light is not exact
+    std::uint32_t paths_per_direction = 4;  // of hybrid shading: one path in these finds emitters by its direction
+    bool is_indirect_only = false;          // without light that is reflected once
+    bool finds_points = false;              // paths end at the first vertex, see PathWavefront::points()
 
     /// The same scene with other starts.
     PathScene with(const PathStart& other_start, std::size_t other_batch_size) const {
-        return {scene, ray_caster, other_start, geometry, lights, luminaires, skies, options, other_batch_size, panes, splits, known};
+        return {scene, ray_caster, other_start,      geometry, lights, luminaires,
+                skies, options,    other_batch_size, panes,    splits, known};
     }
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
 
-/// First hit of a camera ray, or a sum; all 0 if the ray escapes.
+/// First hit of a camera ray, or a sum; 0 if the ray escapes.
 struct FirstHit {
     RgbD albedo{0, 0, 0};
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
@@ -77,13 +78,13 @@ struct FirstHit {
     }
 };
 
-/// One batch of a pixel, as sums over its paths.
+/// Sums over one batch of a pixel's paths.
 struct BatchOfPaths {
     std::uint32_t pixel = 0, batch = 0;
     bool done = false;
-    RgbD emitted{0, 0, 0};   // visible directly
-    RgbD direct{0, 0, 0};    // reflected once
-    RgbD indirect{0, 0, 0};  // reflected more than once
+    RgbD emitted{0, 0, 0};
+    RgbD direct{0, 0, 0};
+    RgbD indirect{0, 0, 0};
     FirstHit first{};
 };
 
@@ -97,12 +98,11 @@ struct RayCounts {
     }
 };
 
-/// Traces several batches breadth first, one bounce at a time.
 class PathWavefront {
   public:
     explicit PathWavefront(const PathScene& scene) : s_(scene) {}
 
-    /// Adds the light of the paths to their batches. Call once.
+    /// Call once.
     void trace(std::span<BatchOfPaths> batches);
     const RayCounts& counts() const { return counts_; }
     /// First vertices, with PathScene::finds_points.
@@ -116,7 +116,7 @@ class PathWavefront {
         std::uint32_t patch = none;  // that surface
         float travelled = 0;  // from that surface or the camera to the ray's origin, behind panes or in mirrors [m]
         bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
-        std::uint32_t place = none;   // in seen_: ends at the next vertex, because its indirect light is known
+        std::uint32_t place = none;  // in seen_: ends at the next vertex, because its indirect light is known
     };
     struct PathLight {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
@@ -140,8 +140,8 @@ class PathWavefront {
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;             // to the luminaire [m]
-        std::uint32_t bounces;      // reflections of its light
+        float distance;              // to the luminaire [m]
+        std::uint32_t bounces;       // reflections of its light
         std::uint32_t place = none;  // in seen_; then `radiance` only estimates the visible share of exact light
         ExactLight SeenPlace::*kind = nullptr;
     };
@@ -150,18 +150,16 @@ class PathWavefront {
     /// Gauges act as white surfaces: paths begin with leave().
     void start_at_gauges(std::span<const BatchOfPaths> batches);
     void advance_paths();
-    /// Returns whether the first surface is white, opaque and does not emit: pictures of irradiance.
+    /// In pictures of irradiance, the first surface is white, opaque and does not emit.
     bool shows_irradiance() const;
-    /// Returns the point where a path left the last surface.
     static V3f start_of(const Ray& ray, const Path& path);
     /// Adds paths behind panes and in mirrors seen by the camera.
     void split_paths();
-    /// Adds a path unless its throughput is negligible.
     void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
     Rgb reflectance_of_hit(const Ray& ray, const Hit& hit) const;
     /// Replaces `ray` and `path` by their reflection; returns whether the path continues.
     bool interact(const Hit& hit, Ray& ray, Path& path);
-    /// Connects `ray.origin` to the lights and samples a direction; returns whether the path continues.
+    /// Connects `ray.origin` to the lights and samples a direction. Returns as interact().
     bool leave(Ray& ray, Path& path);
     /// Returns the place in seen_ of the first vertex, which may be new; none where light is gathered.
     std::uint32_t seen_place(const V3f& x, const Path& path);
@@ -174,7 +172,6 @@ class PathWavefront {
     float direction_density(const Path& path, const V3f& direction) const;
     /// Returns the weight of light found by the path's own direction, against shadow rays to it. Densities in [1/sr].
     float direction_weight(float direction_density, float light_density) const;
-    /// Returns the shadow rays per kind of light; more where paths end after the next vertex.
     std::uint32_t shadow_rays_at(std::uint32_t vertex) const;
     /// @param path  Its throughput includes the reflectance at x; also below.
     void connect_to_patch(const V3f& x, const Path& path, const LightSample& sample);
@@ -182,13 +179,11 @@ class PathWavefront {
     /// @param index  Ray in its batch at this vertex.
     void connect_to_sky(const V3f& x, const Path& path, std::uint32_t index);
     void trace_shadow_rays();
-    /// Extends shadow rays through panes: dims their connections, replaces their hits by the hits behind.
     void pass_panes();
-    /// Returns whether a shadow ray hits its patch, or no surface up to its distance.
     static bool is_unoccluded(const Connection& connection, const Hit& hit);
-    /// Ends a path with solved light at a far element; returns whether it has ended.
+    /// Ends a path with solved light at a far element, if possible.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
-    /// Returns the density of KnownLight::sample() per solid angle from x [1/sr].
+    /// Returns the density of KnownLight::sample() [1/sr].
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                           float distance2) const;
     void connect_to_known_light(const V3f& x, const Path& path);
@@ -196,11 +191,11 @@ class PathWavefront {
     void add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance);
 
     const PathScene& s_;
-    // Next vertex; the camera is 0. Light emitted there has been reflected vertex_ - 1 times.
+    // Next vertex; the camera is 0.
     std::uint32_t vertex_ = 1;
-    std::vector<std::uint64_t> keys_;  // per batch
-    std::vector<PathLight> light_;     // per path
-    std::vector<Path> paths_;          // continuing; parallel to rays_
+    std::vector<std::uint64_t> keys_;
+    std::vector<PathLight> light_;
+    std::vector<Path> paths_;  // parallel to rays_
     std::vector<Ray> rays_, shadow_rays_;
     std::vector<Hit> hits_;
     std::vector<Connection> connections_;

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Averages variance within this distance on both axes [pixels].
+/// On both axes [pixels].
 constexpr int neighbourhood_radius = 3;
 
 double mean_reflected(const std::vector<PixelStatistics>& pixels) {

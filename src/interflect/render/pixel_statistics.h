@@ -12,7 +12,7 @@ namespace interflect::detail {
 
 inline double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
 
-/// Statistics of a part of a pixel's light over batches (Welford 1962).
+/// Statistics over a pixel's batches (Welford 1962).
 struct PartStatistics {
     RgbD mean{0, 0, 0};
     double squares = 0;  // squared deviations of mean_channel()
@@ -27,10 +27,10 @@ struct PartStatistics {
 };
 
 struct PixelStatistics {
-    RgbD mean{0, 0, 0}, squares{0, 0, 0};  // squares: sum of squared deviations from the mean
-    RgbD emitted{0, 0, 0};                 // mean, as in `first`
+    RgbD mean{0, 0, 0}, squares{0, 0, 0};
+    RgbD emitted{0, 0, 0};
     PartStatistics direct, indirect;
-    std::array<PartStatistics, 2> direct_halves, indirect_halves;  // even batches, odd batches
+    std::array<PartStatistics, 2> direct_halves, indirect_halves;  // of even and odd batches
     FirstHit first;
     std::uint32_t batches = 0;
 
@@ -58,11 +58,10 @@ struct PixelStatistics {
     RgbD squared_error() const { return batches > 1 ? variance() / static_cast<double>(batches) : RgbD(0, 0, 0); }
 };
 
-/// RMS over pixels of standard error / mean, with means of at least the picture's mean reflected light. Infinite for
-/// fewer than two batches.
+/// Returns PathTracing::relative_error.
 double relative_error(const std::vector<PixelStatistics>& pixels);
 
-/// Total batches per pixel for options.until, from the variance of its neighbourhood.
+/// Returns the total per pixel for options.until.
 std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options);
 
 }  // namespace interflect::detail

@@ -29,7 +29,6 @@ using namespace detail;
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
-/// A fraction of a second.
 constexpr std::size_t rays_per_report = std::size_t{1} << 20;
 /// Cosine convolution per harmonic (Ramamoorthi and Hanrahan 2001, Eq. 8).
 constexpr std::array<float, 9> cosine_factors{pi,     2 * pi / 3, 2 * pi / 3, 2 * pi / 3, pi / 4,
@@ -120,7 +119,6 @@ class LightAround {
         }
     }
 
-    /// Transmittance of panes up to a distance; 0 if occluded.
     Rgb transmittance(Ray ray, float distance) const {
         Rgb through(1);
         for (int panes = 0; panes < Panes::most_in_a_row; ++panes) {
@@ -135,7 +133,7 @@ class LightAround {
         return Rgb(0);
     }
 
-    /// Share of rays that cross a one-sided face from behind, by reversed rays.
+    /// Share of rays that cross a one-sided face from behind.
     float share_of_backs(const std::vector<Ray>& rays, const std::vector<Hit>& hits) const {
         std::vector<Ray> back;
         std::vector<float> lengths;
@@ -161,7 +159,7 @@ class LightAround {
     const Skies skies_;
     const std::vector<SphereNode> nodes_;
     const std::uint64_t seed_;
-    const float far_;  // replaces infinite distances [m]
+    const float far_;  // [m]
 };
 
 ProbeGrid empty_grid(const Scene& scene, const ProbeOptions& options) {

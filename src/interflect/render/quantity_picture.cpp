@@ -13,7 +13,7 @@ namespace {
 
 struct Seen {
     double sum = 0;
-    int rays = 0;  // hits
+    int rays = 0;
 
     float mean() const { return rays > 0 ? static_cast<float>(sum / rays) : 0; }
 };

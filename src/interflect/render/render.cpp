@@ -31,7 +31,7 @@ class Shader {
     Shader(const Shader&) = delete;  // smooth_ refers to vertices_
     Shader& operator=(const Shader&) = delete;
 
-    /// H, or L = (M + rho H) / pi with textures.
+    /// Returns H, or L = (M + rho H) / pi.
     Rgb value_at(const Ray& ray, const Hit& hit) const {
         if (shows_irradiance_) return irradiance_at(ray, hit);
         const Patch& patch = scene_.patches[hit.patch];

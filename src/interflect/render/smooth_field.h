@@ -10,8 +10,7 @@
 
 namespace interflect::detail {
 
-/// Element values, continuous on each smooth surface: linear on triangles, bilinear on quadrilaterals, without cracks
-/// between levels. Constant on an undivided patch without smooth neighbours.
+/// Element values, continuous on each smooth surface: linear on triangles, bilinear on quadrilaterals.
 class SmoothField {
   public:
     /// @param forest, vertices  Must not change during use.
@@ -25,7 +24,7 @@ class SmoothField {
   private:
     const ElementForest& forest_;
     const ElementVertices& vertices_;
-    std::vector<Rgb> value_;  // per vertex
+    std::vector<Rgb> value_;
 };
 
 }  // namespace interflect::detail

@@ -9,13 +9,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum cosine at corners of a flat patch: 0.5 degrees, above the rounding in readers (0.2 degrees).
+/// 0.5 degrees: above the rounding of normals in readers (0.2 degrees).
 constexpr float cosine_of_flat = 0.99996f;
-/// Ridge of the fits, relative to the normal's variation. Bounds G where neighbours are nearly coplanar. Reduces G by
-/// 2% on a regular mesh.
+/// Bounds G where neighbours are nearly coplanar; reduces it by 2% on a regular mesh.
 constexpr double relative_ridge = 0.02;
 
-/// Mean irradiance of the leaves on the edge from corner c.
 Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance, std::uint32_t e, std::uint32_t c,
                     bool is_triangle) {
     if (forest.is_leaf(e)) return irradiance[e];

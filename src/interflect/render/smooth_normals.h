@@ -13,15 +13,13 @@
 
 namespace interflect::detail {
 
-/// Shading of curved surfaces that flat patches approximate, by Scene::normals. Solved irradiance holds for a patch's
-/// normal. On the curved surface, to first order,
+/// Shading of curved surfaces by Scene::normals. To first order, their irradiance is
 ///
 ///     H(x) = H_solved(x) + G (n(x) - n_mean)
 ///
 /// with n(x) interpolated from corner normals and n_mean its mean. G, the gradient of irradiance by normal, is a
-/// least-squares fit to the steps of irradiance across edges to neighbours, where only the normal differs. No change
-/// exceeds the largest step; the patch's mean is preserved. Patches without normals at all corners stay flat, because
-/// crease angles cannot distinguish roofs from domes.
+/// least-squares fit to the steps of irradiance across edges. The correction is clamped to the largest step. Patches
+/// without normals at all corners stay flat.
 class SmoothNormals {
   public:
     SmoothNormals() = default;
@@ -36,7 +34,7 @@ class SmoothNormals {
     V3f at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const;
 
   private:
-    /// Patch at a common edge. Edges are numbered by their first corner.
+    /// Edges are numbered by their first corner.
     struct Neighbour {
         std::uint32_t patch;
         std::uint32_t edge, other_edge;
@@ -44,14 +42,14 @@ class SmoothNormals {
     struct CurvedPatch {
         std::uint32_t patch;
         std::uint32_t first_neighbour = 0, last_neighbour = 0;
-        std::array<V3f, 4> normals;  // per corner
+        std::array<V3f, 4> normals;
 
         V3f normal_at(bool is_triangle, Parameters p) const;
         V3f mean_normal(bool is_triangle) const;
     };
     struct Gradient {
         std::array<Imath::V3d, 3> by_normal;  ///< G per channel.
-        Rgb largest_change;                   ///< Largest step to a neighbour.
+        Rgb largest_change;
     };
 
     Gradient gradient(const ElementForest& forest, std::span<const Rgb> irradiance, const CurvedPatch& curved) const;
@@ -59,7 +57,7 @@ class SmoothNormals {
         return std::span(neighbours_).subspan(curved.first_neighbour, curved.last_neighbour - curved.first_neighbour);
     }
 
-    std::vector<CurvedPatch> curved_;  // by patch
+    std::vector<CurvedPatch> curved_;
     std::vector<Neighbour> neighbours_;
 };
 

@@ -24,11 +24,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Edges with more patches count as creases, which bounds the pairs.
+/// Edges with more patches count as creases.
 constexpr std::size_t most_patches_at_an_edge = 64;
 
-/// Weld tolerance relative to the largest coordinate of core_bounds(): eight float steps, above the rounding of a point
-/// on an edge.
+/// Relative; eight float steps, above the rounding of a point on an edge.
 constexpr float weld_share = 0x1p-20f;
 
 float weld_tolerance(const Scene& scene) {
@@ -39,7 +38,7 @@ float weld_tolerance(const Scene& scene) {
     return weld_share * largest;
 }
 
-/// Hash grid. Cells are four tolerances wide, so most searches visit one cell.
+/// Cells are four tolerances wide, so most searches visit one.
 class VertexGrid {
   public:
     explicit VertexGrid(const Scene& scene)
@@ -47,7 +46,6 @@ class VertexGrid {
         first_.reserve(positions_.size());
     }
 
-    /// Returns an earlier vertex at this position, or inserts `i`.
     std::uint32_t weld(std::uint32_t i) {
         const GridCell low = cell_of(positions_[i] - V3f(tolerance_)), high = cell_of(positions_[i] + V3f(tolerance_));
         for (std::int64_t x = low.x; x <= high.x; ++x)
@@ -82,9 +80,9 @@ class VertexGrid {
     }
 
     const std::vector<V3f>& positions_;
-    std::unordered_map<GridCell, std::uint32_t, CellHash> first_;  // latest vertex in each cell
-    std::vector<std::uint32_t> next_;                              // previous vertex in the same cell
-    float tolerance_;                                              // [m]
+    std::unordered_map<GridCell, std::uint32_t, CellHash> first_;
+    std::vector<std::uint32_t> next_;
+    float tolerance_;  // [m]
 };
 
 std::vector<std::uint32_t> weld(const Scene& scene) {
@@ -95,9 +93,9 @@ std::vector<std::uint32_t> weld(const Scene& scene) {
 }
 
 struct PatchEdge {
-    std::uint32_t low, high;   // welded, low < high; equal for all patches at the edge
-    std::uint32_t start, end;  // 4 patch + corner; start also numbers the edge
-    bool upwards;              // the patch runs from low to high
+    std::uint32_t low, high;   // welded, low < high
+    std::uint32_t start, end;  // 4 patch + corner
+    bool upwards;
 
     std::uint32_t patch() const { return start / 4; }
     friend bool operator<(const PatchEdge& a, const PatchEdge& b) {
@@ -128,11 +126,10 @@ class CreaseTest {
     CreaseTest(const Scene& scene, float crease_angle)
         : scene_(scene), normals_(patch_normals(scene)), least_cosine_(cosine_of(crease_angle)) {}
 
-    /// By material and the patches' angle.
     bool is_smooth(std::uint32_t p, std::uint32_t q) const {
         return has_one_material(p, q) && normals_[p].dot(normals_[q]) >= least_cosine_;
     }
-    /// At a common edge; Scene::normals decide if present at all corners.
+    /// Scene::normals decide if all corners of the edge have them.
     bool is_smooth(const PatchEdge& a, const PatchEdge& b) const {
         const Comparison start = compare_normals(a.start, b.end), end = compare_normals(a.end, b.start);
         if (start == Comparison::unknown || end == Comparison::unknown) return is_smooth(a.patch(), b.patch());
@@ -160,7 +157,7 @@ class CreaseTest {
     }
 
     const Scene& scene_;
-    const std::vector<V3f> normals_;  // of patches
+    const std::vector<V3f> normals_;
     const float least_cosine_;
     // Readers round normals by 0.2 degrees.
     const float cosine_of_equal_ = cosine_of(1);
@@ -173,7 +170,7 @@ SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
     groups.group.assign(4 * scene.patches.size(), none);
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(scene.patches[p].vertex_count()); ++c) {
-            const std::uint32_t member = 4 * p + c, first = sets.find(member);  // first <= member: already numbered
+            const std::uint32_t member = 4 * p + c, first = sets.find(member);
             groups.group[member] = first == member ? groups.count++ : groups.group[first];
         }
     return groups;
@@ -184,7 +181,6 @@ struct LineInterval {
     double from, to;
 };
 
-/// Parts of `whole` outside `covered`, ascending, each longer than `least`.
 std::vector<LineInterval> uncovered_parts(LineInterval whole, std::vector<LineInterval> covered, double least) {
     std::sort(covered.begin(), covered.end(),
               [](const LineInterval& a, const LineInterval& b) { return a.from < b.from; });
@@ -256,7 +252,6 @@ class ContactTree {
           tree_(scene.contacts.size(),
                 [&](std::uint32_t i) { return std::pair(scene.contacts[i].a, scene.contacts[i].b); }) {}
 
-    /// Parts with a contact, each longer than the tolerance.
     std::vector<LineInterval> along(const V3f& a, const V3f& b) const {
         const StraightEdge edge(a, b);
         std::vector<LineInterval> found;
@@ -275,10 +270,9 @@ class ContactTree {
     SegmentTree tree_;
 };
 
-/// Ignores gaps between consecutive walls; relative to an edge.
+/// Relative; ignores gaps between consecutive walls.
 constexpr double least_seam_share = 1e-3;
 
-/// Finds continuations across parts of edges, if one patch is part of a cut surface.
 class SeamFinder {
   public:
     /// @param edges  Edges across which no whole patch continues.
@@ -289,7 +283,6 @@ class SeamFinder {
           tolerance_(weld_tolerance(scene)),
           tree_(edges_.size(), [&](std::uint32_t i) { return std::pair(start(edges_[i]), end(edges_[i])); }) {}
 
-    /// @param smooth  Whether two patches continue each other.
     std::vector<SmoothSurfaces::Seam> seams(const auto& smooth) const {
         std::vector<SmoothSurfaces::Seam> found;
         for (std::uint32_t i = 0; i < edges_.size(); ++i) {
@@ -320,7 +313,7 @@ class SeamFinder {
                                             : !other.is_collinear(start(a), end(a), tolerance_))
             return;
         const double b_start = line.along(start(b)), b_end = line.along(end(b));
-        if (b_end >= b_start) return;  // opposite orientations
+        if (b_end >= b_start) return;
         const LineInterval shared{std::max(0.0, b_end), std::min(line.length(), b_start)};
         const double least = std::max(2.0 * tolerance_, least_seam_share * std::min(line.length(), other.length()));
         if (shared.to - shared.from <= least) return;

@@ -25,7 +25,7 @@ Legendre legendre(int degree, double x) {
 std::vector<SphereNode> sphere_quadrature(int rows) {
     std::vector<SphereNode> nodes;
     for (int i = 0; i < rows; ++i) {
-        double x = std::cos(std::numbers::pi * (i + 0.75) / (rows + 0.5));  // initial guess of the root
+        double x = std::cos(std::numbers::pi * (i + 0.75) / (rows + 0.5));
         constexpr int newton_steps = 8;
         for (int k = 0; k < newton_steps; ++k) {
             const Legendre p = legendre(rows, x);

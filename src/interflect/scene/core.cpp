@@ -10,9 +10,7 @@ namespace {
 
 using Imath::V3d;
 
-/// Farthest middle of a scene that keeps its origin, in reaches.
 constexpr double near_in_reaches = 8;
-/// Farthest faces that count for the scene's size, in reaches from the middle.
 constexpr double stray_in_reaches = 64;
 
 double weighted_median(std::span<const double> values, std::span<const double> weights) {

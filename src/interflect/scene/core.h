@@ -15,7 +15,7 @@ struct FaceExtent {
     double size = 0;             ///< Diagonal of the bounding box [m]; > 0.
 };
 
-/// Keeps every k-th face, with k a power of two: enough for medians. Deterministic.
+/// Every k-th face, with k a power of two.
 class FaceSample {
   public:
     static constexpr std::size_t capacity = 1 << 13;
@@ -30,22 +30,20 @@ class FaceSample {
     std::size_t offered_ = 0, stride_ = 1;
 };
 
-/// Location and extent of a scene, robust against distant faces.
+/// Location and extent, robust against distant faces.
 struct Core {
-    Imath::V3d middle{0, 0, 0};  ///< Median of the face centres per axis, weighted by size [m].
-    double reach = 0;            ///< Weighted median of each face's distance from the middle plus half its size [m].
+    Imath::V3d middle{0, 0, 0};  ///< Median face centre per axis, weighted by size [m].
+    double reach = 0;            ///< Weighted median of the distance from the middle plus half the size [m].
 };
 
-/// All zero without faces. O(n log n).
+/// Returns zeros without faces.
 Core core_of(std::span<const FaceExtent> faces);
 
-/// Returns an origin that preserves the precision of float vertices. It is 0 if the middle is within 8 reaches, which
-/// costs at most 3 bits. Otherwise it is the middle, rounded to a multiple of the power of two above the reach, so
-/// exact coordinates stay exact.
+/// Returns an origin that preserves float precision: 0 if the middle is within 8 reaches, which costs at most 3 bits,
+/// otherwise the middle in steps of a power of two, so exact coordinates stay exact.
 Imath::V3d origin_for(const Core& core);
 
-/// Returns the bounding box, relative to the scene's origin [m], of faces whose centre is within 64 reaches of the
-/// middle. O(patches).
+/// Bounds the faces with centres within 64 reaches of the middle [m], relative to the scene's origin.
 Imath::Box3f core_bounds(const Scene& scene);
 
 }  // namespace interflect::detail

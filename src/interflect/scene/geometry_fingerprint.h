@@ -6,12 +6,12 @@
 
 namespace interflect::detail {
 
-/// Returns a 64-bit hash of a scene's origin, patch corners and pairs of sides. Materials, names and views do not
-/// matter. O(patches). @throws InputError if a vertex index is out of range.
+/// Hashes a scene's origin, patch corners and pairs of sides.
+/// @throws InputError if a vertex index is out of range.
 std::uint64_t geometry_fingerprint(const Scene& scene);
 
+/// @throws InputError if `scene` has another fingerprint.
 /// @param what  Object with this fingerprint, for the message.
-/// @throws InputError if `scene` has another one.
 void require_made_for(const Scene& scene, std::uint64_t fingerprint, const char* what);
 
 }  // namespace interflect::detail

@@ -34,7 +34,7 @@ class Matcher {
   public:
     explicit Matcher(const Scene& scene) : scene_(scene) {}
 
-    /// Returns the first matching group; the number of groups if none matches.
+    /// Returns the first matching group, or the number of groups.
     std::size_t group_of(std::uint32_t object, const std::string& own_name) {
         const auto [entry, is_new] = known_.try_emplace({object, own_name}, scene_.light_groups.size());
         if (!is_new) return entry->second;
@@ -162,7 +162,7 @@ Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<f
         const bool emits = channel_sum(scene.materials[scene.patches[patch].material].exitance) > 0;
         return emits ? factors[groups.of_patch[patch]] : 1;
     };
-    std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // new index of (material, factor)
+    std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // by material and factor
     for (std::size_t i = 0; i < scene.patches.size(); ++i)
         scaled.try_emplace({scene.patches[i].material, factor_of(i)});
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
@@ -170,7 +170,7 @@ Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<f
         if (used == scaled.end() || used->first.first != m) scaled.try_emplace({m, 1.0f});
     }
     Scene result = scene;
-    // Keeps the order of the materials, so exports have the same meshes for all factors.
+    // Keeps the order, so exports have the same meshes for all factors.
     result.materials.clear();
     for (auto& [key, index] : scaled) {
         index = static_cast<std::uint32_t>(result.materials.size());

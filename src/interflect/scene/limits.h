@@ -6,26 +6,24 @@
 
 namespace interflect::detail {
 
-// Limits that keep results within single precision, 10^-38 to 3 * 10^38. Variances scale with the square of an
-// element's irradiance and the inverse square of its area.
+// Limits for single precision: variances scale with the square of irradiance and the inverse square of element area.
 
-/// Farthest coordinate of a face or a view, in the world and from the scene's origin [m]; a double resolves 1/8 m
-/// there.
+/// For faces and views, in the world and from the scene's origin [m]; a double resolves 1/8 m there.
 inline constexpr double farthest_coordinate = 1e15;
 
-/// Widest face, the diagonal of its bounding box [m]: about the Earth.
+/// Diagonal of the bounding box [m]: about the Earth.
 inline constexpr double widest_face = 1e7;
 
-/// Narrowest scene, the diagonal of its bounding box [m]: two wavelengths of light. Smallest face [m^2].
+/// Diagonal of the scene's bounding box [m]: two wavelengths of light. Area of a face [m^2].
 inline constexpr double narrowest_scene = 1e-6;
 inline constexpr float smallest_face_area = 1e-18f;
 
-/// Range of the brightest source, unless it is 0, per channel [lm/m^2 or W/m^2]; the Sun has 6 * 10^9 lm/m^2.
+/// Range of the brightest source unless 0, per channel [lm/m^2 or W/m^2]; the Sun has 6 * 10^9 lm/m^2.
 inline constexpr float weakest_exitance = 1e-9f, strongest_exitance = 1e10f;
 
 bool is_within_reach(const Imath::V3d& point);
 
-/// Returns the diagonal of the bounding box of all patches with valid vertices [m]; 0 without patches.
+/// Returns the diagonal of all patches' bounding box [m]; 0 without patches. Ignores invalid vertices.
 double scene_width(const Scene& scene);
 
 // Functions *_fault() return a predicate ("is 2e9 m wide, ..."); empty if valid.
@@ -37,19 +35,20 @@ std::string exitance_fault(const Rgb& exitance);
 /// @param strongest  brightest_source(scene).
 std::string brightness_fault(float strongest);
 
-/// Returns the maximum of each texture and channel. O(texels).
+/// Returns the maximum of each texture and channel.
 std::vector<Rgb> largest_texels(const Scene& scene);
 
-/// Returns `factor` times the largest texel. @param largest  largest_texels().
+/// @param largest  largest_texels().
 inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<Rgb>& largest) {
     return texture == none ? factor : factor * largest[texture];
 }
 
-/// Returns the maximum of reflectance, specular reflectance and transmittance together. An upper bound if the textures
-/// differ in size. @param largest  largest_texels() of `textures`.
+/// Returns the maximum sum of reflectance, specular reflectance and transmittance; an upper bound if textures differ in
+/// size.
+/// @param largest  largest_texels() of `textures`.
 Rgb largest_sum(const Material& material, const std::vector<Texture>& textures, const std::vector<Rgb>& largest);
 
-/// Returns the largest channel of all textured exitances and luminaire ratings; 0 without sources. O(texels).
+/// Returns the largest channel of textured exitances and luminaire ratings; 0 without sources.
 /// @param scene  With valid texture indices.
 float brightest_source(const Scene& scene);
 

@@ -20,7 +20,6 @@ struct Place {
     float share;
 };
 
-/// @param x  Within the range of the table.
 Place place_in(const std::vector<float>& table, double x) {
     const auto above = std::upper_bound(table.begin() + 1, table.end() - 1, x);
     const auto index = static_cast<std::size_t>(above - table.begin()) - 1;

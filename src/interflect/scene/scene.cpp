@@ -27,7 +27,6 @@ class Faults {
     void check(bool holds, const Describe& describe) {
         if (!holds && list_.size() < listed_faults) list_.push_back(describe());
     }
-    /// @param fault  Empty if valid.
     template <class Name>
     void add(const std::string& fault, const Name& name) {
         check(fault.empty(), [&] { return name() + fault; });
@@ -79,7 +78,6 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
     faults.add(exitance_fault(m.exitance), [&] { return fmt::format("material '{}': ", m.name); });
 }
 
-/// @param largest  largest_texels() of all textures.
 void check_products(const Material& m, const std::vector<Texture>& textures, const std::vector<Rgb>& largest,
                     Faults& faults) {
     const Rgb r = textured(m.reflectance, m.reflectance_texture, largest);

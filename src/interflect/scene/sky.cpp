@@ -34,7 +34,7 @@ double SkyModel::relative_luminance(double zenith_cosine, double sun_cosine) con
     return gradation(*this, zenith_cosine) * indicatrix(*this, sun_cosine);
 }
 
-/// Midpoint rule over half of the sky, which is symmetric about the sun's meridian.
+/// Midpoint rule over half of the sky, symmetric about the sun's meridian.
 double SkyModel::horizontal_integral(double sun_cosine) const {
     constexpr int rows = 512, columns = 256;
     const double sun_sine = std::sqrt(std::max(0.0, 1 - sun_cosine * sun_cosine));

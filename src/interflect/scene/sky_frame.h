@@ -10,7 +10,6 @@ struct SkyPlace {
     float s, cosine;
 };
 
-/// Axes of unit length.
 struct SkyFrame {
     V3f east, north, zenith;
     /// North is the scene's y axis, or -z if y is close to the zenith.

@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Texture coordinates of a texel's centre. @param i  Index into Texture::texels.
+/// @param i  Index into Texture::texels.
 inline V2f texel_centre(const Texture& texture, std::size_t i) {
     const std::size_t column = i % texture.width, row = i / texture.width;
     return {(static_cast<float>(column) + 0.5f) / static_cast<float>(texture.width),

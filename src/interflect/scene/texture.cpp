@@ -9,7 +9,7 @@ namespace interflect {
 
 namespace {
 
-/// Two nearest texels of a coordinate, and the weight of the second.
+/// Nearest texels of a coordinate, and the weight of the second.
 struct Between {
     std::uint32_t first, second;
     float share;

@@ -15,11 +15,9 @@ namespace {
 
 using V3d = Imath::V3d;
 
-/// Minimum sine of the angle between `up` and the view direction.
 constexpr double smallest_up_sine = 1e-5;
 
-/// Minimum distance from eye to look-at, relative to the largest coordinate. Rounding may change this direction by 1e-4
-/// rad.
+/// Relative to the largest coordinate: rounding may turn the view by 1e-4 rad.
 constexpr double smallest_relative_distance = 1e-12;
 
 template <class T>
@@ -66,7 +64,7 @@ const View& find_view(const Scene& scene, const std::string& name) {
 }
 
 View overview(const Scene& scene) {
-    constexpr float margin = 0.06f;  // relative to the box; keeps the camera out of walls
+    constexpr float margin = 0.06f;  // of the box; keeps the camera out of walls
     constexpr float wide = 60;       // [degrees]
     const Imath::Box3f box = core_bounds(scene);
     View view;

@@ -6,21 +6,20 @@
 
 namespace interflect::detail {
 
-/// Describes a fault; empty if valid. Eye and look-at must be within farthest_coordinate and far enough apart to define
-/// a direction. `up` must not be 0 or along it; fov in (0, 180); extent in [0, farthest_coordinate].
+/// Describes a fault; empty if valid. Eye and look-at must be within farthest_coordinate and define a direction; `up`
+/// must not be 0 or along it; fov in (0, 180); extent in [0, farthest_coordinate].
 std::string view_fault(const View& view);
 
 /// @throws InputError that lists the available views.
 const View& find_view(const Scene& scene, const std::string& name);
 
-/// Returns the default view, from an upper corner of core_bounds(), inside the scene, to its middle.
+/// Returns the default view from inside an upper corner of core_bounds() to its middle.
 View overview(const Scene& scene);
 
-/// Returns an orthographic view of the part of a scene beyond a plane, which shows core_bounds() with a margin. `up` is
-/// the z axis, or the y axis for a view along z.
+/// Returns an orthographic view of core_bounds() beyond a plane, with a margin. `up` is z, or y for a view along z.
 /// @param point  On the plane, in world coordinates [m].
 /// @param direction  Normal to the plane; not 0.
-/// @param aspect  Width over height of the picture.
+/// @param aspect  Width over height.
 View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& direction, float aspect);
 
 }  // namespace interflect::detail

@@ -14,7 +14,7 @@ inline constexpr float right_angle = 90;                   // [degrees]
 inline double radians(double degrees) { return degrees * (std::numbers::pi / half_turn); }
 inline double degrees(double radians) { return radians * (half_turn / std::numbers::pi); }
 
-/// Axes of the angles in the luminaire's frame.
+/// In the luminaire's frame.
 struct WebAxes {
     V3f pole, zero, quarter;  ///< Azimuths 0 and 90 degrees are `zero` and `quarter`.
     explicit WebAxes(PhotometricWeb::Pole kind) : pole(0, 0, -1), zero(1, 0, 0), quarter(0, 1, 0) {
@@ -22,8 +22,7 @@ struct WebAxes {
     }
 };
 
-/// Integrals over polar angles t in [a, b] [radians] of sin t times a linear function that is 1 at one end and 0 at the
-/// other.
+/// Integrals over [a, b] [radians] of sin t times a linear function that is 1 at one end and 0 at the other.
 struct BandWeights {
     double at_a, at_b;
     BandWeights(double a, double b) {

@@ -12,19 +12,18 @@ namespace {
 
 constexpr float wall_thickness = 0.2f;  // [m]
 constexpr float door_width = 0.9f;      // [m]
-constexpr float least_pier = 0.5f;      // minimum wall between a doorway and a corner [m]
+constexpr float least_pier = 0.5f;      // between a doorway and a corner [m]
 
 struct SharedWall {
     std::array<std::uint32_t, 2> rooms;
     Side side;  // of the first room
 };
 
-/// Union-find with path halving.
 class Connected {
   public:
     explicit Connected(std::size_t rooms) : parent_(rooms) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
-    /// @return  false if the rooms were already connected.
+    /// Returns false if already connected.
     bool join(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);
@@ -40,7 +39,7 @@ class Connected {
     std::vector<std::uint32_t> parent_;
 };
 
-/// Intervals are separated by walls and centred at 0.
+/// Returns intervals that are separated by walls and centred at 0.
 std::vector<Interval> draw_intervals(std::uint32_t count, const Interval& length, RandomSequence& random) {
     std::vector<Interval> intervals;
     float end = -wall_thickness;
@@ -77,7 +76,7 @@ std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanO
     return chosen;
 }
 
-/// Opposite doorways are aligned or do not overlap, because places are evenly spaced.
+/// Evenly spaced places align opposite doorways or keep them apart.
 Interval draw_opening(const Interval& wall, RandomSequence& random) {
     const float places = std::floor((wall.length() - 2 * least_pier) / door_width);
     const float first = wall.middle() - places * door_width / 2;

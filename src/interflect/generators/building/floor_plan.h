@@ -20,10 +20,9 @@ inline constexpr int side_count = 4;
 constexpr Side opposite(Side side) { return static_cast<Side>((side + 2) % side_count); }
 constexpr bool along_x(Side side) { return side % 2 == 1; }
 
-/// Floor between the wall faces.
 struct Room {
     Interval x, y;
-    std::array<std::uint32_t, side_count> doorway{none, none, none, none};  ///< Index into FloorPlan::doorways.
+    std::array<std::uint32_t, side_count> doorway{none, none, none, none};  ///< In FloorPlan::doorways.
 
     const Interval& along(Side side) const { return along_x(side) ? x : y; }
     float wall(Side side) const {
@@ -34,26 +33,26 @@ struct Room {
 
 struct Doorway {
     std::array<std::uint32_t, 2> rooms{none, none};  ///< West or south room first.
-    Side side = east;                                ///< Wall of the first room: east or north.
+    Side side = east;                                ///< In the first room: east or north.
     Interval opening;                                ///< Along the wall.
 };
 
-/// Rooms about the origin, with floors at z = 0.
+/// Centred at the origin, with floors at z = 0.
 struct FloorPlan {
     float room_height = 2.8f, door_height = 2.1f;  ///< [m]
-    std::vector<Room> rooms;                       ///< Row by row from south to north, each from west to east.
+    std::vector<Room> rooms;                       ///< By rows from the south, each from the west.
     std::vector<Doorway> doorways;
 };
 
 struct PlanOptions {
     std::uint32_t rooms = 1;
-    Interval width{5.2f, 6.8f}, depth{5.2f, 6.8f};  ///< Drawn per column and row [m].
-    float extra_doors = 0;  ///< Fraction of walls outside the spanning tree that get a doorway, 0 to 1.
+    Interval width{5.2f, 6.8f}, depth{5.2f, 6.8f};  ///< Per column and row [m].
+    float extra_doors = 0;                          ///< Fraction of walls outside the spanning tree, 0 to 1.
     std::uint64_t seed = 1;
 };
 
 /// Creates a nearly square grid of rooms, connected by a random spanning tree of doorways and `extra_doors`. Opposite
-/// doorways of a room are aligned or do not overlap. Linear in the rooms.
+/// doorways of a room are aligned or do not overlap.
 FloorPlan make_floor_plan(const PlanOptions& options);
 
 }  // namespace interflect::detail::building

@@ -11,11 +11,10 @@ using Imath::V2f;
 
 constexpr float way_length = 1.0f;   // free floor before a doorway [m]
 constexpr float way_margin = 0.05f;  // on both sides of a way [m]
-constexpr float aisle = 0.35f;       // minimum distance of free-standing furniture from walls [m]
+constexpr float aisle = 0.35f;       // from free-standing furniture to walls [m]
 constexpr int random_tries = 40;
 constexpr int tried_places = 100;  // per wall, if random tries fail
 
-/// Returns the rotation of the y axis that points from the wall into the room.
 int quarter_turns_from(Side wall) {
     switch (wall) {
         case south:
@@ -29,7 +28,6 @@ int quarter_turns_from(Side wall) {
     }
 }
 
-/// Returns the floor `along` a wall at distances `from` to `to`.
 Box2f beside_wall(const Room& room, Side wall, const Interval& along, float from, float to) {
     const float inwards = wall == west || wall == south ? 1.f : -1.f;
     const float a = room.wall(wall) + inwards * from, b = room.wall(wall) + inwards * to;

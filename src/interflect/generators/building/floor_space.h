@@ -19,7 +19,7 @@ class FloorSpace {
 
     void reserve(const Imath::Box2f& part) { taken_.push_back(part); }
 
-    /// Reserves a place for a piece with its back to a wall; nullopt if none is found.
+    /// Reserves a place with the piece's back to a wall; nullopt on failure.
     std::optional<Placement> against_wall(const Furniture& piece, RandomSequence& random);
     std::optional<Placement> in_the_open(const Furniture& piece, RandomSequence& random);
 

@@ -10,14 +10,14 @@
 
 namespace interflect::detail::building {
 
-/// Adds furniture to one room as objects "room-0.desk-1" and so on.
+/// Adds furniture to a room as objects "room-0.table-1" and so on.
 class Furnisher {
   public:
     Furnisher(Scene& scene, const Palette& palette, std::uint32_t room, RandomSequence& random)
         : scene_(scene), palette_(palette), room_(room), random_(random) {}
 
     void add(const Furniture& piece, const Placement& place);
-    /// Adds luminaires, at least one, evenly spaced by at most `pitch` [m].
+    /// Adds at least one, evenly spaced by at most `pitch` [m].
     void add_luminaires(const Room& room, float ceiling_height, float pitch, bool turned);
 
   private:

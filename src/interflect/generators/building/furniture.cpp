@@ -10,7 +10,7 @@ namespace {
 // All lengths in metres.
 
 struct Books {
-    Interval thickness, height, depth;  // height as a fraction of the space between boards
+    Interval thickness, height, depth;  // height relative to the space between boards
     float chance_of_space = 0;          // after a book
 };
 
@@ -21,7 +21,6 @@ std::uint32_t draw_paper(const Palette& palette, RandomSequence& random) {
     return random.pick(std::span(palette.papers));
 }
 
-/// Aligns the backs at high.y.
 void add_books(const Solids& solids, const V3f& low, const V3f& high, const Books& kind, const Palette& palette,
                RandomSequence& random) {
     for (float x = low.x;;) {
@@ -35,7 +34,6 @@ void add_books(const Solids& solids, const V3f& low, const V3f& high, const Book
     }
 }
 
-/// Fills all boards but the uppermost.
 void add_bookcase(const Solids& solids, const V3f& size, int rows, const Books& kind, const Palette& palette,
                   RandomSequence& random) {
     constexpr float board = .02f, back = .01f, plinth = .05f, set_back = .02f;
@@ -71,7 +69,6 @@ void add_legs(const Solids& solids, float half_x, float half_y, float thickness,
                        material);
 }
 
-/// Within 0.33 m of the origin, front towards +y.
 void add_office_chair(const Solids& solids, const Palette& palette, RandomSequence& random) {
     const std::uint32_t fabric = random.pick(std::span(palette.fabrics));
     add_legs(solids, .20f, .20f, .05f, .06f, palette.plastic);
@@ -86,7 +83,6 @@ void add_office_chair(const Solids& solids, const Palette& palette, RandomSequen
     }
 }
 
-/// Within 0.3 m of the origin, front towards +y.
 void add_chair(const Solids& solids, std::uint32_t wood, std::uint32_t fabric) {
     add_legs(solids, .19f, .18f, .035f, .43f, wood);
     solids.box({-.21f, -.20f, .43f + gap}, {.21f, .20f, .47f}, fabric);

@@ -8,12 +8,12 @@
 
 namespace interflect::detail::building {
 
-/// In local coordinates, x points right, y to the front and z up; the origin is the middle of the back, on the floor.
-/// All parts are at least `gap` inside |x| < width / 2, 0 < y < depth and z > 0.
+/// Local x points right, y to the front and z up; the origin is the middle of the back, on the floor. Parts are at
+/// least `gap` inside |x| < width / 2, 0 < y < depth and z > 0.
 struct Furniture {
     std::string_view name;
     float width, depth;  ///< [m]
-    float clearance;     ///< Depth of floor kept free in front [m].
+    float clearance;     ///< Free floor in front [m].
     void (*build)(const Solids& solids, const Palette& palette, RandomSequence& random);
 };
 
@@ -27,7 +27,7 @@ extern const Furniture picture;  ///< Reserves the floor below.
 extern const Furniture cartons;
 extern const Furniture waste_bin;
 
-/// Adds a luminaire of 1.2 m (x) by 0.6 m (y) with an emitting underside; the origin is its centre on the ceiling.
+/// Adds a luminaire of 1.2 m (x) by 0.6 m (y), emitting downwards; the origin is its centre on the ceiling.
 void add_luminaire(const Solids& solids, const Palette& palette, RandomSequence& random);
 
 }  // namespace interflect::detail::building

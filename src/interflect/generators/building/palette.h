@@ -13,7 +13,7 @@ namespace interflect::detail::building {
 struct Palette {
     std::vector<std::uint32_t> walls, floors, ceilings;
     std::vector<std::uint32_t> woods, fabrics, papers;
-    std::vector<std::uint32_t> lamps;  ///< 10,000 to 14,000 lm/m^2, warm to cool white.
+    std::vector<std::uint32_t> lamps;  ///< 10,100 to 12,100 lm/m^2, warm to cool white.
     std::uint32_t metal = 0, lacquer = 0, plastic = 0, screen = 0, cardboard = 0;
 };
 

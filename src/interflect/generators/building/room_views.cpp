@@ -15,12 +15,12 @@ using Imath::V2f;
 
 constexpr float eye_height = 1.6f;     // [m]
 constexpr float eye_to_wall = 0.45f;   // [m]
-constexpr float wide = 55;             // vertical field of view [degrees]
-constexpr float aim_height = 1.0f;     // of the look-at point [m]
+constexpr float wide = 55;             // vertical [degrees]
+constexpr float aim_height = 1.0f;     // [m]
 constexpr float bird_fov = 45;         // [degrees]
-constexpr float bird_distance = 1.1f;  // from the middle, relative to the plan's diagonal
+constexpr float bird_distance = 1.1f;  // relative to the plan's diagonal
 
-/// Direction of a room's corner along x and y, -1 or 1.
+/// -1 or 1 per axis.
 struct Corner {
     float x, y;
 };
@@ -46,7 +46,7 @@ V2f middle_of_doorway(const FloorPlan& plan, const Room& room, Side side) {
     return along_x(side) ? V2f(along, room.wall(side)) : V2f(room.wall(side), along);
 }
 
-/// Returns the cosine of the angle from the view direction to the nearest doorway; -1 without doorways.
+/// Returns the cosine between the view direction and the nearest doorway; -1 without doorways.
 float doorway_in_sight(const FloorPlan& plan, const Room& room, const Corner& corner) {
     const V2f eye = eye_in(room, corner), direction = (opposite_corner(room, corner) - eye).normalized();
     float best = -1;

@@ -10,7 +10,7 @@ namespace interflect::detail::building {
 
 namespace {
 
-/// Corners of an opening: low and high end at the floor, then high and low end at the top.
+/// Corners: low and high end at the floor, then high and low end at the top.
 using DoorFrame = std::array<std::uint32_t, 4>;
 
 /// Returns the ends and doorway edges of two opposite walls, ascending.
@@ -27,7 +27,7 @@ std::vector<float> dividing_lines(const FloorPlan& plan, const Room& room, Side 
     return lines;
 }
 
-/// A box whose opposite faces are divided alike, so the surface has no T-vertices.
+/// Box with opposite faces divided alike, to avoid T-vertices.
 class RoomShell {
   public:
     RoomShell(Scene& scene, const FloorPlan& plan, const Room& room, const Finish& finish, std::uint32_t object)
@@ -52,7 +52,6 @@ class RoomShell {
   private:
     using GridPoint = std::array<std::size_t, 3>;
 
-    /// Adds the floor (axis z, low), a wall or the ceiling.
     void add_face(int axis, bool high) {
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
         GridPoint cell;
@@ -72,7 +71,7 @@ class RoomShell {
         std::array<std::uint32_t, 4> corners{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
         const auto side = static_cast<Side>(axis + (high ? 2 : 0));
         if (axis < 2 && is_opening(side, cell)) {
-            // DoorFrame starts along the wall: u for walls along y, v for walls along x.
+            // Frames start along the wall.
             frames_[side] = along_x(side) ? DoorFrame{corners[0], corners[3], corners[2], corners[1]} : corners;
             return;
         }
@@ -106,7 +105,6 @@ class RoomShell {
     std::array<DoorFrame, side_count> frames_{};
 };
 
-/// Adds threshold, jambs and soffit of a doorway.
 void add_passage(Scene& scene, const Doorway& doorway, const std::array<DoorFrame, 2>& frames, const Finish& finish,
                  std::uint32_t object) {
     const auto& [near, far] = frames;

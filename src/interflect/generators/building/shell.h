@@ -11,8 +11,8 @@ struct Finish {
     std::uint32_t wall = 0, floor = 0, ceiling = 0;
 };
 
-/// Adds floors, walls, ceilings and the insides of doorways as one closed surface of inward faces, without T-vertices,
-/// divided only at doorway edges. Objects are named "room-0.shell" and so on; a doorway belongs to its first room.
+/// Adds rooms and the insides of doorways as one closed surface of inward faces without T-vertices, as objects
+/// "room-0.shell" and so on. A doorway belongs to its first room.
 /// @param finishes  One per room.
 void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> finishes);
 

@@ -7,7 +7,7 @@ namespace interflect::detail::building {
 
 namespace {
 
-/// Bits of a corner's number: 1 for high x, 2 for high y, 4 for high z. Counter-clockwise from outside.
+/// Corner bits: 1 for high x, 2 for y, 4 for z. Counter-clockwise from outside.
 constexpr std::array<std::array<std::uint32_t, 4>, 6> box_faces{
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 constexpr std::size_t underside_face = 4;

@@ -6,8 +6,8 @@
 
 namespace interflect::detail::building {
 
-/// Distance between solids, and from solids to walls [m]. Exceeds RayCaster::ray_offset() in the largest generated
-/// scenes (2.5 mm at 330 m from the origin), so rays from an underside start above the surface below.
+/// Distance between solids and to walls [m]. Exceeds RayCaster::ray_offset() in the largest generated scenes (2.5 mm at
+/// 330 m from the origin), so rays from an underside start above the surface below.
 inline constexpr float gap = 0.004f;
 
 class Placement {
@@ -27,7 +27,7 @@ class Placement {
     float cosine_ = 1, sine_ = 0;
 };
 
-/// Adds solids of six one-sided outward faces with their own eight vertices.
+/// Adds solids of six one-sided outward faces with their own vertices.
 class Solids {
   public:
     Solids(Scene& scene, const Placement& placement, std::uint32_t object)
@@ -37,12 +37,11 @@ class Solids {
         return Solids(*scene_, placement_.at(local, radians), object_);
     }
 
-    /// @param low, high  Opposite corners; low < high per coordinate.
     /// @param underside  Material of the lower face, if different.
     void box(const V3f& low, const V3f& high, std::uint32_t material,
              std::optional<std::uint32_t> underside = std::nullopt) const;
 
-    /// @param top_scale  Scale of the top about the vertical axis, > 0.
+    /// @param top_scale  Of the top about the vertical axis, > 0.
     void tapered_box(const V3f& low, const V3f& high, float top_scale, std::uint32_t material) const;
 
   private:

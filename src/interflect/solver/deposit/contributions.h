@@ -12,12 +12,12 @@
 
 namespace interflect::detail {
 
-/// Integers: three channels of power, squared luminance, importance.
+/// Three channels of power, squared luminance, importance.
 using Contribution = std::array<std::int64_t, 5>;
 inline constexpr std::size_t power_terms = 4, importance_term = 4;
 
-/// Sums of the contributions to each element in a step. Integers make the order of additions irrelevant. Each thread
-/// bins contributions by region of the forest (ScatterBuffer) and flushes full bins under the region's lock.
+/// Integer sums of the contributions to each element in a step, independent of their order. Threads bin contributions
+/// by region of the forest and flush full bins under the region's lock.
 class ContributionSums {
   public:
     /// Address space [bytes].

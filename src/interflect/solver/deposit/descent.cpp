@@ -11,7 +11,7 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution, st
     const std::uint32_t payload = buffer_.add_source(contribution, of_groups);
     sources_in_task_.push_back({source, 0, transmitted});
     const auto source_in_task = static_cast<std::uint32_t>(sources_in_task_.size() - 1);
-    bool needs_path = refines_;  // from the patch to the leaf; serves all rays of the leaf
+    bool needs_path = refines_;  // one path serves all rays of a leaf
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
             count_escaped(contribution);
@@ -82,14 +82,12 @@ void Descent::begin(std::uint32_t payload, std::uint32_t source_in_task, const R
     sources_.begin(pairs_, i, path_, rays_[i].reflectance);
 }
 
-/// Takes one step with all rays in flight. A pair of shooter and receiver that the oracle rejects is divided at its
-/// larger end (Eq. 14, 15, Prikryl et al. 2000). An accepted pair fixes the receiver of power; if importance is for
-/// leaves, the ray continues to the leaf. Rays that have arrived deposit their payload.
+/// Takes one step with all rays in flight. Divides rejected pairs at the larger end (Eq. 14, 15, Prikryl et al. 2000).
+/// An accepted pair fixes the receiver of power; if importance is for leaves, the ray continues to its leaf.
 void Descent::advance() {
     Lanes some;
     for (const std::uint32_t i : open()) look_up_receiver(i);
     if (refines_) {
-        // A shooter larger than the receiver gives the same power as its child: the oracle is not asked.
         for (const std::uint32_t i : open_lanes_if(some, [&](auto i) { return SourcePaths::is_too_large(pairs_, i); }))
             sources_.choose(pairs_, i, rays_[i].reflectance);
         pairs_.evaluate_oracle(step_.oracle);
@@ -101,7 +99,7 @@ void Descent::advance() {
     Lanes on_their_way;
     const auto others = open_lanes_if(on_their_way, [&](std::size_t i) { return pairs_.goes_on[i] != 0; });
     for (const std::uint32_t i : arrived) deposit_ray(i);
-    // The lanes of the arrived rays are free now.
+    // Frees the lanes of arrived rays.
     std::copy(arrived.begin(), arrived.end(), std::copy(others.begin(), others.end(), open_.begin()));
     open_count_ = others.size();
     pairs_.go_down();
@@ -131,7 +129,6 @@ inline void Descent::look_up_receiver(std::size_t i) {
         pairs_.importance[i] = step_.oracle.importance[element];
 }
 
-/// Creates children at the larger end, or settles the pair.
 void Descent::subdivide_on_demand(std::size_t i) {
     const std::uint32_t receiver = pairs_.receiver[i];
     if (pairs_.shooter_area[i] > pairs_.area[i]) {
@@ -140,7 +137,7 @@ void Descent::subdivide_on_demand(std::size_t i) {
         pairs_.next[i] = children_on_demand(forest_, receiver, may_grow_);
         if (pairs_.next[i] != none) return;
     }
-    pairs_.settled[i] = true;  // accepted, since it cannot be divided; importance continues in the old mesh
+    pairs_.settled[i] = true;  // indivisible; importance continues in the old mesh
     pairs_.goes_on[i] = needs_leaf_ && receiver < old_size_ && pairs_.children[i] < old_size_;
     if (pairs_.goes_on[i]) pairs_.next[i] = pairs_.children[i];
 }

@@ -20,7 +20,6 @@
 
 namespace interflect::detail {
 
-/// Power and rays that left the scene.
 struct Escaped {
     FixedPoint::Value power{};
     std::int64_t rays = 0;
@@ -32,8 +31,8 @@ struct Escaped {
     }
 };
 
-/// Finds the elements that receive the payload of each ray, and adds it there; one object per thread. Many rays descend
-/// the quadtrees level by level, as a structure of arrays with lane refill. This hides memory latency and vectorises.
+/// Descent of rays from patches to the elements that receive their payloads; one object per thread. Many rays descend
+/// together, to vectorise and to hide memory latency.
 class Descent {
   public:
     /// @param old_size  Size of the forest before the step. @param importance  May be null. Arguments must outlive
@@ -54,7 +53,7 @@ class Descent {
         pairs_.next.fill(none);
     }
 
-    /// @param source       Leaf, or old_size + index of a part of the luminaires' emission (Emission).
+    /// @param source       Leaf, or old_size + luminaire part (Emission).
     /// @param contribution Payload of each ray. @param of_groups  Its power by light group.
     /// @param origins      On the leaf's patch; of luminaire parts: any values.
     /// @param transmitted  Transmittance before the hits; scales found importance.
@@ -71,16 +70,15 @@ class Descent {
         for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
         ++escaped_.rays;
     }
-    /// Hit points on leaves that reflect where they receive.
     const std::vector<StartPoint>& start_points() const { return start_points_; }
-    /// Flushes all contributions. @return  Escaped power and rays of this thread.
+    /// Flushes all contributions.
     Escaped finish();
 
   private:
     static constexpr std::size_t lanes = RayPairs::lanes;
     struct RayState {
-        std::uint32_t payload, patch;  // index in buffer_; the patch that was hit
-        std::uint32_t source_in_task;  // index in sources_in_task_
+        std::uint32_t payload, patch;  // index in buffer_; hit patch
+        std::uint32_t source_in_task;
         Parameters start;
         Rgb reflectance{0, 0, 0};  // rho_i
     };

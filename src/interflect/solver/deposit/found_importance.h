@@ -11,11 +11,10 @@
 
 namespace interflect::detail {
 
-/// Importance at the hit points of rays, summed by source. Its mean estimates the transported importance of a leaf (Eq.
-/// 7, Prikryl et al. 2000), even of small lamps that few importance rays hit.
+/// Importance that rays find at their hit points, summed by source. Its mean over a leaf's rays estimates the leaf's
+/// transported importance (Eq. 7, Prikryl et al. 2000).
 class FoundImportance {
   public:
-    /// @param most_per_ray  Maximum importance found by one ray.
     FoundImportance(double most_per_ray, std::int64_t rays, std::size_t sources)
         : unit_(most_per_ray * static_cast<double>(rays)), sums_(sources) {}
 

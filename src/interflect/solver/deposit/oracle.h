@@ -19,8 +19,8 @@ struct ElementProxy {
     float least_cosine = 0;
 };
 
-/// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j) for a disk, times the
-/// cosines at both ends. Cosines are at least 2 f: parts of close elements face each other more directly.
+/// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j) for a disk, times
+/// both cosines. These are at least 2 f, because parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
     // Branch-free, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
@@ -36,13 +36,13 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
     return f * from_shooter * to_receiver;
 }
 
-/// Refinement test. Depends on the state before the step, not on other rays.
+/// Refinement test, based on the state before the step.
 struct Oracle {
     bool refines = false;  ///< False: leaves exchange light.
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
     float min_area = 0;  ///< Elements below four times this area are not divided [m^2].
-    /// Excess elements are dropped at the end of a step, in an order independent of threads.
+    /// Limit at the end of a step; collect() drops the excess.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 
     /// psi before the step; empty unless by_importance.

@@ -40,9 +40,8 @@ struct alignas(64) RayPairs {
     Numbers goes_on;
     Numbers next;  // first of the children to descend to, if any
 
-    /// Settles pairs that the oracle accepts (Eq. 14, 15, Prikryl et al. 2000) or that are too small to divide.
+    /// Settles pairs that the oracle accepts or that are too small to divide.
     void evaluate_oracle(const Oracle& oracle);
-    /// Chooses the next action, except creating children.
     /// @param needs_leaf  Rays descend to a leaf among the first `old_size` elements.
     void choose_next(bool needs_leaf, std::uint32_t old_size);
     void go_down();

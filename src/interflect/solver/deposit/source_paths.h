@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Ancestors of the leaves that shot the rays in flight. Each pair uses the ancestor that matches its receiver in size.
+/// Ancestors of the leaves that shot the rays in flight, as shooters of pairs.
 class SourcePaths {
   public:
     /// Range of shooters, root first.
@@ -23,7 +23,7 @@ class SourcePaths {
     SourcePaths(ElementForest& forest, const TransportStep& step) : forest_(forest), step_(step) {}
 
     Path append_leaf(std::uint32_t leaf);
-    /// For one ray of a part of the luminaires' emission (Emission).
+    /// For one ray of a luminaire part (Emission).
     Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void clear() { sources_.clear(); }
 

@@ -18,8 +18,8 @@ constexpr double least_decay = 0.25, most_decay = 0.7;
 
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
-    double noise_of_patches = 0;  // variance of patch means, part of `noise`
-    double assumed = 0;           // by variation within leaves without siblings
+    double noise_of_patches = 0;
+    double assumed = 0;  // for undivided patches
 
     ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight, noise += o.noise, bias += o.bias;
@@ -59,8 +59,8 @@ double error_within_leaves(const RiskCheck& check) {
     return sum / check.weight;
 }
 
-/// Squared error of the differences between siblings. The noise model overestimates noise in hard shadows, where points
-/// are well distributed. A strongly negative bias shows this; measurements then replace the model.
+/// Returns the squared error of sibling differences: measured if the bias is strongly negative (docs/method.md,
+/// Errors).
 double error_of_variations(const RiskCheck& check, double noise, double bias) {
     const double expected = noise + bias;
     const bool is_reliable = bias > -noise / 2;

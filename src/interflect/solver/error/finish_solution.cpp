@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Clamps the irradiance of each group to zero, then rescales the groups to sum to the total.
+/// Clamps each group to zero, then rescales the groups to sum to the total.
 void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) {
     for (std::size_t e = 0; e < irradiance.size() && !groups.empty(); ++e)
         for (int c = 0; c < 3; ++c) {

@@ -13,8 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Mean of y z over siblings: their averaged difference y and new difference z from the parent. E y z = |d|^2 for true
-/// differences d.
+/// Returns the mean of y z over siblings (docs/method.md, Errors), an unbiased estimate of their signal.
 double measured_signal(const SolverState& state, const Estimate& fresh, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t parent = forest.parent(first);
@@ -30,8 +29,7 @@ double measured_signal(const SolverState& state, const Estimate& fresh, std::uin
     return product / area;
 }
 
-/// Measures earlier iterations with the next one: E |k y - d|^2 = E (k^2 |y|^2 + (1 - 2 k) y z) for shrinkage k. Unlike
-/// Stein's estimate, this needs no noise model.
+/// Measures the error of earlier iterations with the next one (docs/method.md, Errors).
 RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();

@@ -11,12 +11,11 @@ namespace interflect::detail {
 
 // Shares of variance that pictures show: pixels are means over their squares. 1 for ErrorMeasure::surfaces.
 
-/// Returns the share for independent patches.
 float shown_of_patch(const SolverState& state, ErrorMeasure measure, std::uint32_t patch);
 /// Returns the share for the siblings `first` ... `first` + 3.
 float shown_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first);
-/// Returns the share for the descendants of a leaf, by level. Gradients and shadow edges vary along one side only.
-/// Sub-pixel elements are not aligned with pixels, so a small share remains.
+/// Returns the share for the descendants of a leaf, by level. Assumes variation along one side only, as at gradients
+/// and shadow edges.
 std::array<float, finer_levels> shown_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf);
 
 }  // namespace interflect::detail

@@ -9,7 +9,7 @@ namespace {
 
 /// Siblings are under-sampled below this fraction of their parent's rays.
 constexpr float under_sampled = 0.125f;
-/// Largest expected ratio of a sibling signal to that of the parent's siblings: at an edge.
+/// Maximum expected decay of the signal per level, as at an edge.
 constexpr float highest_expected_decay = 0.5f;
 
 }  // namespace
@@ -65,8 +65,7 @@ AddedError added_error(const SolverState& state, std::uint32_t first) {
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }
 
-/// Wiener filter with each sibling's own noise. The common loss is divided in proportion to the remaining variance,
-/// which preserves the mean.
+/// Computes the Wiener filter with each sibling's own noise (docs/method.md, Shrinkage).
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const SiblingVariation variation = sibling_variation(state, first);

@@ -12,8 +12,7 @@ namespace interflect::detail {
 /// Assumed relative variation in an unmeasured leaf.
 inline constexpr float assumed_variation = 0.1f;
 
-/// Variation of irradiance among siblings, the four children of an element, as squared luminance [(lm/m^2)^2 or
-/// (W/m^2)^2].
+/// Variation of irradiance among siblings, as squared luminance [(lm/m^2)^2 or (W/m^2)^2].
 struct SiblingVariation {
     float spread = 0;  ///< Mean square difference from the parent: signal (true variation) plus noise.
     float noise = 0;   ///< Expected noise in `spread`; infinite if unknown.
@@ -24,7 +23,7 @@ struct SiblingVariation {
     bool is_under_sampled() const { return assumed >= 0; }
     /// Unbiased, possibly negative, unless assumed.
     float signal() const { return is_under_sampled() ? assumed : spread - noise; }
-    /// Wiener filter: near 1 if the signal far exceeds the noise, 0 if differences are noise.
+    /// Factor of the differences (Wiener filter), in [0, 1].
     float shrinkage() const;
     /// Mean square error after shrinkage, in addition to the parent's. Unbiased (Stein 1981, in three dimensions
     /// because the four differences sum to zero).
@@ -34,7 +33,6 @@ struct SiblingVariation {
 /// Returns the variation among the siblings `first` ... `first` + 3.
 SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first);
 
-/// Whether differences of siblings that are mostly noise are reduced.
 bool uses_shrinkage(const SolverState& state);
 
 /// Mean square errors of siblings in addition to their parent's.
@@ -50,7 +48,7 @@ struct Shrinkage {
 };
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first);
 
-/// Returns the signal among the element and its siblings; 0 if unknown.
+/// Returns 0 if unknown.
 float signal_among_siblings(const SolverState& state, std::uint32_t e);
 
 inline std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {

@@ -13,15 +13,14 @@ namespace {
 /// Share of the next larger neighbourhood (Neighbourhoods::smooth()).
 constexpr float taken_over = 0.3f;
 
-/// Mean importance in a box of outdoor light (Emission), and the factor of its parts.
+/// Mean importance in a box (Emission), and the factor of its parts.
 struct BoxImportance {
     PartImportance all;
     float factor = 1;
     double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
 };
 
-/// The exponent allows for few valuable rays among many. Boxes already separate these, so the factor restores exponent
-/// 1 between them.
+/// The factors restore exponent 1 between boxes (docs/method.md, Light sources that are not surfaces).
 std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
                                                float exponent) {
     std::vector<BoxImportance> boxes(emission.box_count());
@@ -43,7 +42,6 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
     return boxes;
 }
 
-/// The mean of an emitter's parts is a prior of `rays_of_mean` rays.
 void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
                  ImportanceWeights& weights) {
     constexpr std::size_t alike = Emission::parts_per_emitter;

@@ -11,14 +11,14 @@
 
 namespace interflect::detail {
 
-/// Returns the use of importance by the method; off without a view.
+/// Off without a view.
 ImportanceUse importance_use(const Solution& so_far);
 
 /// Returns psi of every element; empty without a view. Refers to the solution.
 Importance importance_of(const Solution& so_far);
 std::vector<float> total_importance(const Solution& so_far);
 
-/// Importance found by the rays of a part of the luminaires' emission (Emission).
+/// Importance found by the rays of a luminaire part (Emission).
 struct PartImportance {
     double found = 0;  ///< Sum over its rays [1/m^2]
     double rays = 0;
@@ -30,13 +30,12 @@ struct ImportanceWeights {
     std::vector<float> nearby;               ///< Mean over each patch's neighbourhood (Neighbourhoods); may be empty.
     std::vector<float> parts, parts_nearby;  ///< By luminaire part.
 };
-/// @param found  Importance found by the rays of luminaire parts so far.
+/// @param found  By luminaire part.
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
-/// Smooths importance for sampling. A share `from_parent` of the parent's result is mixed in, because underestimated
-/// leaves give rays large weights. The optimal ray density follows the root mean square of importance, which exceeds
-/// the mean: hence an exponent below 1. The paper uses (0, 1).
+/// Smooths importance for sampling (docs/method.md, One step of transport): mixes in the share `from_parent` of the
+/// parent's result, then applies the exponent. The paper uses (0, 1).
 std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
                                      double exponent);
 

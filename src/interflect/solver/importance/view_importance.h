@@ -28,8 +28,8 @@ class ViewImportance {
     std::int64_t views() const { return std::ssize(views_); }
     /// Share of the pictures that shows surfaces.
     double shown_share() const { return total_weight_ > 0 ? hit_weight_ / total_weight_ : 0; }
-    /// Computes v = V / A of every element [1/m^2]. V is the share of the pictures that shows the element. It sums to 1
-    /// over first hits; surfaces behind panes add their transmitted share.
+    /// Computes v = V / A of every element [1/m^2] (docs/method.md, Unknowns). Surfaces behind panes add their
+    /// transmitted share of V.
     /// @param at_patches  Spreads V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 

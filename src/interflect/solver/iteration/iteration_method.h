@@ -9,8 +9,8 @@
 
 namespace interflect::detail {
 
-/// The steps of a family of methods, which iterate_until() calls (solve.cpp). If a step throws Interrupted, the caller
-/// discards the iteration: discard() restores the method, IterationStart the state.
+/// Steps of a family of methods, called by iterate_until() (solve.cpp). After Interrupted, discard() restores the
+/// method and IterationStart the state.
 class IterationMethod {
   public:
     virtual ~IterationMethod() = default;
@@ -18,7 +18,7 @@ class IterationMethod {
     /// Runs the steps before the first iteration. @throws Interrupted
     virtual void prepare(SolverState&) {}
     virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
-    /// Plans the next iteration; 0 rays if the run is over.
+    /// Returns 0 rays if the run is over.
     virtual IterationPlan plan(SolverState& state);
     /// Traces and merges rays that carry importance alone (Eq. 7, 8). @throws Interrupted
     virtual void update_importance(SolverState&, IterationPlan&) {}
@@ -36,7 +36,7 @@ class IterationMethod {
     virtual bool fits(const SolverState&) const { return true; }
 };
 
-/// Makes the method that the options name. The state must outlive it.
+/// The state must outlive the method.
 std::unique_ptr<IterationMethod> make_iteration_method(SolverState& state);
 
 }  // namespace interflect::detail

@@ -29,7 +29,6 @@ struct LineFinder {
     const Panes& panes;
     std::uint64_t key;
 
-    /// Appends the lines of rays that escape, directly or through panes.
     /// @param importance  Payload of each ray. @param sun  See OutdoorLine.
     void keep_escaping(std::span<const Ray> rays, std::span<const double> importance, std::uint32_t sun,
                        std::vector<OutdoorLine>& lines) const {
@@ -127,7 +126,6 @@ std::vector<Weighed> crossing(const std::vector<Weighed>& lines, const Imath::Bo
     return found;
 }
 
-/// Lines near the centre count more.
 double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
     const float farthest = (box.size() / 2).length2();
     double sum = 0;
@@ -169,9 +167,9 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     constexpr std::size_t most_lines = 4096, fewest_lines = 16;
     static_assert(most_targets % most_places == 0);
     constexpr double share_of_rest = 0.05;  // minimum share of the weight for another place
-    // A quarter of evenly spread lines crosses half a box; all lines of a window do.
+    // See docs/method.md, Light sources that are not surfaces.
     constexpr double worthwhile_share = 0.4;
-    // Relative to the scene, whose own parts resolve larger boxes.
+    // Relative to the scene.
     constexpr float widest_target = 1.0f / 16;
     std::vector<Weighed> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / most_lines);
@@ -229,8 +227,7 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
     return weights;
 }
 
-/// Estimates importance from the lines, as a prior of `rays_of_lines` rays. Each box also gets a mean line, so no part
-/// starts at zero.
+/// Adds a mean line to each box, so no part starts at zero.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     constexpr double rays_of_lines = 8;
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);
@@ -254,7 +251,7 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 }  // namespace
 
 std::int64_t aim_outdoor_light(SolverState& state) {
-    // Many, because a small window transmits little importance, but few of all rays.
+    // Many, because a small window transmits little importance.
     constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());

@@ -20,14 +20,13 @@ inline void inherit(const ElementForest& forest, std::uint32_t first, GroupLight
 inline void pull(const ElementForest& forest, GroupLight& light) {
     for (std::vector<Rgb>& of_group : light) pull(forest, of_group);
 }
-/// Adds the light of each group. @param sum  May be empty.
+/// @param sum  May be empty.
 void accumulate(GroupLight& sum, const GroupLight& more);
 void scale(GroupLight& light, float factor);
 
-/// Returns the sum of the groups. @param dimming  Solution::dimming; excludes groups with factor 0.
+/// @param dimming  Solution::dimming; excludes groups with factor 0.
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
-/// Radiosity by light group.
 struct GroupRadiosity {
     const SourceGroups* groups = nullptr;  ///< Null: not separated.
     const GroupLight* irradiance = nullptr;

@@ -12,9 +12,8 @@
 
 namespace interflect::detail {
 
-/// Reflectance, exitance and transmittance by patch and, with textures, by element. Refers to the scene. If faces
-/// coincide, one receives all rays. Covered emitters keep the exitance of their uncovered share
-/// (RayCaster::uncovered_share), so no place emits twice.
+/// Reflectance, exitance and transmittance by patch and, with textures, by element. Refers to the scene. Covered
+/// emitters keep the exitance of their uncovered share (RayCaster), so no place emits twice.
 class Materials {
   public:
     /// Ignores coincident faces.
@@ -64,7 +63,7 @@ struct CoveredEmission {
 /// @throws InputError if the ray caster is of another scene.
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
-/// B = M + rho H [lm/m^2 or W/m^2]. With textures, inner elements have the mean of their children.
+/// Returns Radiosity by element. With textures, inner elements have the mean of their children.
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
 /// Sum of area times value over the roots, in fixed order.

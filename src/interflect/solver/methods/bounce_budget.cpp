@@ -9,11 +9,11 @@ namespace {
 
 /// Random walks replace the remaining bounces if the next one would get fewer rays.
 constexpr double fewest_rays_of_bounce = 2;
-/// They also do if less than this share of the pass remains: each bounce takes time for every element.
+/// They also do if less than this share remains: each bounce takes time for every element.
 constexpr double least_share_left = 0.05;
 /// Minimum number of random walks; fewer make small passes noisy. Rays beyond the plan are not counted.
 constexpr std::int64_t fewest_walks = 32;
-/// Unshot power summed over all bounces, relative to the first, until measured.
+/// Value of bounces() until measured.
 constexpr double assumed_bounces = 2;
 /// Expected ratio of unshot power between bounces: first; after an increase, while light spreads towards the view;
 /// maximum.
@@ -29,7 +29,7 @@ BounceRays BounceBudget::next(double unshot) {
     const double fall = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
     decay_ = fall < 1 ? std::min(highest_decay, fall) : decay_while_it_grows;
     last_unshot_ = unshot;
-    // Unshot power of this and later bounces: as in the previous pass, or a geometric series.
+    // Unshot power from here on: as in the previous pass, or a geometric series.
     const double geometric = unshot / (1 - decay_), planned = is_known_ ? bounces_ - unshot_sum_ : geometric;
     // Later bounces keep a tenth, for light that the previous pass did not find.
     const double to_come = is_known_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;

@@ -14,11 +14,10 @@ struct BounceRays {
 class BounceBudget {
   public:
     BounceBudget() = default;
-    /// @param bounces  Expected unshot power summed over the bounces, relative to the first; 0: unknown.
+    /// @param bounces  bounces() of the previous pass; 0: unknown.
     BounceBudget(std::int64_t rays, double bounces);
 
-    /// @param unshot  Relative to the first bounce. @return  Rays of the next bounce; random walks complete the last
-    /// one.
+    /// @param unshot  Relative to the first bounce.
     BounceRays next(double unshot);
     /// Whether next() has returned the last bounce.
     bool has_ended() const { return is_last_ || left_ == 0; }

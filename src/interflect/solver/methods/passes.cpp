@@ -25,8 +25,7 @@ namespace {
 /// Minimum rays of a run that prepares before its first iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Returns the unshot power relative to the first bounce: beta times plain power plus (1 - beta) times power weighted
-/// by importance. The rays of a pass are distributed over its bounces by this number.
+/// Returns the unshot power, partly weighted by importance, relative to the first bounce.
 double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -65,20 +64,18 @@ void set_estimate(SolverState& state, Estimate estimate) {
 
 std::int64_t rays_so_far(const SolverState& state) { return state.power_rays + state.importance_rays; }
 
-/// Whether the oracle (Eq. 14, 15) refines the mesh while a pass is traced.
 bool oracle_refines_passes(const SolverState& state) {
     return state.options.method.refines && !refines_by_variance(state.options);
 }
 
 }  // namespace
 
-/// A pass while it is traced.
 struct Passes::Pass {
     const std::int64_t rays;
     const bool oracle_refines;
     BounceBudget budget;
     ImportanceWeights weights;
-    /// Nonzero for leaves whose light starts at its hit points, not uniformly. Empty while the oracle refines.
+    /// See leaves_reflecting_where_received(). Empty while the oracle refines.
     std::vector<std::uint8_t> reflecting_where_received = {};
     bool emits = true;             ///< The next bounce is the first.
     std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
@@ -90,7 +87,7 @@ struct Passes::Pass {
 
 /// @param oracle_refines  Whether Eq. 14 and 15 refine the mesh meanwhile. @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
-    state.payloads = {};  // the report shows those of the last pass
+    state.payloads = {};  // reported for the last pass only
     Pass pass{rays, oracle_refines, BounceBudget(rays, bounces_),
               importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance)};
     pass.unshot.assign(state.forest->size(), Rgb(0));
@@ -108,7 +105,7 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     return std::move(sum);
 }
 
-/// Traces one bounce (Eq. 1, Prikryl et al. 2000) and adds it to the pass. Rays start by Eq. 3, 10 or 11.
+/// Traces one bounce (Eq. 1, Prikryl et al. 2000) and adds it to the pass.
 /// @return  False if no unshot light or no rays are left.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     Solution& solution = state.solution;
@@ -122,14 +119,14 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     if (pass.emits) pass.first_power = bounce.power, pass.first_weighted_power = bounce.weighted_power;
     const double weight =
         unshot_weight(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
-    // A random walk that completes the pass counts as its expected number of rays.
+    // Random walks count as their expected number of rays.
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(weight) : BounceRays();
     if (rays.expected == 0) return false;
 
     bounce.plan.rays = rays.started;
     TransportStep step = make_step(state, pass, std::move(bounce.plan));
     const std::uint32_t old_elements = state.forest->size();
-    // Subclasses replace all bounces but the last, which random walks complete in every method.
+    // Random walks complete the last bounce in every subclass.
     Received received = step.completes_by_walks ? run_step(state, std::move(step)) : trace_step(state, std::move(step));
 
     const double share = carries_importance ? state.options.experimental.alpha : 0;
@@ -152,17 +149,16 @@ TransportStep Passes::make_step(const SolverState& state, Pass& pass, RayPlan pl
     TransportStep step(std::move(plan));
     step.groups = group_radiosity(state, pass.unshot_groups, pass.emits);
     step.start_points = &pass.start_points;
-    step.known_light = Radiosity(state.materials, state.solution.irradiance);  // for the oracle
+    step.known_light = Radiosity(state.materials, state.solution.irradiance);
     step.completes_by_walks = pass.budget.has_ended();
     step.reflecting_where_received = pass.reflecting_where_received;
     step.leaves_only = !pass.oracle_refines;
     if (pass.oracle_refines)
         step.oracle = make_oracle(state.solution, state.schedule.averaged_rays() + pass.rays, state.floor.unseen());
-    step.reusable_buffer = &pass.unshot;  // free once all rays are traced
+    step.reusable_buffer = &pass.unshot;
     return step;
 }
 
-/// Initialises the data of new elements (index >= first) from their parents.
 void Passes::grow_pass(const ElementForest& forest, std::uint32_t first, Pass& pass) {
     if (!pass.sum.irradiance.empty()) {
         inherit(forest, first, pass.sum.irradiance);
@@ -179,10 +175,10 @@ void Passes::prepare(SolverState& state) {
     set_estimate(state, darkness(state));  // an interrupted preparation may have left light
     if (importance_use(state.solution) == ImportanceUse::full) find_importance(state, rays);
     state.importance_rays += aim_outdoor_light(state);
-    if (state.options.method.refines)  // the oracle needs an estimate of the light, so the first pass does without it
+    if (state.options.method.refines)  // the first pass estimates the light that the oracle needs
         for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));
     state.importance_rays += aim_outdoor_light(state);
-    state.schedule.began_with(/*power_rays=*/0, rays_so_far(state));  // the mean does not include these passes
+    state.schedule.began_with(/*power_rays=*/0, rays_so_far(state));
     if (rays_so_far(state) > 0) report(state, 0);
 }
 

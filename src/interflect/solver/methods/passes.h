@@ -9,9 +9,8 @@
 
 namespace interflect::detail {
 
-/// Iterations that are passes. A pass shoots emitted power, then received power, bounce by bounce until little is left
-/// ('incremental shooting', Neumann et al. 1995). Rays are distributed over the bounces by unshot power, weighted by
-/// importance as their sampling is (Eq. 3, 10, Prikryl et al. 2000). A pass is an unbiased estimate on the current
+/// Iterations that are passes (docs/method.md, A run): each shoots emitted power, then received power, bounce by bounce
+/// until little is left ('incremental shooting', Neumann et al. 1995). A pass is an unbiased estimate on the current
 /// mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
@@ -19,15 +18,14 @@ class Passes : public IterationMethod {
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
-    /// Merges the pass with the mean of earlier ones (Eq. 6).
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
     void refine(SolverState& state) override;
-    /// Keeps the averaged light; the next iteration adapts its history to the new views.
+    /// Keeps the averaged light; ViewChange adapts its history in the next iteration.
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
-    /// Makes a first estimate for other methods: prepare(), then a pass on the resulting mesh.
+    /// Makes a first estimate for other methods by prepare() and a pass.
     void make_first_estimate(SolverState& state);
 
   protected:
@@ -41,7 +39,7 @@ class Passes : public IterationMethod {
     static TransportStep make_step(const SolverState& state, Pass& pass, RayPlan plan);
     static void grow_pass(const ElementForest& forest, std::uint32_t first, Pass& pass);
 
-    /// Unshot power summed over the bounces of the last pass, relative to the first; 0: unknown.
+    /// BounceBudget::bounces() of the last pass; 0: unknown.
     double bounces_ = 0;
     bool needs_importance_ = false;  // before the next iteration, after a change of views
     ViewChange view_change_;

@@ -28,8 +28,8 @@ std::vector<float> patch_importance(const SolverState& state) {
     return values;
 }
 
-/// Ratio of the new to the old variance per ray, weighted by importance. Payloads are proportional to a source's power
-/// over its share of the rays. @param importance  By patch.
+/// Returns the ratio of the new to the old variance per ray, weighted by importance. Payloads are proportional to power
+/// over q. @param importance  By patch.
 float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
                   const std::vector<float>& new_q) {
     constexpr double largest = 256;

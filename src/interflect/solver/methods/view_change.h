@@ -7,8 +7,8 @@
 
 namespace interflect::detail {
 
-/// Sampling and importance before the views changed. They convert the history of the averaged light to the number of
-/// new rays with the same noise: fewer where the new views increase the ray density.
+/// Sampling and importance before the views changed, to convert the history of the averaged light to rays of the new
+/// views with the same noise.
 class ViewChange {
   public:
     bool empty() const { return old_q_.empty(); }

@@ -12,7 +12,7 @@ namespace {
 /// Decay of earlier iterations, because mesh and sampling change.
 constexpr double memory = 0.75;
 constexpr double largest_scale = 100;
-/// Contributions below which measured noise shares of siblings count less than equal shares.
+/// Contributions at which measured and equal noise shares of siblings weigh alike.
 constexpr float few_arrivals = 16;
 
 }  // namespace

@@ -14,9 +14,9 @@
 
 namespace interflect::detail {
 
-/// Noise of the mean irradiance, from the variance of one ray. Low-discrepancy points reduce it and reflected noise
-/// increases it; differences between iterations give the factor. Elements with similar numbers of rays share a factor:
-/// more points are better distributed, and one ray with a large weight must not affect elements with many rays.
+/// Noise of the mean irradiance: the variance for independent rays, times a factor measured from differences between
+/// iterations (docs/method.md, Errors). Elements with similar numbers of rays share a factor, so one ray with a large
+/// weight does not affect elements with many rays.
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }

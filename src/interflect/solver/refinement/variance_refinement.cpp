@@ -24,11 +24,10 @@ constexpr float assumed_square = 0.04f;
 constexpr float least_signal = 0.12f;
 /// Minimum reduction of the total squared error for which a leaf is split.
 constexpr double negligible_gain = 2e-7;
-/// Minimum share of the pictures' light, reflected from wrong places, for which a leaf is split. Example: light from a
-/// bright corner of a lamp's housing escapes less easily.
+/// Minimum share of the pictures' light, reflected from wrong places, for which a leaf is split.
 constexpr double negligible_misplacement = 3e-7;
-/// Leaves above this share of the pictures' light reflect where they receive. Total power is then within 0.05% with
-/// lights 2 cm below a ceiling (5% without), and light behind a 1 cm slit within 6%.
+/// Leaves above this share of the pictures' light reflect where they receive (docs/method.md, A run). Light behind a 1
+/// cm slit is then within 6%.
 constexpr double tolerable_misplacement = 3e-5;
 /// Relative weight of errors on invisible surfaces, whose effect on the view is blurred.
 constexpr double unseen_shape = 0.02;

@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// Payload of one ray of each source. Leaf s: power A_s B_s / (N q_s), importance A_s rho_s psi_s / (N q_s). Part of
-/// the luminaires' emission (Emission): its power / (N q_s).
+/// Payload of one ray of each source. Leaf s: power A_s B_s / (N q_s), importance A_s rho_s psi_s / (N q_s). Luminaire
+/// part (Emission): its power / (N q_s).
 class Payload {
   public:
     Payload(const Materials& materials, const ElementForest& forest, const RayPlan& plan, double q_sum)

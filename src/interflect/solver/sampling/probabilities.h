@@ -46,7 +46,7 @@ struct MixtureWeights {
 struct Mixture {
     /// Probability by element (0 for inner ones), then by luminaire part. Sums to the shares in use.
     std::vector<float> q;
-    std::int64_t non_finite_leaves = 0;  ///< Leaves with non-finite radiosity, not shot.
+    std::int64_t non_finite_leaves = 0;
     double power = 0, weighted_power = 0;
 };
 Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares);

@@ -59,8 +59,7 @@ class RayAllocation {
         double q_before;         // over previous blocks
         std::int64_t first_ray;  // of previous blocks
     };
-    /// Rays of the sources whose weights sum to `q`, which has the same bits at the end of a block and the start of the
-    /// next.
+    /// `q` has the same bits at the end of a block and at the start of the next.
     std::int64_t rays_before(double q) const {
         const double before = q / q_sum_ * static_cast<double>(rays_) + offset_;
         return std::min(rays_, static_cast<std::int64_t>(before));  // N + offset may round up to N + 1

@@ -27,8 +27,8 @@ struct SampleStreams {
     std::uint64_t allocations = 0;
 };
 
-/// Generates rays from samples first_sample, first_sample + 1, ... Origins are uniform on the cell, `offset` above the
-/// patch. Directions have density cos(theta) / pi.
+/// Generates rays from consecutive samples. Origins are uniform on the cell, `offset` above the patch. Directions have
+/// density cos(theta) / pi.
 /// @param key     Of the point sequence (fill_points).
 /// @param rays    Output; its size is the number of rays.
 /// @param starts  Origins to sample (StartPoints::of); empty: uniform.
@@ -42,7 +42,7 @@ struct SourceRays {
     std::uint32_t begin, end;
 };
 
-/// One object per thread, reused.
+/// One object per thread.
 struct RayBatch {
     std::vector<SourceRays> sources;
     std::vector<Ray> rays;

@@ -12,7 +12,6 @@ namespace {
 /// Share of importance-driven rays sampled by neighbourhood importance.
 constexpr double share_of_nearby = 0.2;
 
-/// Shares of the weights in Eq. 3, 9, 10, or Eq. 11 if combined.
 MixtureWeights shares_of(const Solution& so_far, bool combined, bool nearby) {
     if (importance_use(so_far) == ImportanceUse::off) return {.power = 1};
     const SolveOptions& o = so_far.options;

@@ -39,8 +39,8 @@ struct PowerPlan {
 };
 
 /// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000). The method selects q: by
-/// power (Eq. 3), direct importance, or total or indirect importance (Eq. 9, 10). One share is sampled by power alone
-/// (beta), another by neighbourhood importance, because underestimated small lamps give rays large weights.
+/// power (Eq. 3), direct importance, or total or indirect importance (Eq. 9, 10). Further shares are sampled by power
+/// alone (beta) and by neighbourhood importance.
 /// @param emission  Shot if `light` emits.
 /// @param light     Radiosity to shoot. The plan refers to `so_far`, `emission` and `light`.
 PowerPlan plan_power(const Materials& materials, const Emission& emission, const Solution& so_far,

@@ -15,9 +15,8 @@ struct StartPoint {
     Parameters at;  ///< On the leaf's patch.
 };
 
-/// Origins of reflected light. Uniform reflection from a partly lit leaf sends light to wrong surfaces, a bias that
-/// only a finer mesh removes. Leaves with points here start rays at them, in proportion to received power, as in
-/// particle tracing.
+/// Origins of reflected light. Uniform reflection from a partly lit leaf is biased. Leaves with points here start rays
+/// at them, in proportion to received power.
 class StartPoints {
   public:
     StartPoints() = default;

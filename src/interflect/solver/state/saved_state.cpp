@@ -1,5 +1,3 @@
-// SolverState::archive(): the state of a run in a solution file.
-
 #include <algorithm>
 #include <array>
 #include <stdexcept>

@@ -8,23 +8,21 @@
 
 namespace interflect::detail {
 
-/// Plan of an iteration, and the number of rays that it traced.
+/// Plan of an iteration and its traced rays.
 struct IterationPlan {
     std::int64_t rays = 0;                ///< Planned, and the weight in the mean; 0: the run is over.
     std::int64_t traced = 0;              ///< Traced rays; initially the planned ones.
     bool warms_up = false;                ///< Not averaged: the next iteration replaces it.
     bool is_final = false;                ///< Ends the run, even with fewer traced rays.
-    std::uint32_t old_elements = 0;       ///< Number of elements before the iteration.
+    std::uint32_t old_elements = 0;       ///< Elements before the iteration.
     std::int64_t importance_rays = 0;     ///< Rays that carry importance alone.
     std::int64_t rays_for_new_views = 0;  ///< Additional rays after a change of views.
-    /// Factor of each patch's history after a change of views (ViewChange). Empty: 1.
+    /// ViewChange::history_factor(); empty: 1.
     std::vector<float> history_factor = {};
 };
 
-/// Ray counts of the iterations, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000; equal
-/// counts give the paper's 1/m. By default, iterations grow with the rays averaged before, so early ones, without late
-/// bounces and a fine mesh, soon have little weight. A given size above 2^24 applies from the second iteration on,
-/// unless their number is given too.
+/// Ray counts of the iterations, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000. By default,
+/// iterations grow with the rays averaged before, so early ones on coarse meshes soon have little weight.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
@@ -33,13 +31,13 @@ class Schedule {
     std::int64_t start_rays() const;
     /// Records these passes. Power rays are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// Plans the next iteration. It should end within the time limit, because an interrupted iteration is lost.
+    /// Plans the next iteration, to end within the time limit.
     /// @param seconds  Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
     /// Counts the rays of an iteration.
     void done(const IterationPlan& plan);
-    /// Makes iterations small again; they grow with the rays averaged from now on.
+    /// Makes iterations small again.
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 

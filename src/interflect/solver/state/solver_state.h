@@ -80,13 +80,13 @@ struct SolverState {
     void archive(StateArchive& archive);
 };
 
-/// Changes the exitances to those of `lit`, which must outlive the state.
+/// Uses the exitances of `lit`, which must outlive the state.
 void set_sources(SolverState& state, const Scene& lit);
 
-/// Replaces the targets of outdoor light, and resets the importance of luminaire parts.
+/// Also resets the importance of luminaire parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
-/// Computes the view importance of every element for the current views. Resets the indirect importance.
+/// Computes the view importance of every element. Resets the indirect importance.
 void compute_view_importance(SolverState& state);
 
 /// Returns the radiosity of each light group. Refers to its arguments.
@@ -95,17 +95,17 @@ GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irrad
 /// Returns the power of surfaces and luminaires [lm or W].
 RgbD radiated_power(const SolverState& state);
 
-/// Whether variance refines the mesh between iterations; otherwise the oracle refines during them.
+/// Whether variance refines the mesh between iterations.
 bool refines_by_variance(const SolveOptions& options);
 
-/// Returns the minimum area of an element's children, and the area of a pixel at the element [m^2]; see ElementFloor.
+/// Evaluates ElementFloor at an element [m^2].
 float min_area(const SolverState& state, std::uint32_t element);
 float pixel_area(const SolverState& state, std::uint32_t element);
 
 /// Initialises new elements (index >= first) from their parents.
 void grow_with_forest(SolverState& state, std::uint32_t first);
 
-/// Adds camera rays in proportion to the averaged rays, because the mesh becomes finer.
+/// Adds camera rays in proportion to the averaged rays.
 void refine_view_importance(SolverState& state);
 
 }  // namespace interflect::detail

@@ -33,7 +33,6 @@ class RenumberedSums {
     std::vector<std::uint32_t> old_numbers_;
 };
 
-/// The parents of dropped elements receive their contributions.
 void drop_excess(ElementForest& forest, RenumberedSums& sums, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
         const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
@@ -52,9 +51,8 @@ std::vector<PartImportance> found_by_parts(const RayPlan& plan, const RayAllocat
     return parts;
 }
 
-/// Averages the importance that a leaf received with that found by its own rays. A ray that finds importance has weight
-/// 1; received importance has the expected effective number of its rays. These weights do not depend on the estimates,
-/// so the mean is unbiased.
+/// Averages the importance that a leaf received and the importance found by its own rays, weighted by effective numbers
+/// of rays. The weights are independent of the estimates, so the mean is unbiased.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const FoundImportance& found, const PayloadTotals& payload, std::size_t elements,
            std::vector<float>& received) {

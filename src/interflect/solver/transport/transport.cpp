@@ -48,8 +48,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Visits of a random walk for which the fixed-point sums have room: the expected 1 / (1 - rho), times 2^12 for chance
-/// and panes. Of the 2^61 units of a sum, 2^49 remain for the expected power.
+/// Returns the visits of a random walk that fit into the sums: the expected 1 / (1 - rho), times 2^12 for chance and
+/// panes. The expected power keeps 2^49 units.
 double most_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
@@ -57,7 +57,6 @@ double most_visits(const Scene& scene) {
     return headroom / (1 - rho);
 }
 
-/// Data that all batches of a step share.
 struct StepData {
     StepData(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
              const TransportStep& step, const SampleStreams& streams)
@@ -74,7 +73,7 @@ struct StepData {
     Panes panes;
 };
 
-/// One object per thread, reused.
+/// One object per thread.
 struct Batch {
     explicit Batch(const Descent& d) : descent(d) {}
 
@@ -91,8 +90,8 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Makes the sums of the importance that rays find at their hits, by source. They serve the leaves and the parts of
-/// luminaires: empty if importance is for patches and no luminaire shoots, or if the step carries none.
+/// Makes the sums for leaves and luminaire parts; empty if the step carries no importance, or if importance is for
+/// patches and no luminaire shoots.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -148,7 +147,7 @@ void deposit(const TransportStep& step, const StepData& data, Batch& batch) {
     descent.finish_batch();
 }
 
-/// Follows the light reflected at the hits of a batch to its end, by random walks.
+/// Completes the light of a batch by random walks.
 /// @param first_ray  Of the batch; key of the random numbers.
 void walk(const TransportStep& step, const StepData& data, const Walks& walks, std::uint64_t first_ray, Batch& batch) {
     Walkers& walkers = batch.walkers;
@@ -167,7 +166,7 @@ void walk(const TransportStep& step, const StepData& data, const Walks& walks, s
     walks.follow(first_ray, walkers, batch.descent);
 }
 
-/// Joins the points of all threads; StartPoints sorts them.
+/// StartPoints sorts the joined points.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());

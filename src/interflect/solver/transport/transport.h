@@ -13,14 +13,12 @@
 
 namespace interflect::detail {
 
-/// Estimates one bounce of power (Eq. 1, Prikryl et al. 2000) and importance (Eq. 7) without form factors. A ray starts
-/// on leaf s with probability q_s / sum q, uniformly and cosine-distributed, or as its luminaire emits. It deposits
-/// power A_s B_s / (N q_s) at element i and importance A_s rho_s psi_s / (N q_s) at the hit leaf. Without refinement, i
-/// is this leaf. With refinement, the larger element of a pair, initially of patches, is divided until the oracle
-/// accepts. Unbiased on a fixed mesh if q > 0 wherever the payload is.
+/// Estimates one bounce of power (Eq. 1, Prikryl et al. 2000) and importance (Eq. 7). A ray starts on leaf s with
+/// probability q_s / sum q, uniformly and cosine-distributed, or as its luminaire emits. It deposits its Payload: power
+/// at element i and importance at the hit leaf. Without refinement, i is this leaf; with refinement, an element of a
+/// pair that the oracle accepts. Unbiased on a fixed mesh if q > 0 wherever the payload is.
 ///
-/// The paper's rays carry B_j, the mean over the accepted shooter j. This loses or creates energy if B and visibility
-/// vary together over j (0.4% in a closed box). With B_s, shot = received + escaped exactly.
+/// Rays carry B_s, not the paper's B_j (docs/method.md, One step of transport), so shot = received + escaped exactly.
 /// @param forest   Grows if the oracle refines; old indices stay valid.
 /// @param sums     Zero before and after; has the capacity of the forest.
 /// @param streams  Advanced. The same streams give the same bits for any number of threads.

@@ -21,7 +21,7 @@ struct ReflectedPower {
     double of_ray;  ///< Power of its ray before any pane, all channels.
 };
 
-/// Particles of one task; one object per thread, reused.
+/// Particles of one task; one object per thread.
 struct Walkers {
     std::vector<ReflectedPower> received, reflected;
     std::vector<RgbD> received_groups, reflected_groups;  ///< [particle][group]
@@ -32,9 +32,8 @@ struct Walkers {
     PointBlock points;
 };
 
-/// Random walks that complete a pass (TransportStep::completes_by_walks). A particle survives with the probability of
-/// its reflectance times the transmittance of the crossed panes. Otherwise rays through panes, which deposit several
-/// times, would multiply the particles. A walk costs no time for elements that it does not visit.
+/// Random walks that complete a pass (TransportStep::completes_by_walks). Survival includes the transmittance of
+/// crossed panes: rays that deposit several times would otherwise multiply the particles.
 class Walks {
   public:
     /// @param elements  Size of the forest before the step; newer elements receive through their ancestors.

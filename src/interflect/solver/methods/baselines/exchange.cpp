@@ -123,7 +123,7 @@ struct LinesOfSight {
     std::uint64_t seed;
     std::int64_t& rays;
 
-    /// Samples visibility along lines from `points` of the smaller element, weighted by unoccluded light.
+    /// Samples visibility from `points` of the smaller element, weighted by unoccluded light.
     void sample(std::uint32_t small, std::uint32_t large, const Quadrature& points, Exchange& exchange) {
         const PatchGeometry& geometry = forest.geometry(forest.patch(large));
         const V3f normal_x = forest.geometry(forest.patch(small)).normal(), normal_y = geometry.normal();
@@ -145,7 +145,7 @@ struct LinesOfSight {
             const float kernel = cosines / (std::numbers::pi_v<float> * d.length2() + disk);
             const double along_line = points.weight[k] * static_cast<double>(kernel);
             all += along_line;
-            // Both directions: the back of a one-sided face stops no ray, and rays hit only one of two coincident
+            // Tests both directions: the back of a one-sided face stops no ray, and rays hit only one of two coincident
             // faces.
             Rgb line = transmittance(small, x, normal_x, large, y);
             if (line != Rgb(0)) line = smaller(line, transmittance(large, y, normal_y, small, x));

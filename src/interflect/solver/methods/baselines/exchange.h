@@ -31,7 +31,7 @@ struct Exchange {
     float area = 0;
     /// Area times the range of form factors from its points [m^2].
     float spread_over_a = 0, spread_over_b = 0;
-    /// Transmitted share of `area`: mean over lines of sight of 1 (free), 0 (blocked) or the panes' transmittance.
+    /// Transmitted share of `area`, the mean over lines of sight.
     Rgb transmittance{0, 0, 0};
     /// Range of the transmittance over lines of sight.
     float variation = 0;
@@ -40,9 +40,9 @@ struct Exchange {
 /// Points per side of the smaller element, each with one line of sight.
 enum class Effort { quick = 2, thorough = 4 };
 
-/// Estimates the exchange between elements; thread-safe. The unoccluded part is Lambert's form over the larger element,
-/// integrated over the smaller by Gaussian quadrature. Visibility is sampled along lines between them. A line is free
-/// if rays from each end first hit the other, apart from panes.
+/// Estimator of the exchange between elements; thread-safe. Lambert's form factor to the larger element is integrated
+/// over the smaller by Gaussian quadrature. A sampled line is free if rays from each end first hit the other, apart
+/// from panes.
 class ExchangeEstimator {
   public:
     ExchangeEstimator(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t seed)

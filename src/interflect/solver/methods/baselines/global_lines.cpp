@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
-/// Deposits per line, on average, at which a patch's sums overflow. Normally one; more through panes and the backs of
+/// Average deposits per line at which a patch's sums overflow. Normally one; more through panes and the backs of
 /// one-sided faces.
 constexpr double lines_headroom = 0x1p8;
 
@@ -41,7 +41,7 @@ struct LineDomain {
         constexpr float margin = 1.0001f;  // for rounding
         radius = margin * std::sqrt(square);
     }
-    /// [m^2] of the disk crossed by the lines of one direction.
+    /// Area of the sphere's cross-section [m^2].
     double cross_section() const {
         return std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
     }
@@ -53,7 +53,7 @@ struct LineSegment {
     bool is_mutual;  ///< Whether `back` also sees `front`: false through the back of a one-sided face.
 };
 
-/// Active lines of a task; one object per thread, reused.
+/// Active lines of a task; one object per thread.
 struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, looking_back;
@@ -65,7 +65,6 @@ struct LineBundle {
     std::vector<Panes::HitBehind> behind;
 };
 
-/// Uniform: directions on the sphere, crossings on the disk through the centre.
 void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::uint64_t first, LineBundle& bundle) {
     fill_points(set, key, first, bundle.lines.size(), bundle.points);
     bundle.slack.assign(bundle.lines.size(), std::numeric_limits<float>::infinity());
@@ -83,7 +82,7 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
 }
 
 /// Advances each line to the next patch that faces it, and traces back from there. Drops lines that hit no patch, or
-/// the same patch again, which only rounding can cause.
+/// the same one again by rounding.
 void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
     constexpr float offsets_apart = 4;  // of coincident patches; see RayCaster::ray_offset()
     bundle.segments.clear();
@@ -168,7 +167,7 @@ class LineSums {
     const std::vector<std::int64_t>& started() const { return started_; }
 
   private:
-    /// @param to  `none` if the light escapes. @param factor  2 unless opposite lines carry the same light.
+    /// @param to  Receiver, or `none`. @param factor  1 for mutual exchange, else 2, times the transmittance.
     void carry(std::uint32_t from, std::uint32_t to, const Rgb& factor) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(factor) * power_per_radiosity_;
         if (to == none) {
@@ -188,11 +187,8 @@ class LineSums {
     std::vector<std::int64_t> squares_, started_, escaped_rays_;
 };
 
-/// Passes with global lines (Sbert 1993, 1997); see docs/method.md. Lines are uniform in a sphere of radius R around
-/// the scene. Every two patches that see each other along a line exchange light.
-///
-/// With N lines that carry B_a 4 pi R^2 / (2 N), the expected power from a to b is A_a F_ab B_a. A line costs 1 + 2 h
-/// rays on average, h = sum A / (4 pi R^2). Constant on patches. Cost: O(N h log(patches)).
+/// Passes with global lines (Sbert 1993, 1997); see docs/method.md. Constant on patches. Cost: O(N h log(patches)) for
+/// N lines in a sphere of radius R, with h = sum A / (4 pi R^2).
 class GlobalLines final : public Passes {
   public:
     explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {

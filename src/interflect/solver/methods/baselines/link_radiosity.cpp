@@ -53,7 +53,7 @@ double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double 
     return area_a * area_b / (std::numbers::pi * gap * gap);
 }
 
-/// Light or importance received over the links, per area. @param area_of  Link::area or Link::mean_area.
+/// Returns received light or importance per area. @param area_of  Link::area or Link::mean_area.
 template <class T>
 std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, const std::vector<T>& leaving,
                       T (Link::*area_of)() const) {
@@ -83,7 +83,7 @@ std::vector<Rgb> present_radiosity(SolverState& state) {
     return b;
 }
 
-/// Sum of area times |new - old|, relative to that of area times new.
+/// Area-weighted |new - old|, relative to the area-weighted new value.
 class RelativeChange {
   public:
     void add(double area, double before, double now) {
@@ -216,8 +216,7 @@ struct RadiosityRange {
     }
 };
 
-/// Error bound [m^2]: the variation of the form factor, and the unoccluded exchange to the degree that lines of sight
-/// differ.
+/// Returns the error bound of the exchange [m^2], including partial occlusion.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
     if (transmittance == 0) return exchange.area * bound_if_blocked;
@@ -226,9 +225,8 @@ double error_bound(const Exchange& exchange, float spread) {
 
 }  // namespace
 
-/// Returns the links whose error bound exceeds the threshold (Smits et al. 1992). A link from j to i takes received
-/// light as constant. Over i, it varies by B_j times the variation of the form factor; over j, by this variation times
-/// the range of radiosity in j. Each bound belongs to the element whose division reduces it.
+/// Returns the links whose error bound exceeds the threshold. Each end has a bound as receiver, with the other end's
+/// radiosity, and one as source, with the range of its own radiosity.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const Solution& solution = state_.solution;
     const std::vector<Rgb> b = radiosity(state_.materials, forest_, solution.irradiance);
@@ -261,7 +259,6 @@ bool LinkedElements::may_divide(std::uint32_t element) const {
     return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.unseen());
 }
 
-/// Keeps the largest bounds within the limit of rays.
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
     const std::int64_t rays = std::max<std::int64_t>(0, state_.options.limits.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);

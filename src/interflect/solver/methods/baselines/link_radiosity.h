@@ -31,22 +31,20 @@ struct LinkCandidate {
 
 struct RefinementCandidate;
 
-/// Hierarchical radiosity (Hanrahan et al. 1991), a deterministic solver of Eq. 1, Prikryl et al. 2000, to check the
-/// Monte Carlo methods. A sweep gathers one bounce over the links between elements and ends with push-pull. Form
-/// factors are integrals (exchange.h); only visibility is sampled.
+/// Hierarchical radiosity (Hanrahan et al. 1991), a deterministic solver of Eq. 1, Prikryl et al. 2000. A sweep gathers
+/// one bounce over the links between elements and ends with push-pull. Only visibility is sampled.
 ///
 /// Four links to the children of one end replace a link if its error bound exceeds epsilon times the reference power
 /// (oracle_threshold.h). The bound is rho_i B_j A_i times the variation of F_ij over an element (Smits et al. 1992),
-/// including partial occlusion. Links are refined only when light has settled. With importance, psi is transported
-/// backwards over the same links, and bounds are weighted by psi_i / psi_max (Eq. 15).
+/// including partial occlusion. With importance, psi is transported backwards over the same links, and bounds are
+/// weighted by psi_i / psi_max (Eq. 15).
 ///
 /// The run ends when light has settled and no link needs refinement. It stays within limits.rays (except for the first
 /// links), max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
-/// escaped_power is the error of the form factors. The same seed gives the same bits for any number of threads. Cost:
-/// O(patches^2 + links).
+/// escaped_power is the error of the form factors. Cost: O(patches^2 + links).
 class LinkedElements : public IterationMethod {
   public:
-    /// The state must outlive this. @param link_limit  Maximum number of links.
+    /// The state must outlive this.
     explicit LinkedElements(SolverState& state, std::size_t link_limit = most_links);
 
     /// Links all patches that face each other. @throws InputError for too many links.

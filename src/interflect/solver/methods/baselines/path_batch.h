@@ -23,7 +23,7 @@ namespace interflect::detail {
 
 /// Paths per task; enough for long Embree batches.
 inline constexpr std::size_t paths_per_task = 4096;
-/// Maximum copies of a particle at a hit. Later hits may split it again.
+/// Maximum copies of a particle at a hit.
 inline constexpr double most_copies = 8;
 /// Received over expected power at which sums overflow; leaves 2^45 units for the expected power.
 inline constexpr double sum_headroom = 0x1p16;
@@ -42,9 +42,8 @@ constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uin
     return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
 }
 
-/// Source of particles: light, or importance (Eq. 7). Entries by patch; `emitted` and `density` continue with the parts
-/// of the luminaires' emission (Emission). Cameras emit importance, so a patch first emits its reflected view
-/// importance, equal in all channels.
+/// Source of particles: light, or importance (Eq. 7). Entries by patch; `emitted` and `density` continue with luminaire
+/// parts (Emission). A patch first emits its reflected view importance.
 struct WalkSource {
     std::vector<Rgb> emitted;      ///< Initial power of a source: W [lm or W], or rho V.
     std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
@@ -81,7 +80,7 @@ struct Particle {
     Rgb power;
 };
 
-/// One object per thread, reused.
+/// One object per thread.
 struct Wavefront {
     std::vector<Particle> particles, reflected;
     std::vector<Ray> rays;
@@ -144,7 +143,7 @@ class PathBatch {
         }
     }
 
-    /// A path of source s carries W_s / (N q_s). A source's paths are consecutive points of its sequence.
+    /// A path of source s carries W_s / (N q_s).
     void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
         w.particles.resize(static_cast<std::size_t>(end - begin));
         w.make_room_for_rays();
@@ -166,7 +165,7 @@ class PathBatch {
         allocation_->for_each_source(begin, end, emit_some);
     }
 
-    /// Deposits power at first hits and, filtered, behind panes. Lists the power to reflect.
+    /// Deposits power at first hits and, filtered, behind panes.
     void score(Wavefront& w) {
         FixedPoint::Value escaped{};
         std::int64_t escaped_rays = 0;
@@ -196,9 +195,8 @@ class PathBatch {
         add_concurrently(sums_.escaped_rays, escaped_rays);
     }
 
-    /// Russian roulette and splitting: reflected power continues as a random number of copies with mean n, each with
-    /// 1/n of the power. With n = power * density / unit_power_, a copy carries the power of a particle emitted there.
-    /// One random number samples all copies systematically.
+    /// Applies Russian roulette and splitting: reflected power continues as copies, n on average, each with 1/n of the
+    /// power. Below the limit of n, a copy carries the power of a particle emitted there.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;

@@ -16,15 +16,15 @@ namespace interflect::detail {
 
 namespace {
 
-/// A step shoots the patches whose weight is at least this share of the largest.
+/// Minimum weight of the patches that a step shoots, relative to the largest.
 constexpr float share_of_largest = 0.5f;
 /// The last step shoots the rest: below this unshot share, or if a step would get fewer rays.
 constexpr double negligible_rest = 0.01;
 constexpr std::int64_t fewest_rays_of_step = 16;
-/// Sum of the weights of all steps, until measured.
+/// Initial ShotBudget::expected.
 constexpr double assumed_shots = 2;
 
-/// Rays of a series of steps, from darkness to little unshot power. Weights are relative to the initial amount.
+/// Rays of a series of steps. Weights are relative to the initial amount.
 struct ShotBudget {
     std::int64_t left;
     double expected;  ///< Sum of the weights of all steps.
@@ -146,12 +146,7 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     return !is_last;
 }
 
-/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995) with rays in place of form factors; see
-/// docs/method.md. The first step shoots the emitters. Later steps shoot all patches with at least half of the largest
-/// unshot power, weighted by importance. Importance is computed by the same steps in dual order.
-///
-/// An iteration is a solution from darkness. Random walks complete its last step. Constant on patches. The same seed
-/// gives the same bits for any number of threads.
+/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995); see docs/method.md. Constant on patches.
 class ProgressiveRefinement final : public IterationMethod {
   public:
     void prepare(SolverState& state) override {
@@ -178,7 +173,6 @@ class ProgressiveRefinement final : public IterationMethod {
     Numbers current_, before_;
 };
 
-/// Rays that importance lacks of its share alpha of `planned` rays.
 std::int64_t ProgressiveRefinement::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));

@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Paths of the pilot, which measures the path length; minimum rays of a batch per pilot path.
+/// Paths of the pilot; minimum rays of a batch per pilot path.
 constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
 
 struct BatchResult {
@@ -63,7 +63,7 @@ BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t ray
     return arrived;
 }
 
-/// Importance that guides particles. Leaving power is important for its destination: hence Eq. 10, or on request Eq. 9.
+/// Returns the importance that guides particles (Eq. 10, or Eq. 9 on request).
 std::vector<float> leading_importance(const Solution& so_far) {
     switch (importance_use(so_far)) {
         case ImportanceUse::off:
@@ -76,8 +76,7 @@ std::vector<float> leading_importance(const Solution& so_far) {
     return so_far.options.experimental.total_importance ? total_importance(so_far) : so_far.indirect_importance;
 }
 
-/// beta + (1 - beta) psi, with psi relative to its mean over emitted power: power alone starts the share beta of the
-/// paths.
+/// Returns beta + (1 - beta) psi, with psi relative to its mean over emitted power.
 std::vector<float> particle_density(const Solution& so_far, const std::vector<Rgb>& emitted) {
     std::vector<float> density = leading_importance(so_far);
     double power = 0, important = 0;
@@ -130,7 +129,6 @@ void RandomWalks::prepare(SolverState& state) {
     state.schedule.began_with(0, state.importance_rays);
 }
 
-/// Rays that importance lacks of its share alpha of `planned` rays.
 std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));

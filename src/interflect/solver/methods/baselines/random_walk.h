@@ -16,14 +16,11 @@ struct PathSeries {
 
 /// Random walks that solve Eq. 1, Prikryl et al. 2000 (Pattanaik and Mudur 1992). A particle deposits its power at
 /// every patch that it hits and continues from a uniform point on it, with a probability given by the reflectance.
-/// Panes transmit it straight. It carries all channels; survival keeps their sum.
 ///
 /// With importance (Pattanaik and Mudur 1993, 1995), walks from the cameras estimate psi with the share alpha of the
-/// rays. The particle density is then proportional to power times psi: particles split where psi rises and end more
-/// often where it falls. Unbiased while beta > 0.
+/// rays. Particles then split where psi rises and end more often where it falls. Unbiased while beta > 0.
 ///
-/// Paths are complete, so ray counts deviate by about 1% from the plan. The same seed gives the same bits for any
-/// number of threads. Cost: O(N log(patches)), 150 bytes per patch.
+/// Paths are complete, so ray counts deviate by about 1% from the plan. Cost: O(N log(patches)), 150 bytes per patch.
 class RandomWalks : public IterationMethod {
   public:
     explicit RandomWalks(const SolverState& state);
@@ -32,8 +29,7 @@ class RandomWalks : public IterationMethod {
 
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
-    /// Merges by Eq. 6, weighted by planned rays: long paths also deposit more, so weights of traced rays would cause a
-    /// bias.
+    /// Merges by Eq. 6, weighted by planned rays. Traced rays would cause a bias, because long paths also deposit more.
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
     void discard() override { current_ = before_; }
     void change_views(SolverState& state) override;

@@ -34,9 +34,8 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/total", total_);
 }
 
-/// Sets the weights to the rays that each source lacks of its share of `all` rays. If a leaf has shot more than its
+/// Replaces the shares in plan.q by the rays that each source lacks of `all` rays. If a leaf has shot more than its
 /// share, other leaves of its patch shoot less.
-/// @param plan  Its weights are the shares on entry.
 void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const {
     struct Balance {
         double lacks = 0, lacking = 0;  // rays, with and without the surplus of other leaves
