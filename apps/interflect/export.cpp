@@ -104,7 +104,7 @@ void run_scene(const ExportArguments& arguments) {
 
 bool traces_rays(const std::filesystem::path& output, const ExportOptions& options) {
     const std::string extension = lower_case_extension(output);
-    return (options.lightmap && options.lightmap->shading == LightmapShading::gather) || extension == ".json" ||
+    return (options.lightmap && options.lightmap->shading != LightmapShading::smooth) || extension == ".json" ||
            extension == ".exr";
 }
 
@@ -149,9 +149,9 @@ void check_format_options(const ExportArguments& arguments, const CLI::App& comm
         if (std::find(formats.begin(), formats.end(), extension) == formats.end())
             refuse_options(command, options, fmt::format("it has no effect on {}: it is for{}", extension, known));
     }
-    constexpr std::array<std::string_view, 2> of_gathering = {"--samples", "--seed"};
-    if (arguments.lightmap.shading != LightmapShading::gather)
-        refuse_options(command, of_gathering, "it has no effect without --shading gather");
+    constexpr std::array<std::string_view, 2> of_sampling = {"--samples", "--seed"};
+    if (arguments.lightmap.shading == LightmapShading::smooth)
+        refuse_options(command, of_sampling, "it has no effect with --shading smooth");
 }
 
 void run(const ExportArguments& arguments, const CLI::App& command, int& exit_code) {
@@ -172,6 +172,9 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
     options.probes = arguments.probes;
     if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
+    constexpr int gathered_directions = 64;
+    if (arguments.lightmap.shading == LightmapShading::gather && command.get_option("--samples")->count() == 0)
+        options.lightmap->samples = gathered_directions;
     if (options.lightmap) options.lightmap->max_bytes = free_memory();
     Warnings warnings;
     options.warnings = &warnings;
@@ -210,11 +213,14 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
         ->default_str("irradiance");
     of_lightmap(add_choice<LightmapShading>(
                     command, "--shading", lightmap.shading,
-                    {{"smooth", LightmapShading::smooth}, {"gather", LightmapShading::gather}},
-                    "smooth: interpolated between the elements; gather: each texel finds its own light"))
-        ->default_str("smooth");
-    of_lightmap(command.add_option("--samples", lightmap.samples, "Gathered directions a texel"))
-        ->capture_default_str()
+                    {{"hybrid", LightmapShading::hybrid},
+                     {"smooth", LightmapShading::smooth},
+                     {"gather", LightmapShading::gather}},
+                    "hybrid: direct light of each texel, indirect light interpolated; smooth: interpolated between the "
+                    "elements; gather: each texel finds its own light"))
+        ->default_str("hybrid");
+    of_lightmap(command.add_option("--samples", lightmap.samples,
+                                   "Points a texel (default: 16); with --shading gather, directions (default: 64)"))
         ->check(CLI::Range(2, 1 << 24));
     of_lightmap(add_parsed(command, "--seed", lightmap.seed, parse_seed, "Of gathering"))->default_str("1");
     of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image, {{"exr", ".exr"}, {"hdr", ".hdr"}},

@@ -97,7 +97,7 @@ ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, 
     const auto draw = [&] {
         Image image;
         with_path_progress([&](const Monitor& monitor) {
-            image = denoise(gather(solved.scene, solved.solution, ray_caster, view, path, monitor).layers);
+            image = denoise(render_hybrid(solved.scene, solved.solution, ray_caster, view, path, monitor).layers);
         });
         return image;
     };

@@ -97,6 +97,7 @@ struct PictureLayers {
     Image emitted;  ///< Radiance straight from emitters, in the picture's unit.
     /// All other light of the picture.
     SampledLight reflected;
+    bool is_indirect_interpolated = false;  ///< By render_hybrid(): indirect light has no noise to remove.
     /// The same for two independent halves of the samples: every other batch, and the rest.
     std::array<SampledLight, 2> halves;
     Image albedo;              ///< Reflectance of the visible surface; 1 in a picture of irradiance.
@@ -168,8 +169,8 @@ PathTracing gather(const Scene& scene, const Solution& solution, const RayCaster
                    const PathOptions& options = {}, const Monitor& monitor = {});
 
 /// Hybrid shading: direct light as by gather(), with more stratification; indirect light interpolated between sparse
-/// points that gather 512 directions each (irradiance caching, Ward et al. 1988). Normals of Scene::normals shade smooth
-/// objects. Where no point is near, light is gathered.
+/// points that gather 512 directions each (irradiance caching, Ward et al. 1988). Normals of Scene::normals shade
+/// smooth objects. Where no point is near, light is gathered.
 /// @param options  Of path tracing; `samples` are camera rays per pixel.
 /// @return         The standard error excludes indirect light.
 /// @throws InputError as gather() does.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -21,6 +22,7 @@
 #include "interflect/render/gauge.h"
 #include "interflect/render/path_picture.h"
 #include "interflect/render/smooth_field.h"
+#include "interflect/render/traced_scene.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
@@ -30,14 +32,27 @@ namespace {
 struct TexelPlace {
     std::uint32_t patch = none;
     Parameters at;
+    std::array<Parameters, 2> sides{};  ///< Of the texel, along columns and rows.
     bool is_inside = false;
 };
+
+/// The sides of a texel in the parameters of a patch.
+std::array<Parameters, 2> texel_sides(const FlatPatch& flat, const Imath::V2d& spacing) {
+    const Imath::V2d u = flat.corners[1] - flat.corners[0],
+                     v = flat.corners[static_cast<std::size_t>(flat.count) - 1] - flat.corners[0];
+    const double area = u.cross(v);
+    const auto parameters = [&](const Imath::V2d& side) {
+        return Parameters{static_cast<float>(side.cross(v) / area), static_cast<float>(u.cross(side) / area)};
+    };
+    return {parameters({spacing.x, 0}), parameters({0, spacing.y})};
+}
 
 class NearestPatch {
   public:
     explicit NearestPatch(const LightmapChart& chart) : patches_(chart.patches) {
         for (std::uint32_t i = 0; i < patches_.size(); ++i) {
             geometries_.push_back(geometry_of(patches_[i]));
+            sides_.push_back(texel_sides(patches_[i], chart.spacing()));
             const PatchGeometry& geometry = geometries_.back();
             Imath::Box3f box;
             for (const Parameters p : {Parameters{0, 0}, {1, 0}, {0, 1}}) box.extendBy(geometry.point(p));
@@ -60,7 +75,7 @@ class NearestPatch {
             const bool precedes = nearest.patch == none || patches_[i].patch < nearest.patch;
             if (distance2 < least || (distance2 == least && precedes)) {
                 least = distance2;
-                nearest = {patches_[i].patch, p};
+                nearest = {patches_[i].patch, p, sides_[i]};
             }
         });
         constexpr float rounding = 1e-3f;  // [texels]
@@ -74,6 +89,7 @@ class NearestPatch {
 
     const FlatPatches& patches_;
     std::vector<PatchGeometry> geometries_;
+    std::vector<std::array<Parameters, 2>> sides_;
     std::vector<Boxed> tree_;
 };
 
@@ -112,17 +128,6 @@ Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const
     return geometry.parameters_of(is_inside ? x : nearest);
 }
 
-/// Keeps `distance` from the border, or less in narrow patches.
-Parameters inset(const PatchGeometry& geometry, Parameters p, float distance) {
-    const auto& shape = geometry.shape();
-    const auto share = [&](const V3f& edge) { return std::min(distance / edge.length(), 0.25f); };
-    const float u = share(shape.edge_u), v = share(shape.edge_v);
-    p = {std::clamp(p.u, u, 1 - u), std::clamp(p.v, v, 1 - v)};
-    if (!geometry.is_triangle()) return p;
-    const float excess = std::max(0.0f, p.u + p.v - (1 - u - v)) / 2;
-    return {std::max(p.u - excess, u / 2), std::max(p.v - excess, v / 2)};
-}
-
 class IrradianceSource {
   public:
     IrradianceSource(const Scene& scene, const Solution& solution, const ExportOptions& options)
@@ -131,11 +136,18 @@ class IrradianceSource {
           options_(options),
           vertices_(scene, *solution.forest),
           smooth_(*solution.forest, vertices_, solution.irradiance) {
-        if (options.lightmap->shading == LightmapShading::gather) ray_caster_.emplace(scene);
+        if (options.lightmap->shading != LightmapShading::smooth) ray_caster_.emplace(scene);
     }
 
     std::vector<Rgb> irradiance(std::span<const TexelPlace> places, float texel) const {
-        return ray_caster_ ? gathered(places, texel) : interpolated(places);
+        switch (options_.lightmap->shading) {
+            case LightmapShading::hybrid:
+                return hybrid(places, texel);
+            case LightmapShading::gather:
+                return gathered(places, texel);
+            default:
+                return interpolated(places);
+        }
     }
 
   private:
@@ -148,23 +160,50 @@ class IrradianceSource {
         return values;
     }
 
-    /// Starts rays inside the patches: at the foot of a wall, they would start in its plane.
-    std::vector<Rgb> gathered(std::span<const TexelPlace> places, float texel) const {
-        constexpr float distance = 0.05f;  // [texels]
-        std::vector<MeasuringPoint> points;
-        points.reserve(places.size());
-        for (const TexelPlace& place : places) {
-            const PatchGeometry& geometry = solution_.forest->geometry(place.patch);
-            const V3f x = geometry.point(inset(geometry, place.at, distance * texel));
-            const V3f normal = vertices_.normals().at(geometry, place.patch, place.at);
-            points.push_back({scene_.origin + Imath::V3d(x), normal});
-        }
+    /// Least distance of ray starts from the border of a patch [texels]: at the foot of a wall, they would start in its
+    /// plane.
+    static constexpr float inset = 0.05f;
+
+    PathOptions path_options() const {
         PathOptions path;
         path.samples = options_.lightmap->samples;
         path.max_samples = std::max(path.max_samples, path.samples);
         path.seed = options_.lightmap->seed;
+        path.quantity = PathQuantity::irradiance;
+        return path;
+    }
+
+    std::vector<Rgb> hybrid(std::span<const TexelPlace> places, float texel) const {
+        std::vector<Gauge> gauges;
+        gauges.reserve(places.size());
+        for (const TexelPlace& place : places) {
+            const PatchGeometry& geometry = solution_.forest->geometry(place.patch);
+            const auto side = [&](const Parameters& p) {
+                return geometry.shape().edge_u * p.u + geometry.shape().edge_v * p.v;
+            };
+            Gauge gauge;
+            gauge.position = geometry.point(geometry.inset(place.at, inset * texel));
+            gauge.normal = vertices_.normals().at(geometry, place.patch, place.at);
+            gauge.patch = place.patch;
+            gauge.side_u = side(place.sides[0]), gauge.side_v = side(place.sides[1]);
+            gauge.inset = inset * texel;
+            gauges.push_back(gauge);
+        }
+        const KnownIrradiance known{*solution_.forest, solution_.irradiance, true};
+        return hybrid_irradiance(scene_, *ray_caster_, known, gauges, path_options(), options_.monitor);
+    }
+
+    std::vector<Rgb> gathered(std::span<const TexelPlace> places, float texel) const {
+        std::vector<MeasuringPoint> points;
+        points.reserve(places.size());
+        for (const TexelPlace& place : places) {
+            const PatchGeometry& geometry = solution_.forest->geometry(place.patch);
+            const V3f x = geometry.point(geometry.inset(place.at, inset * texel));
+            const V3f normal = vertices_.normals().at(geometry, place.patch, place.at);
+            points.push_back({scene_.origin + Imath::V3d(x), normal});
+        }
         const std::vector<MeasuredIrradiance> measured =
-            measure_irradiance(scene_, &solution_, *ray_caster_, points, path, options_.monitor);
+            measure_irradiance(scene_, &solution_, *ray_caster_, points, path_options(), options_.monitor);
         const auto lit = std::count_if(measured.begin(), measured.end(),
                                        [](const MeasuredIrradiance& m) { return m.is_measured(); });
         if (static_cast<std::size_t>(lit) < measured.size())

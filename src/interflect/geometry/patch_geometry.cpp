@@ -74,6 +74,15 @@ Parameters PatchGeometry::uniform_parameters(float a, float b, Parameters corner
     return {corner.u + size * local.u, corner.v + size * local.v};
 }
 
+Parameters PatchGeometry::inset(Parameters p, float distance) const {
+    const auto share = [&](const V3f& edge) { return std::min(distance / edge.length(), 0.25f); };
+    const float u = share(shape_.edge_u), v = share(shape_.edge_v);
+    p = {std::clamp(p.u, u, 1 - u), std::clamp(p.v, v, 1 - v)};
+    if (!triangle_) return p;
+    const float excess = std::max(0.0f, p.u + p.v - (1 - u - v)) / 2;
+    return {std::max(p.u - excess, u / 2), std::max(p.v - excess, v / 2)};
+}
+
 Parameters PatchGeometry::parameters_of(const V3f& x) const {
     const V3f d = x - shape_.origin;
     Parameters p{inverse_u_.dot(d), inverse_v_.dot(d)};

@@ -15,7 +15,7 @@ using namespace detail;
 
 namespace {
 
-constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2;  // [pixels]
+constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2, mean_radius = 3;  // [pixels]
 /// k^2 of Rousselle et al. 2012.
 constexpr float noise_share = 0.45f * 0.45f;
 constexpr float least_albedo = 0.01f;
@@ -74,7 +74,23 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
     return field;
 }
 
+/// Direct light comes first.
 using Fields = std::array<Field, 2>;
+std::size_t noisy_kinds(const PictureLayers& layers) { return layers.is_indirect_interpolated ? 1 : 2; }
+
+/// Distance between pixels, at least 1.
+float distance_of(int dx, int dy) { return std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy))); }
+
+/// Weight of pixel k in the neighbourhood of pixel i: 1 in its tangent plane with equal normals, 0 without a surface.
+/// @param steps  distance_of() the two.
+float shape_weight(const PictureLayers& layers, std::size_t i, std::size_t k, float steps) {
+    const Rgb turn = layers.normal.pixels[i] - layers.normal.pixels[k];
+    const Rgb step = layers.position.pixels[k] - layers.position.pixels[i];
+    const float height = step.dot(layers.normal.pixels[i]);
+    const float footprint = plane_scale * (layers.depth[i] * layers.pixel_angle + layers.pixel_size) * steps;
+    const float is_hit = layers.depth[k] > 0 ? 1.0f : 0.0f;
+    return is_hit * fall(turn.dot(turn) / normal_scale) * fall(height * height / (footprint * footprint + 1e-12f));
+}
 
 Fields make_fields(const SampledLight& light, const Image& albedo) {
     return {make_field(light.direct, light.direct_variance, albedo),
@@ -97,12 +113,13 @@ class Band {
                 for (auto& channel : sums) channel.assign(shape_.size(), 0.0f);
     }
 
-    void filter(Image& picture) {
+    /// @param irradiance  Receives the filtered light, over pi.
+    void filter(Image& irradiance) {
         for (int dy = -window_radius; dy <= window_radius; ++dy)
             for (int dx = -window_radius; dx <= window_radius; ++dx) {
                 compare_shapes(dx, dy);
                 for (std::size_t h = 0; h < 2; ++h)
-                    for (std::size_t kind = 0; kind < 2; ++kind) {
+                    for (std::size_t kind = 0; kind < noisy_kinds(layers_); ++kind) {
                         compare_light(halves_[1 - h][kind], dx, dy);
                         add_neighbours(halves_[h][kind], sums_[h][kind], dx, dy);
                     }
@@ -110,12 +127,12 @@ class Band {
         for (int y = first_; y < end_; ++y)
             for (int x = 0; x < width_; ++x) {
                 const std::size_t i = at(x, y), k = i - at(0, first_);
-                picture.pixels[i] = layers_.emitted.pixels[i];
                 if (!(layers_.depth[i] > 0)) continue;
-                Rgb irradiance(0);
                 for (const auto& of_half : sums_)
-                    for (const Sums& s : of_half) irradiance += Rgb(s[0][k], s[1][k], s[2][k]) / (2 * s[3][k]);
-                picture.pixels[i] += floored(layers_.albedo.pixels[i]) * irradiance;
+                    for (std::size_t kind = 0; kind < noisy_kinds(layers_); ++kind) {
+                        const Sums& s = of_half[kind];
+                        irradiance.pixels[i] += Rgb(s[0][k], s[1][k], s[2][k]) / (2 * s[3][k]);
+                    }
             }
     }
 
@@ -128,21 +145,12 @@ class Band {
 
     void compare_shapes(int dx, int dy) {
         std::fill(shape_.begin(), shape_.end(), 0.0f);
-        const float steps = std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy)));
+        const float steps = distance_of(dx, dy);
         const auto [begin, end] = columns(dx);
         for (int y = first_; y < end_; ++y) {
             if (!has_row(y + dy)) continue;
-            for (int x = begin; x < end; ++x) {
-                const std::size_t i = at(x, y), k = at(x + dx, y + dy);
-                const Rgb turn = layers_.normal.pixels[i] - layers_.normal.pixels[k];
-                const Rgb step = layers_.position.pixels[k] - layers_.position.pixels[i];
-                const float height = step.dot(layers_.normal.pixels[i]);
-                const float footprint =
-                    plane_scale * (layers_.depth[i] * layers_.pixel_angle + layers_.pixel_size) * steps;
-                const float is_hit = layers_.depth[k] > 0 ? 1.0f : 0.0f;
-                shape_[i - at(0, first_)] = is_hit * fall(turn.dot(turn) / normal_scale) *
-                                            fall(height * height / (footprint * footprint + 1e-12f));
-            }
+            for (int x = begin; x < end; ++x)
+                shape_[at(x, y - first_)] = shape_weight(layers_, at(x, y), at(x + dx, y + dy), steps);
         }
     }
 
@@ -192,16 +200,56 @@ class Band {
     std::array<std::array<Sums, 2>, 2> sums_;  // [half][kind of light]
 };
 
+/// The noisy light that is filtered, over pi.
+Image noisy_light(const PictureLayers& layers, const std::array<Fields, 2>& halves) {
+    Image light(layers.albedo.width, layers.albedo.height);
+    for (std::size_t i = 0; i < light.pixels.size(); ++i)
+        for (const Fields& half : halves)
+            for (std::size_t kind = 0; kind < noisy_kinds(layers); ++kind) {
+                const auto& value = half[kind].value;
+                light.pixels[i] += Rgb(value[0][i], value[1][i], value[2][i]) / 2;
+            }
+    return light;
+}
+
+/// Adds the mean of what the filter has changed nearby: it then keeps the means of all but the smallest surroundings,
+/// also where the light varies by less than its noise.
+void restore_means(const PictureLayers& layers, const Image& noisy, const Image& filtered, int y, Image& picture) {
+    const int width = noisy.width, height = noisy.height;
+    for (int x = 0; x < width; ++x) {
+        const std::size_t i = pixel_at(x, y, width);
+        picture.pixels[i] = layers.emitted.pixels[i];
+        if (layers.is_indirect_interpolated) picture.pixels[i] += layers.reflected.indirect.pixels[i];
+        if (!(layers.depth[i] > 0)) continue;
+        Rgb change(0);
+        float weight = 0;
+        for (int v = std::max(0, y - mean_radius); v <= std::min(height - 1, y + mean_radius); ++v)
+            for (int u = std::max(0, x - mean_radius); u <= std::min(width - 1, x + mean_radius); ++u) {
+                const std::size_t k = pixel_at(u, v, width);
+                const float w = shape_weight(layers, i, k, distance_of(u - x, v - y));
+                change += w * (noisy.pixels[k] - filtered.pixels[k]);
+                weight += w;
+            }
+        const Rgb irradiance = filtered.pixels[i] + change / weight;
+        for (int c = 0; c < 3; ++c)
+            picture.pixels[i][c] += std::max(0.0f, irradiance[c]) * floored(layers.albedo.pixels[i])[c];
+    }
+}
+
 }  // namespace
 
 Image denoise(const PictureLayers& layers) {
     const int width = layers.albedo.width, height = layers.albedo.height;
     const std::array<Fields, 2> halves{make_fields(layers.halves[0], layers.albedo),
                                        make_fields(layers.halves[1], layers.albedo)};
-    Image picture(width, height);
+    Image filtered(width, height), picture(width, height);
     constexpr std::size_t rows = 16;
     parallel_for_ranges(static_cast<std::size_t>(height), rows, [&](std::size_t begin, std::size_t end) {
-        Band(layers, halves, static_cast<int>(begin), static_cast<int>(end)).filter(picture);
+        Band(layers, halves, static_cast<int>(begin), static_cast<int>(end)).filter(filtered);
+    });
+    const Image noisy = noisy_light(layers, halves);
+    parallel_for_ranges(static_cast<std::size_t>(height), 1, [&](std::size_t y, std::size_t) {
+        restore_means(layers, noisy, filtered, static_cast<int>(y), picture);
     });
     return picture;
 }

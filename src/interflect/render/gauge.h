@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -10,14 +11,16 @@ namespace interflect::detail {
 
 /// Receiver of irradiance: a small plane, or the mean over an arc of normals.
 struct Gauge {
-    V3f position{0, 0, 0};       // relative to the scene's origin [m]
-    V3f normal{0, 0, 1};         // middle of the arc
-    V3f tangent{0, 0, 0};        // perpendicular, in the arc's plane; both have unit length
-    float half_arc = 0;          // [rad]
-    float offset = 0;            // of ray origins along the normal [m]
-    std::uint32_t patch = none;  // that it lies on, if known
-    float spacing = 0;           // distance to the nearest other gauge on the patch [m]
+    V3f position{0, 0, 0};                 // relative to the scene's origin [m]
+    V3f normal{0, 0, 1};                   // middle of the arc
+    V3f tangent{0, 0, 0};                  // perpendicular, in the arc's plane; both have unit length
+    float half_arc = 0;                    // [rad]
+    float offset = 0;                      // of ray origins along the normal [m]
+    std::uint32_t patch = none;            // that it lies on; none: it is a point in space
+    V3f side_u{0, 0, 0}, side_v{0, 0, 0};  // parallelogram around `position`, from which rays start on the patch [m]
+    float inset = 0;                       // least distance of their starts from the patch's border [m]
 
+    float spacing() const { return std::max(side_u.length(), side_v.length()); }
     /// @param u  In [0, 1].
     V3f normal_at(float u) const {
         const float angle = (2 * u - 1) * half_arc;

@@ -120,7 +120,9 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
     }
     PathStart start;
     start.gauges = gauges;
-    PathScene gathering = scene.with(start, paths_per_record);
+    PathScene gathering = scene;
+    gathering.start = &start;
+    gathering.batch_size = paths_per_record;
     gathering.is_indirect_only = true;
     std::vector<std::int64_t> rays((batches.size() + records_per_tile - 1) / records_per_tile);
     parallel_for_ranges(batches.size(), records_per_tile, [&](std::size_t begin, std::size_t end) {

@@ -16,8 +16,6 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/render/camera_samples.h"
 #include "interflect/render/indirect_field.h"
-#include "interflect/render/light_tree.h"
-#include "interflect/render/luminaire_choice.h"
 #include "interflect/render/pixel_statistics.h"
 #include "interflect/render/smooth_normals.h"
 #include "interflect/render/smooth_surfaces.h"
@@ -29,18 +27,9 @@ namespace {
 /// Minimum batches per pixel: 7 degrees of freedom for its standard error. Hybrid shading has less noise; larger
 /// batches reduce it further.
 constexpr int least_batches = 8, least_hybrid_batches = 2;
-/// Larger batches stratify little better; more batches improve the error estimate.
-constexpr int largest_batch = 64;
 /// Amortises the cost of a call.
 constexpr std::size_t paths_per_tile = 2048;
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
-
-std::vector<PatchGeometry> geometry_of(const Scene& scene) {
-    std::vector<PatchGeometry> geometry;
-    geometry.reserve(scene.patches.size());
-    for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
-    return geometry;
-}
 
 class PathPicture {
   public:
@@ -101,8 +90,9 @@ class PathPicture {
 
     PictureLayers layers() const {
         PictureLayers layers;
-        layers.pixel_angle = s_.start.pixel_angle;
-        layers.pixel_size = s_.start.pixel_size;
+        layers.pixel_angle = s_.start->pixel_angle;
+        layers.pixel_size = s_.start->pixel_size;
+        layers.is_indirect_interpolated = s_.indirect_field != nullptr;
         layers.reflected = light_of([](const PixelStatistics& p) { return std::tie(p.direct, p.indirect); });
         for (std::size_t h = 0; h < layers.halves.size(); ++h) {
             SampledLight& half = layers.halves[h];
@@ -215,76 +205,21 @@ void require_valid(const PathOptions& options) {
                                      options.max_samples, options.samples));
 }
 
-std::size_t batch_size_for(int samples, int batches) {
-    return std::bit_floor(static_cast<unsigned>(std::clamp(samples / batches, 1, largest_batch)));
-}
-
-/// Points that the camera sees, one path a pixel; or the gauges.
-std::vector<SurfacePoint> points_of(const PathScene& scene, const Monitor& monitor) {
-    std::vector<SurfacePoint> points;
-    for (const Gauge& g : scene.start.gauges)
-        points.push_back({g.position + g.normal * g.offset, g.normal, g.patch, g.spacing});
-    if (!scene.start.camera) return points;
-    PathScene finding = scene.with(scene.start, 1);
-    finding.smooth_normals = scene.smooth_normals;
-    finding.finds_points = true;
-    const std::size_t pixels =
-        static_cast<std::size_t>(scene.options.width) * static_cast<std::size_t>(scene.options.height);
-    std::vector<std::vector<SurfacePoint>> found((pixels + paths_per_tile - 1) / paths_per_tile);
-    parallel_for_ranges(pixels, paths_per_tile, [&](std::size_t begin, std::size_t end) {
-        if (monitor.stop && *monitor.stop) return;
-        std::vector<BatchOfPaths> batches;
-        for (std::size_t i = begin; i < end; ++i) batches.push_back({.pixel = static_cast<std::uint32_t>(i)});
-        PathWavefront wavefront(finding);
-        wavefront.trace(batches);
-        found[begin / paths_per_tile] = wavefront.points();
-    });
-    for (const std::vector<SurfacePoint>& some : found) points.insert(points.end(), some.begin(), some.end());
-    return points;
-}
-
 }  // namespace
 
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                           const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
     ray_caster.require_made_for(scene);
-    const std::vector<PatchGeometry> geometry = geometry_of(scene);
-    const LightTree lights(patch_lights(scene, geometry, emitted_powers(scene, geometry)), scene.patches.size());
-    const LuminaireChoice luminaires(scene);
-    const Skies skies(scene);
-    const Panes panes(scene, ray_caster);
-    const auto is_mirror = [](const Material& m) { return largest_channel(m.specular_reflectance) > 0; };
+    const TracedScene traced(scene, ray_caster, known);
     const bool is_hybrid = known && known->is_interpolated;
-    std::optional<KnownLight> known_light;
-    if (known) known_light.emplace(scene, geometry, known->forest, known->irradiance);
-    PathScene path_scene{scene,
-                         ray_caster,
-                         start,
-                         geometry,
-                         lights,
-                         luminaires,
-                         skies,
-                         options,
-                         batch_size_for(options.samples, is_hybrid ? least_hybrid_batches : least_batches),
-                         panes,
-                         !panes.empty() || std::any_of(scene.materials.begin(), scene.materials.end(), is_mirror),
-                         known_light ? &*known_light : nullptr};
-    SmoothNormals smooth_normals;
+    PathScene path_scene = traced.paths(
+        start, options, TracedScene::batch_size(options.samples, is_hybrid ? least_hybrid_batches : least_batches));
     std::optional<IndirectField> indirect_field;
-    const UnoccludedLight unoccluded(scene, geometry);
     if (is_hybrid) {
-        if (start.camera && !scene.normals.empty()) {
-            smooth_normals = SmoothNormals(scene, find_smooth_surfaces(scene));
-            path_scene.smooth_normals = &smooth_normals;
-        }
-        indirect_field.emplace(path_scene, points_of(path_scene, monitor), monitor.stop);
+        indirect_field.emplace(path_scene, first_points(path_scene, monitor.stop), monitor.stop);
         path_scene.indirect_field = &*indirect_field;
-        path_scene.unoccluded = &unoccluded;
-        path_scene.directions_find_light =
-            !unoccluded.has_patches() || skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
         if (const char* e = getenv("HYB_SHADOW")) path_scene.hybrid_shadow_rays = atoi(e);
-        if (const char* e = getenv("HYB_DIR")) path_scene.paths_per_direction = atoi(e);
         fprintf(stderr, "records %zu rays %ld\n", indirect_field->records(), (long)indirect_field->rays());
     }
     PathPicture picture(path_scene, options, monitor);

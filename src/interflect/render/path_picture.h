@@ -6,14 +6,10 @@
 #include "interflect/elements/forest.h"
 #include "interflect/render.h"
 #include "interflect/render/path_wavefront.h"
+#include "interflect/render/traced_scene.h"
 
 namespace interflect::detail {
 
-struct KnownIrradiance {
-    const ElementForest& forest;
-    std::span<const Rgb> irradiance;
-    bool is_interpolated = false;  ///< Hybrid shading: an IndirectField replaces gathered directions.
-};
 /// @throws InputError for inconsistent sizes or a forest of another scene.
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
 

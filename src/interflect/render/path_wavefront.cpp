@@ -22,11 +22,21 @@ constexpr float roulette_threshold = 0.5f;
 /// Squared error times time in maze, office-graz and office2 (16 samples, filtered; one ray: 1): two rays 0.75, 0.82,
 /// 0.66; four rays 0.63, 0.76, 0.51.
 constexpr std::uint32_t gathered_shadow_rays = 4;
+/// Of hybrid shading: one path in these also finds emitters and skies by its direction, which dominates near them.
+constexpr std::uint32_t paths_per_direction = 4;
 
 /// Projects x onto its patch, against rounding.
 V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
     const PatchGeometry& geometry = s.geometry[patch];
     return geometry.point(geometry.parameters_of(x)) + geometry.normal() * s.ray_caster.ray_offset(patch);
+}
+
+/// Uniform in the gauge's parallelogram, moved to its patch.
+V3f start_on(const PathScene& s, const Gauge& gauge, float u, float v) {
+    if (gauge.patch == none) return gauge.position;
+    const PatchGeometry& geometry = s.geometry[gauge.patch];
+    const V3f x = gauge.position + (u - 0.5f) * gauge.side_u + (v - 0.5f) * gauge.side_v;
+    return offset_origin(s, gauge.patch, geometry.point(geometry.inset(geometry.parameters_of(x), gauge.inset)));
 }
 
 }  // namespace
@@ -36,7 +46,7 @@ V3f PathWavefront::start_of(const Ray& ray, const Path& path) { return ray.origi
 void PathWavefront::trace(std::span<BatchOfPaths> batches) {
     light_.resize(batches.size() * s_.batch_size);
     for (const BatchOfPaths& b : batches) keys_.push_back(mix(mix(s_.options.seed, b.pixel), b.batch));
-    if (s_.start.camera)
+    if (s_.start->camera)
         start_at_camera(batches);
     else
         start_at_gauges(batches);
@@ -63,7 +73,7 @@ void PathWavefront::start_at_camera(std::span<const BatchOfPaths> batches) {
         const std::uint32_t column = batches[b].pixel % width, row = batches[b].pixel / width;
         const auto left = static_cast<float>(column), top = static_cast<float>(row);
         for (std::size_t i = 0; i < size; ++i) {
-            rays_.push_back(s_.start.camera->ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
+            rays_.push_back(s_.start->camera->ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
             paths_.push_back({Rgb(1, 1, 1), static_cast<std::uint32_t>(paths_.size()), V3f(0, 0, 0)});
         }
     }
@@ -74,12 +84,13 @@ void PathWavefront::start_at_gauges(std::span<const BatchOfPaths> batches) {
     thread_local PointBlock points;
     for (std::size_t b = 0; b < batches.size(); ++b) {
         fill_points(PointSet::sobol, keys_[b], 0, size, points);
-        const Gauge& gauge = s_.start.gauges[batches[b].pixel];
+        const Gauge& gauge = s_.start->gauges[batches[b].pixel];
         for (std::size_t i = 0; i < size; ++i) {
             const V3f normal = gauge.normal_at(points.coordinate[0][i]);
             Path path{Rgb(1, 1, 1), static_cast<std::uint32_t>(b * size + i), normal, gauge.patch};
-            Ray ray{gauge.position + normal * gauge.offset, normal};
-            if (!leave(ray, path)) continue;
+            Ray ray{start_on(s_, gauge, points.coordinate[1][i], points.coordinate[2][i]) + normal * gauge.offset,
+                    normal};
+            if (!leave(ray, path, gauge.position + normal * gauge.offset)) continue;
             rays_.push_back(ray);
             paths_.push_back(path);
         }
@@ -175,7 +186,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
                                     path.travelled + hit.distance,
                                     s_.known ? static_cast<double>(s_.known->level(hit.patch, x)) : 0};
     const float distance = path.travelled + hit.distance;
-    if (vertex_ == 2 && !s_.start.camera) light_[path.index].first.nearness = 1 / static_cast<double>(distance);
+    if (vertex_ == 2 && !s_.start->camera) light_[path.index].first.nearness = 1 / static_cast<double>(distance);
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
     if (path.place != none || end_at_known_light(hit, ray, path)) return false;
@@ -187,15 +198,16 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     path.patch = hit.patch;
     ray.origin = offset_origin(s_, hit.patch, x);
     if (s_.finds_points) {
-        points_.push_back({ray.origin, path.normal, hit.patch, distance * s_.start.pixel_angle + s_.start.pixel_size});
+        points_.push_back(
+            {ray.origin, path.normal, hit.patch, distance * s_.start->pixel_angle + s_.start->pixel_size});
         return false;
     }
-    return leave(ray, path);
+    return leave(ray, path, ray.origin);
 }
 
-bool PathWavefront::leave(Ray& ray, Path& path) {
+bool PathWavefront::leave(Ray& ray, Path& path, const V3f& middle) {
     path.travelled = 0;
-    path.place = s_.indirect_field && vertex_ == 1 ? seen_place(ray.origin, path) : none;
+    path.place = s_.indirect_field && vertex_ == 1 ? seen_place(middle, path) : none;
     const auto size = static_cast<std::uint32_t>(s_.batch_size);
     const std::uint64_t key = keys_[path.index / size];
     const bool samples_emitters = s_.options.emitter_sampling != EmitterSampling::directions;
@@ -211,8 +223,8 @@ bool PathWavefront::leave(Ray& ray, Path& path) {
     if (s_.known && path.place == none) connect_to_known_light(ray.origin, path);
 
     if (path.place != none) {
-        if (!s_.directions_find_light || path.index % size % s_.paths_per_direction != 0) return false;
-        path.throughput *= static_cast<float>(s_.paths_per_direction);
+        if (!s_.directions_find_light() || path.index % size % paths_per_direction != 0) return false;
+        path.throughput *= static_cast<float>(paths_per_direction);
     }
     const VertexSample sample = vertex_sample(key, vertex_, path.index % size);
     const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
@@ -234,8 +246,8 @@ std::uint32_t PathWavefront::seen_place(const V3f& x, const Path& path) {
         SeenPlace& place = seen_.emplace_back();
         place.batch = batch, place.patch = path.patch, place.index = path.index, place.normal = path.normal;
         place.indirect = s_.indirect_field->at(x, path.normal, path.patch);
-        if (s_.unoccluded->has_patches()) place.patches.exact = s_.unoccluded->by_patches(x, path.normal);
-        if (s_.unoccluded->has_luminaires()) place.luminaires.exact = s_.unoccluded->by_luminaires(x, path.normal);
+        if (s_.unoccluded.has_patches()) place.patches.exact = s_.unoccluded.by_patches(x, path.normal);
+        if (s_.unoccluded.has_luminaires()) place.luminaires.exact = s_.unoccluded.by_luminaires(x, path.normal);
     }
     SeenPlace& place = seen_[i - 1];
     if (!place.indirect) return none;
@@ -278,7 +290,7 @@ void PathWavefront::add_sky(const Ray& ray, const Path& path) {
 }
 
 void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance) {
-    if (path.place != none && s_.unoccluded->has_patches()) return;  // known exactly
+    if (path.place != none && s_.unoccluded.has_patches()) return;  // known exactly
     const Rgb radiance = path.throughput * exitance / pi;
     if (vertex_ == 1) return add(path.index, 0, radiance);
     const float distance = path.travelled + hit.distance;
@@ -292,7 +304,7 @@ void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& pat
 
 float PathWavefront::direction_density(const Path& path, const V3f& direction) const {
     const float density = path.normal.dot(direction) / pi;
-    return path.place == none ? density : density / static_cast<float>(s_.paths_per_direction);
+    return path.place == none ? density : density / static_cast<float>(paths_per_direction);
 }
 
 float PathWavefront::direction_weight(float direction_density, float light_density) const {
@@ -373,7 +385,7 @@ void PathWavefront::connect_to_patch(const V3f& x, const Path& path, const Light
     const Rgb radiance =
         exitance_at(s_.scene, s_.scene.patches[choice.index], on_patch) / pi * (cosine / pi / light_density);
     Connection connection{choice.index, path.index, radiance, 0, vertex_};
-    if (path.place != none && s_.unoccluded->has_patches())
+    if (path.place != none && s_.unoccluded.has_patches())
         estimate_visible_share(connection, path, &SeenPlace::patches);
     else if (s_.options.emitter_sampling == EmitterSampling::lights)
         connection.radiance *= path.throughput;
@@ -388,7 +400,7 @@ void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const L
     if (!(channel_sum(light.irradiance) > 0)) return;
     const float share = 1 / (pi * static_cast<float>(shadow_rays_at(vertex_)));
     Connection connection{none, path.index, light.irradiance * share, light.distance, vertex_};
-    if (path.place != none && s_.unoccluded->has_luminaires())
+    if (path.place != none && s_.unoccluded.has_luminaires())
         estimate_visible_share(connection, path, &SeenPlace::luminaires);
     else
         connection.radiance *= path.throughput;

@@ -36,7 +36,7 @@ struct PathStart {
 struct PathScene {
     const Scene& scene;
     const RayCaster& ray_caster;
-    const PathStart& start;
+    const PathStart* start;
     std::span<const PatchGeometry> geometry;
     const LightTree& lights;
     const LuminaireChoice& luminaires;
@@ -45,20 +45,17 @@ struct PathScene {
     std::size_t batch_size;
     Panes panes;
     bool splits;                                    // at panes or mirrors
+    const UnoccludedLight& unoccluded;              // at the first vertex, with an indirect field
     const KnownLight* known = nullptr;              // ends paths; null: only Russian roulette ends them
     const SmoothNormals* smooth_normals = nullptr;  // of the surfaces that the camera sees; null: flat patches
     const IndirectField* indirect_field = nullptr;  // replaces reflected paths at the first vertex
-    const UnoccludedLight* unoccluded = nullptr;    // at the first vertex, shadow rays only estimate its visible share
-    std::uint32_t hybrid_shadow_rays = 1;
-    bool directions_find_light = true;      // of hybrid shading: some light is not exact
-    std::uint32_t paths_per_direction = 4;  // of hybrid shading: one path in these finds emitters by its direction
-    bool is_indirect_only = false;          // without light that is reflected once
-    bool finds_points = false;              // paths end at the first vertex, see PathWavefront::points()
+    std::uint32_t hybrid_shadow_rays = 4;
+    bool is_indirect_only = false;  // without light that is reflected once
+    bool finds_points = false;      // paths end at the first vertex, see PathWavefront::points()
 
-    /// The same scene with other starts.
-    PathScene with(const PathStart& other_start, std::size_t other_batch_size) const {
-        return {scene, ray_caster, other_start,      geometry, lights, luminaires,
-                skies, options,    other_batch_size, panes,    splits, known};
+    /// Whether some direct light is not exact, but also found by directions of paths.
+    bool directions_find_light() const {
+        return !unoccluded.has_patches() || skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
     }
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
@@ -160,7 +157,8 @@ class PathWavefront {
     /// Replaces `ray` and `path` by their reflection; returns whether the path continues.
     bool interact(const Hit& hit, Ray& ray, Path& path);
     /// Connects `ray.origin` to the lights and samples a direction. Returns as interact().
-    bool leave(Ray& ray, Path& path);
+    /// @param middle  Of the pixel's or texel's part of the surface.
+    bool leave(Ray& ray, Path& path, const V3f& middle);
     /// Returns the place in seen_ of the first vertex, which may be new; none where light is gathered.
     std::uint32_t seen_place(const V3f& x, const Path& path);
     void add_light_of_seen_places();

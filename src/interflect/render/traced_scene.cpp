@@ -1,0 +1,129 @@
+#include "interflect/render/traced_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "interflect/base/parallel.h"
+#include "interflect/render/smooth_surfaces.h"
+
+namespace interflect::detail {
+
+namespace {
+
+constexpr std::size_t paths_per_tile = 2048;
+/// Larger batches stratify little better; more batches improve the error estimate.
+constexpr int largest_batch = 64;
+
+std::vector<PatchGeometry> geometry_of(const Scene& scene) {
+    std::vector<PatchGeometry> geometry;
+    geometry.reserve(scene.patches.size());
+    for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
+    return geometry;
+}
+
+bool has_mirrors(const Scene& scene) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [](const Material& m) { return largest_channel(m.specular_reflectance) > 0; });
+}
+
+}  // namespace
+
+TracedScene::TracedScene(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance* known)
+    : scene_(scene),
+      ray_caster_(ray_caster),
+      geometry_(geometry_of(scene)),
+      lights_(patch_lights(scene, geometry_, emitted_powers(scene, geometry_)), scene.patches.size()),
+      luminaires_(scene),
+      skies_(scene),
+      panes_(scene, ray_caster),
+      unoccluded_(scene, geometry_),
+      has_mirrors_(has_mirrors(scene)) {
+    if (!known) return;
+    known_.emplace(scene, geometry_, known->forest, known->irradiance);
+    if (known->is_interpolated && !scene.normals.empty()) smooth_normals_.emplace(scene, find_smooth_surfaces(scene));
+}
+
+PathScene TracedScene::paths(const PathStart& start, const PathOptions& options, std::size_t batch_size) const {
+    PathScene paths{scene_,
+                    ray_caster_,
+                    &start,
+                    geometry_,
+                    lights_,
+                    luminaires_,
+                    skies_,
+                    options,
+                    batch_size,
+                    panes_,
+                    !panes_.empty() || has_mirrors_,
+                    unoccluded_};
+    if (known_) paths.known = &*known_;
+    if (smooth_normals_) paths.smooth_normals = &*smooth_normals_;
+    return paths;
+}
+
+std::size_t TracedScene::batch_size(int samples, int batches) {
+    return std::bit_floor(static_cast<unsigned>(std::clamp(samples / batches, 1, largest_batch)));
+}
+
+std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop) {
+    std::vector<SurfacePoint> points;
+    for (const Gauge& g : scene.start->gauges) points.push_back({g.position, g.normal, g.patch, g.spacing()});
+    if (!scene.start->camera) return points;
+    PathScene finding = scene;
+    finding.batch_size = 1;
+    finding.finds_points = true;
+    const std::size_t pixels =
+        static_cast<std::size_t>(scene.options.width) * static_cast<std::size_t>(scene.options.height);
+    std::vector<std::vector<SurfacePoint>> found((pixels + paths_per_tile - 1) / paths_per_tile);
+    parallel_for_ranges(pixels, paths_per_tile, [&](std::size_t begin, std::size_t end) {
+        if (stop && *stop) return;
+        std::vector<BatchOfPaths> batches;
+        for (std::size_t i = begin; i < end; ++i) batches.push_back({.pixel = static_cast<std::uint32_t>(i)});
+        PathWavefront wavefront(finding);
+        wavefront.trace(batches);
+        found[begin / paths_per_tile] = wavefront.points();
+    });
+    for (const std::vector<SurfacePoint>& some : found) points.insert(points.end(), some.begin(), some.end());
+    return points;
+}
+
+std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance& known,
+                                   std::span<const Gauge> gauges, const PathOptions& options, const Monitor& monitor) {
+    ray_caster.require_made_for(scene);
+    const TracedScene traced(scene, ray_caster, &known);
+    PathStart start;
+    start.gauges = gauges;
+    PathScene paths = traced.paths(start, options, TracedScene::batch_size(options.samples, 1));
+    const IndirectField field(paths, first_points(paths, monitor.stop), monitor.stop);
+    paths.indirect_field = &field;
+    std::vector<Rgb> irradiance(gauges.size());
+    const std::size_t per_tile = std::max<std::size_t>(1, paths_per_tile / paths.batch_size);
+    constexpr std::size_t tiles_per_report = 256;
+    std::int64_t rays = field.rays();
+    for (std::size_t first = 0; first < gauges.size(); first += per_tile * tiles_per_report) {
+        const std::size_t count = std::min(per_tile * tiles_per_report, gauges.size() - first);
+        std::vector<std::int64_t> rays_of_tile((count + per_tile - 1) / per_tile);
+        parallel_for_ranges(count, per_tile, [&](std::size_t begin, std::size_t end) {
+            if (monitor.stop && *monitor.stop) return;
+            std::vector<BatchOfPaths> batches;
+            for (std::size_t i = begin; i < end; ++i)
+                batches.push_back({.pixel = static_cast<std::uint32_t>(first + i)});
+            PathWavefront wavefront(paths);
+            wavefront.trace(batches);
+            for (std::size_t i = begin; i < end; ++i)
+                irradiance[first + i] = Rgb((batches[i - begin].direct + batches[i - begin].indirect) /
+                                            static_cast<double>(paths.batch_size));
+            rays_of_tile[begin / per_tile] = wavefront.counts().rays;
+        });
+        if (monitor.stop && *monitor.stop)
+            throw Stopped(fmt::format("stopped when {} of {} texels of the lightmap had light", first, gauges.size()));
+        for (const std::int64_t of_tile : rays_of_tile) rays += of_tile;
+        if (monitor.on_progress)
+            monitor.on_progress({rays, static_cast<double>(first + count) / static_cast<double>(gauges.size())});
+    }
+    return irradiance;
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interflect/elements/forest.h"
+#include "interflect/render/known_light.h"
+#include "interflect/render/light_tree.h"
+#include "interflect/render/luminaire_choice.h"
+#include "interflect/render/path_wavefront.h"
+#include "interflect/render/smooth_normals.h"
+#include "interflect/render/unoccluded_light.h"
+
+namespace interflect::detail {
+
+/// Irradiance per element, at which paths end.
+struct KnownIrradiance {
+    const ElementForest& forest;
+    std::span<const Rgb> irradiance;
+    bool is_interpolated = false;  ///< Hybrid shading: an IndirectField replaces gathered directions.
+};
+
+/// Data structures for tracing paths in a scene. Immutable, thread-safe.
+class TracedScene {
+  public:
+    /// @param known  Of the scene; may be null. Arguments must outlive this object.
+    TracedScene(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance* known);
+    TracedScene(const TracedScene&) = delete;
+    TracedScene& operator=(const TracedScene&) = delete;
+
+    /// @param start, options  Must outlive the result.
+    PathScene paths(const PathStart& start, const PathOptions& options, std::size_t batch_size) const;
+
+    /// Paths per batch, a power of two, for at least this number of batches.
+    static std::size_t batch_size(int samples, int batches);
+
+  private:
+    const Scene& scene_;
+    const RayCaster& ray_caster_;
+    std::vector<PatchGeometry> geometry_;
+    LightTree lights_;
+    LuminaireChoice luminaires_;
+    Skies skies_;
+    Panes panes_;
+    UnoccludedLight unoccluded_;
+    bool has_mirrors_;
+    std::optional<KnownLight> known_;
+    std::optional<SmoothNormals> smooth_normals_;  // for hybrid shading of scenes with normals
+};
+
+/// Points that paths start at: those that the camera sees, about one a pixel, or the gauges.
+/// @param stop  If set, some points are missing; may be null.
+std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop);
+
+/// Irradiance of gauges by hybrid shading, without statistics: 1 batch of options.samples paths for each.
+/// @param known  Irradiance of a solution.
+/// @return       [as H], per gauge; the same bits for any number of threads. @throws Stopped
+std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance& known,
+                                   std::span<const Gauge> gauges, const PathOptions& options, const Monitor& monitor);
+
+}  // namespace interflect::detail

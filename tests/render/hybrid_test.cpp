@@ -1,0 +1,215 @@
+// Hybrid shading: direct light of each pixel, indirect light interpolated between records.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "interflect/elements/forest.h"
+#include "interflect/generators/two_rooms.h"
+#include "interflect/prepare.h"
+#include "interflect/ray_caster.h"
+#include "interflect/render.h"
+#include "interflect/render/unoccluded_light.h"
+#include "interflect/solve.h"
+#include "tests/support/form_factors.h"
+#include "tests/support/scenes.h"
+#include "tests/support/skies.h"
+#include "tests/support/textured_scenes.h"
+
+namespace interflect {
+
+using namespace detail;
+namespace {
+
+using namespace testing_support;
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+double mean_of(const Image& image) {
+    double sum = 0;
+    for (const Rgb& pixel : image.pixels) sum += channel_sum(RgbD(pixel)) / 3;
+    return sum / static_cast<double>(image.pixels.size());
+}
+
+/// The form factor of a small surface to a rectangle with a corner above it, C-1 of Howell's catalogue.
+double to_corner_above(double a, double b, double height) {
+    const double x = a / height, y = b / height, sx = std::sqrt(1 + x * x), sy = std::sqrt(1 + y * y);
+    return (x / sx * std::atan(y / sx) + y / sy * std::atan(x / sy)) / (2 * std::numbers::pi);
+}
+
+TEST(PolygonIrradiance, OfARectangleAbove) {
+    const std::array<V3f, 4> above{V3f(0, 0, 2), V3f(3, 0, 2), V3f(3, 1, 2), V3f(0, 1, 2)};
+    const double expected = std::numbers::pi * to_corner_above(3, 1, 2);
+    EXPECT_NEAR(polygon_irradiance(above, V3f(0), V3f(0, 0, 1)), expected, 1e-5);
+    EXPECT_EQ(polygon_irradiance(above, V3f(0), V3f(0, 0, -1)), 0);
+}
+
+/// A wall that is high, deep and wide: half of its part above the surface fills half of the hemisphere.
+TEST(PolygonIrradiance, OfAWallThatContinuesBelowTheSurface) {
+    constexpr float far = 1e4f;
+    const std::array<V3f, 4> wall{V3f(1, -far, -far), V3f(1, far, -far), V3f(1, far, far), V3f(1, -far, far)};
+    EXPECT_NEAR(polygon_irradiance(wall, V3f(0), V3f(0, 0, 1)), pi / 2, 1e-3);
+}
+
+/// Cuts off one corner: five remain. The same as the sum of its two triangles.
+TEST(PolygonIrradiance, OfARectangleWithOneCornerBelow) {
+    const V3f a(1, 0, -0.2f), b(1, 2, 1), c(1, 1.5f, 3), d(1, -1, 1), n(0, 0, 1);
+    const float sum =
+        polygon_irradiance(std::array{a, b, c}, V3f(0), n) + polygon_irradiance(std::array{a, c, d}, V3f(0), n);
+    EXPECT_NEAR(polygon_irradiance(std::array{a, b, c, d}, V3f(0), n), sum, 1e-5);
+}
+
+/// A room of 4 x 3 x 2.5 m without light, and a block in a corner.
+Scene room() {
+    Scene scene = closed_box({4, 3, 2.5f}, 2, {Material{"", {0.7f, 0.6f, 0.5f}}});
+    add_box(scene, {0.1f, 0.1f, 0}, {0.9f, 0.7f, 0.8f}, add_material(scene, {0.5f, 0.35f, 0.2f}, Rgb(0)));
+    return scene;
+}
+const View into_corner{"corner", {3.6, 2.7, 1.6}, {0.4, 0.3, 0.5}, {0, 0, 1}, 60};
+
+void add_lamp(Scene& scene, float side) {
+    add_rectangle(scene, {1, 1, 2.45f}, {0, side, 0}, {side, 0, 0}, add_material(scene, Rgb(0), Rgb(3000, 2800, 2000)));
+}
+
+/// Removes the roof.
+Scene court(decltype(Luminaire::kind) sky) {
+    Scene scene = room();
+    std::erase_if(scene.patches, [&](const Patch& p) {
+        return scene.vertices[p.vertices[0]].z == 2.5f && scene.vertices[p.vertices[2]].z == 2.5f;
+    });
+    scene.luminaires.push_back({"sky", 0, std::move(sky)});
+    return scene;
+}
+
+struct LitScene {
+    std::string name;
+    Scene scene;
+    View view = into_corner;
+};
+
+std::vector<LitScene> lit_scenes() {
+    std::vector<LitScene> all;
+    Scene lamps = room();
+    add_lamp(lamps, 0.6f);
+    add_rectangle(lamps, {0.2f, 0.2f, 1}, {0.3f, 0, 0}, {0, 0.2f, 0},
+                  add_material(lamps, Rgb(0.5f), Rgb(9000)));  // near a wall
+    all.push_back({"AreaLights", lamps});
+    Scene points = room();
+    points.luminaires.push_back({"spot", 0, SpotLight{{3, 2, 2.3f}, {-1, -0.4f, -2}, {300, 300, 200}, 15, 30}});
+    points.luminaires.push_back({"point", 0, PointLight{{2, 0.5f, 2}, {50, 60, 70}}});
+    all.push_back({"PointAndSpot", points});
+    DirectionalLight sun{{-1, -0.5f, -2}, Rgb(1000)};
+    sun.diameter = 2;
+    all.push_back({"SunWithDisc", court(sun)});
+    all.push_back({"UniformSky", court(UniformSky{Rgb(100)})});
+    all.push_back({"ClearSky", court(known_skies().front().luminaire.kind)});
+    all.push_back(
+        {"TexturedEmitter", half_dark_floor(Halves::emit), {"along", {3.8, 1, 1.8}, {0.5, 1, 0.5}, {0, 0, 1}, 60}});
+    Scene glass = room();
+    add_lamp(glass, 0.6f);
+    const std::uint32_t pane = add_material(glass, {0.1f, 0.1f, 0.1f}, Rgb(0));
+    glass.materials[pane].transmittance = {0.8f, 0.5f, 0.3f};
+    add_rectangle(glass, {2, 0.05f, 0.05f}, {0, 2.9f, 0}, {0, 0, 2.4f}, pane, 1, 1, true);
+    all.push_back({"BehindAPane", glass});
+    Scene many = room();  // more sources than UnoccludedLight sums
+    const std::uint32_t bright = add_material(many, Rgb(0), Rgb(1500));
+    add_rectangle(many, {0.5f, 0.5f, 2.45f}, {0, 1.5f, 0}, {1.5f, 0, 0}, bright, 10, 10);
+    all.push_back({"ManySources", many});
+    return all;
+}
+
+class HybridScene : public testing::TestWithParam<LitScene> {};
+
+/// The means of all light and of direct light are those of path tracing within 1%. The solution's own error is 0.3%.
+TEST_P(HybridScene, HasTheMeanOfPathTracing) {
+    const Scene& scene = GetParam().scene;
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 3'000'000}});
+    PathOptions options{.width = 64, .height = 48, .samples = 512};
+    const PathTracing reference = trace_paths(scene, ray_caster, GetParam().view, options);
+    options.samples = 64;
+    options.seed = 2;
+    const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, GetParam().view, options);
+    EXPECT_NEAR(mean_of(hybrid.image) / mean_of(reference.image), 1, 0.01);
+    EXPECT_NEAR(mean_of(hybrid.layers.reflected.direct) / mean_of(reference.layers.reflected.direct), 1, 0.01);
+    EXPECT_NEAR(mean_of(hybrid.layers.reflected.indirect) / mean_of(reference.layers.reflected.indirect), 1, 0.01);
+    EXPECT_EQ(hybrid.non_finite_pixels, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, HybridScene, testing::ValuesIn(lit_scenes()),
+                         [](const auto& test) { return test.param.name; });
+
+/// In a furnace with exitance M and reflectance rho, irradiance is H = M / (1 - rho) and indirect irradiance rho H at
+/// every point. Seen to fail when records count emitted light, or omit the reflectance.
+TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
+    const Scene scene = closed_box({4, 3, 2.5f}, 3, {Material{"", Rgb(0.6f), Rgb(40)}});
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1'000'000}});
+    const PathOptions options{.width = 40, .height = 30, .samples = 16, .quantity = PathQuantity::irradiance};
+    const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, into_corner, options);
+    for (std::size_t i = 0; i < hybrid.image.pixels.size(); ++i) {
+        EXPECT_NEAR(hybrid.layers.reflected.direct.pixels[i].x, 40, 0.1);
+        EXPECT_NEAR(hybrid.layers.reflected.indirect.pixels[i].x, 60, 3);
+    }
+    EXPECT_NEAR(mean_of(hybrid.layers.reflected.indirect), 60, 0.3);
+}
+
+/// Nothing hides the sources: direct light is exact in every pixel.
+TEST(Hybrid, HasNoNoiseInDirectLightWithoutShadows) {
+    Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0.5f)}});
+    add_lamp(scene, 0.6f);
+    scene.luminaires.push_back({"point", 0, PointLight{{2, 0.5f, 2}, {50, 60, 70}}});
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 100'000}});
+    const View down{"down", {2, 1.5, 2}, {2, 1.5, 0}, {0, 1, 0}, 50};
+    PathOptions options{.width = 32, .height = 24, .samples = 4, .quantity = PathQuantity::irradiance};
+    const PathTracing few = render_hybrid(scene, solution, ray_caster, down, options);
+    options.samples = 256;
+    const PathTracing many = trace_paths(scene, ray_caster, down, options);
+    for (std::size_t i = 0; i < few.image.pixels.size(); ++i) {
+        EXPECT_LT(few.layers.reflected.direct_variance[i], std::pow(0.02f * few.image.pixels[i].x, 2.0f));
+        EXPECT_NEAR(few.layers.reflected.direct.pixels[i].x / many.layers.reflected.direct.pixels[i].x, 1, 0.1);
+    }
+    EXPECT_NEAR(mean_of(few.layers.reflected.direct) / mean_of(many.layers.reflected.direct), 1, 0.003);
+}
+
+class SealedRoomsPicture : public testing::TestWithParam<TwoRoomsOptions> {};
+
+/// The wall is 1 cm thick. Seen to fail when records reach across contacts.
+TEST_P(SealedRoomsPicture, LeaksNoLight) {
+    const Scene scene = cut_at_contacts(make_two_rooms(GetParam()));
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 300'000}});
+    // From above, without the ceiling's upper side: both rooms and the foot of the wall.
+    for (const View& view : scene.views) {
+        const PathOptions options{.width = 96, .height = 54, .samples = 8};
+        const double mean = mean_of(render_hybrid(scene, solution, ray_caster, view, options).image);
+        if (view.name == "lit")
+            EXPECT_GT(mean, 1);
+        else
+            EXPECT_LT(mean, 1e-3);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Walls, SealedRoomsPicture,
+                         testing::Values(TwoRoomsOptions{}, TwoRoomsOptions{.turn = 30},
+                                         TwoRoomsOptions{.turn = 30, .furniture = true}));
+
+TEST(Hybrid, SameSeedSameBits) {
+    Scene scene = room();
+    add_lamp(scene, 0.6f);
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 100'000}});
+    const PathOptions options{.width = 80, .height = 60, .samples = 16};
+    const PathTracing a = render_hybrid(scene, solution, ray_caster, into_corner, options);
+    const PathTracing b = render_hybrid(scene, solution, ray_caster, into_corner, options);
+    EXPECT_EQ(a.image.pixels, b.image.pixels);
+}
+
+}  // namespace
+}  // namespace interflect
