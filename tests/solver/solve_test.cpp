@@ -7,12 +7,15 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <thread>
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
+#include "interflect/solver.h"
 #include "interflect/solver/light/materials.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
@@ -198,6 +201,21 @@ TEST(Solve, IsAsBeforeTheIterationThatWasCutShort) {
             EXPECT_EQ(cut_short.forest->size(), expected.forest->size()) << name << ' ' << one_bounce;
             EXPECT_EQ(cut_short.irradiance, expected.irradiance) << name << ' ' << one_bounce;
         }
+}
+
+// A run that is stopped while it prepares starts over. Seen to fail if random walks forget their seed.
+TEST(Solver, RepeatsAPreparationThatWasCutShort) {
+    const auto scene = std::make_shared<const Scene>(furnished_room());
+    for (const char* name : {"ihsrr", "random-walk", "pr"}) {
+        SolveOptions options = with_rays(50'000);
+        options.method = find_method(name);
+        options.views = {{into_the_corner}};
+        const std::atomic<bool> stop{true};
+        Solver solver(scene, options);
+        solver.advance({}, {{}, &stop});
+        solver.advance({});
+        EXPECT_EQ(solver.solution().irradiance, solve(*scene, options).irradiance) << name;
+    }
 }
 
 TEST(Solve, IsNotInterruptedByACallThatComesAfterTheLastRay) {

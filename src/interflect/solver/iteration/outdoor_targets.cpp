@@ -264,7 +264,7 @@ std::int64_t aim_outdoor_light(SolverState& state) {
         find_targets(lines, weights_of(state.emission, lines), state.emission.scene_box());
     if (!targets.empty() || !state.targets.empty()) {
         set_targets(state, std::move(targets));
-        state.part_importance = importance_of_parts(state.emission, lines);
+        if (!lines.empty()) state.part_importance = importance_of_parts(state.emission, lines);
     }
     return rays * sources;
 }

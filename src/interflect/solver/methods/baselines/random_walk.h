@@ -8,7 +8,7 @@
 namespace interflect::detail {
 
 struct PathSeries {
-    std::uint64_t key;
+    std::uint64_t key = 0;
     std::uint64_t batches = 0;
     std::int64_t pilot_rays = 0;
     double rays_per_path = 0;  ///< In the last batch or the pilot; 0: unknown.
