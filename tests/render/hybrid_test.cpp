@@ -76,12 +76,15 @@ void add_lamp(Scene& scene, float side) {
     add_rectangle(scene, {1, 1, 2.45f}, {0, side, 0}, {side, 0, 0}, add_material(scene, Rgb(0), Rgb(3000, 2800, 2000)));
 }
 
-/// Removes the roof.
+/// The room without a roof. Its faces are two-sided: light from outside would pass one-sided walls.
 Scene court(decltype(Luminaire::kind) sky) {
-    Scene scene = room();
-    std::erase_if(scene.patches, [&](const Patch& p) {
-        return scene.vertices[p.vertices[0]].z == 2.5f && scene.vertices[p.vertices[2]].z == 2.5f;
-    });
+    Scene scene;
+    const std::uint32_t wall = add_material(scene, {0.7f, 0.6f, 0.5f}, Rgb(0));
+    const V3f x(4, 0, 0), y(0, 3, 0), z(0, 0, 2.5f);
+    add_rectangle(scene, {0, 0, 0}, x, y, wall, 2, 2, true);
+    for (const V3f& corner : {V3f(0), y}) add_rectangle(scene, corner, x, z, wall, 2, 2, true);
+    for (const V3f& corner : {V3f(0), x}) add_rectangle(scene, corner, y, z, wall, 2, 2, true);
+    add_box(scene, {0.1f, 0.1f, 0}, {0.9f, 0.7f, 0.8f}, wall);
     scene.luminaires.push_back({"sky", 0, std::move(sky)});
     return scene;
 }

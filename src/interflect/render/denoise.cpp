@@ -200,40 +200,54 @@ class Band {
     std::array<std::array<Sums, 2>, 2> sums_;  // [half][kind of light]
 };
 
-/// The noisy light that is filtered, over pi.
-Image noisy_light(const PictureLayers& layers, const std::array<Fields, 2>& halves) {
-    Image light(layers.albedo.width, layers.albedo.height);
-    for (std::size_t i = 0; i < light.pixels.size(); ++i)
+/// Light before filtering: mean of both halves.
+struct NoisyLight {
+    Image irradiance;             // over pi
+    std::vector<float> variance;  // of its mean channel
+};
+
+NoisyLight noisy_light(const PictureLayers& layers, const std::array<Fields, 2>& halves) {
+    NoisyLight light{Image(layers.albedo.width, layers.albedo.height),
+                     std::vector<float>(layers.albedo.pixels.size(), 0.0f)};
+    for (std::size_t i = 0; i < light.variance.size(); ++i)
         for (const Fields& half : halves)
             for (std::size_t kind = 0; kind < noisy_kinds(layers); ++kind) {
                 const auto& value = half[kind].value;
-                light.pixels[i] += Rgb(value[0][i], value[1][i], value[2][i]) / 2;
+                light.irradiance.pixels[i] += Rgb(value[0][i], value[1][i], value[2][i]) / 2;
+                light.variance[i] += half[kind].variance[i] / 4;
             }
     return light;
 }
 
-/// Adds the mean of what the filter has changed nearby: it then keeps the means of all but the smallest surroundings,
-/// also where the light varies by less than its noise.
-void restore_means(const PictureLayers& layers, const Image& noisy, const Image& filtered, int y, Image& picture) {
-    const int width = noisy.width, height = noisy.height;
-    for (int x = 0; x < width; ++x) {
-        const std::size_t i = pixel_at(x, y, width);
-        picture.pixels[i] = layers.emitted.pixels[i];
-        if (layers.is_indirect_interpolated) picture.pixels[i] += layers.reflected.indirect.pixels[i];
-        if (!(layers.depth[i] > 0)) continue;
-        Rgb change(0);
-        float weight = 0;
-        for (int v = std::max(0, y - mean_radius); v <= std::min(height - 1, y + mean_radius); ++v)
-            for (int u = std::max(0, x - mean_radius); u <= std::min(width - 1, x + mean_radius); ++u) {
-                const std::size_t k = pixel_at(u, v, width);
-                const float w = shape_weight(layers, i, k, distance_of(u - x, v - y));
-                change += w * (noisy.pixels[k] - filtered.pixels[k]);
-                weight += w;
-            }
-        const Rgb irradiance = filtered.pixels[i] + change / weight;
-        for (int c = 0; c < 3; ++c)
-            picture.pixels[i][c] += std::max(0.0f, irradiance[c]) * floored(layers.albedo.pixels[i])[c];
-    }
+/// Mean of what the filter has removed around pixel (x, y), reduced by the noise of this mean (James-Stein).
+Rgb removed_around(const PictureLayers& layers, const NoisyLight& noisy, const Image& filtered, int x, int y) {
+    const int width = filtered.width, height = filtered.height;
+    const std::size_t i = pixel_at(x, y, width);
+    Rgb removed(0);
+    float weight = 0, variance = 0;
+    for (int v = std::max(0, y - mean_radius); v <= std::min(height - 1, y + mean_radius); ++v)
+        for (int u = std::max(0, x - mean_radius); u <= std::min(width - 1, x + mean_radius); ++u) {
+            const std::size_t k = pixel_at(u, v, width);
+            const float w = shape_weight(layers, i, k, distance_of(u - x, v - y));
+            removed += w * (noisy.irradiance.pixels[k] - filtered.pixels[k]);
+            variance += w * w * noisy.variance[k];
+            weight += w;
+        }
+    const float mean = channel_sum(removed) / 3, square = mean * mean;
+    return square > variance ? removed * ((1 - variance / square) / weight) : Rgb(0);
+}
+
+/// Returns the filtered light of a pixel with the means of its surroundings: the filter blurs what varies by less than
+/// its noise.
+Rgb result_at(const PictureLayers& layers, const NoisyLight& noisy, const Image& filtered, int x, int y) {
+    const std::size_t i = pixel_at(x, y, filtered.width);
+    Rgb light = layers.emitted.pixels[i];
+    if (layers.is_indirect_interpolated) light += layers.reflected.indirect.pixels[i];
+    if (!(layers.depth[i] > 0)) return light;
+    const Rgb irradiance = filtered.pixels[i] + removed_around(layers, noisy, filtered, x, y);
+    const Rgb albedo = floored(layers.albedo.pixels[i]);
+    for (int c = 0; c < 3; ++c) light[c] += std::max(0.0f, irradiance[c]) * albedo[c];
+    return light;
 }
 
 }  // namespace
@@ -247,9 +261,10 @@ Image denoise(const PictureLayers& layers) {
     parallel_for_ranges(static_cast<std::size_t>(height), rows, [&](std::size_t begin, std::size_t end) {
         Band(layers, halves, static_cast<int>(begin), static_cast<int>(end)).filter(filtered);
     });
-    const Image noisy = noisy_light(layers, halves);
-    parallel_for_ranges(static_cast<std::size_t>(height), 1, [&](std::size_t y, std::size_t) {
-        restore_means(layers, noisy, filtered, static_cast<int>(y), picture);
+    const NoisyLight noisy = noisy_light(layers, halves);
+    parallel_for_ranges(static_cast<std::size_t>(height), 1, [&](std::size_t row, std::size_t) {
+        const auto y = static_cast<int>(row);
+        for (int x = 0; x < width; ++x) picture.at(x, y) = result_at(layers, noisy, filtered, x, y);
     });
     return picture;
 }

@@ -23,7 +23,7 @@ constexpr float least_cosine = 0.97f;  // of the angle between normals at the en
 constexpr float height_factor = 10;
 /// Sum of weights, at most 1 each, at a covered point.
 constexpr float covering_weight = 1;
-constexpr std::size_t first_points = 256;  // of the first round; each round doubles them
+constexpr std::size_t points_of_first_round = 256;  // each round doubles them
 constexpr std::size_t points_at_once = 1024;
 /// Of the linear fit, relative to the records' spread: bounds the slope if they are few or nearly in line.
 constexpr float relative_ridge = 0.1f;
@@ -95,7 +95,7 @@ IndirectField::IndirectField(const PathScene& scene, std::span<const SurfacePoin
     std::vector<std::uint8_t> is_covered;
     std::vector<SurfacePoint> uncovered;
     for (std::size_t begin = 0, end = 0; begin < points.size() && !(stop && *stop); begin = end) {
-        end = std::min(points.size(), std::max(first_points, 2 * begin));
+        end = std::min(points.size(), std::max(points_of_first_round, 2 * begin));
         is_covered.assign(end - begin, 0);
         parallel_for_ranges(end - begin, points_at_once, [&](std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
@@ -124,6 +124,9 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
     gathering.start = &start;
     gathering.batch_size = paths_per_record;
     gathering.is_indirect_only = true;
+    // A batch is in the unit of the picture.
+    const double per_path =
+        (scene.options.quantity == PathQuantity::irradiance ? 1 : std::numbers::pi) / paths_per_record;
     std::vector<std::int64_t> rays((batches.size() + records_per_tile - 1) / records_per_tile);
     parallel_for_ranges(batches.size(), records_per_tile, [&](std::size_t begin, std::size_t end) {
         PathWavefront wavefront(gathering);
@@ -136,7 +139,7 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
         const auto nearness = static_cast<float>(batches[i].first.nearness / paths_per_record);
         const float reach = std::clamp(nearness > 0 ? reach_share / nearness : most_spacings * p.spacing,
                                        least_spacings * p.spacing, most_spacings * p.spacing);
-        const Rgb irradiance = Rgb(batches[i].indirect * (std::numbers::pi / paths_per_record));
+        const Rgb irradiance = Rgb(batches[i].indirect * per_path);
         tree_.push_back({{}, static_cast<std::uint32_t>(records_.size())});
         records_.push_back({p.position, p.normal, p.patch, reach, distance_to_contact(p.position, reach), irradiance});
     }
