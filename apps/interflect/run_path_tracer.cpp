@@ -127,7 +127,8 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
         const LongWork work("filtering noise");
         traced.image = denoise(traced.layers);
     }
-    log_outcome(solution ? "final gathering" : "path tracing", traced, seconds);
+    const bool gathers = solution && tracer == static_cast<Tracer>(gather);
+    log_outcome(gathers ? "final gathering" : solution ? "hybrid shading" : "path tracing", traced, seconds);
     if (error_image) {
         const char* unit = options.quantity == PathQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";
         write_image(*error_image, traced.standard_error,

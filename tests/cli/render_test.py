@@ -412,7 +412,7 @@ class Pictures(RenderTest):
             self.assertEqual(difference["non_finite_pixels"], 0)
 
 
-class FinalGathering(RenderTest):
+class SampledLight(RenderTest):
     def setUp(self):
         super().setUp()
         self.solve()
@@ -420,10 +420,11 @@ class FinalGathering(RenderTest):
     def gathered(self, name, *options):
         return self.interflect("render", "room.h5", "-o", name, *SMALL, *VIEW, *options).stderr
 
-    def test_is_the_default_and_agrees_with_path_tracing(self):
-        self.assertRegex(self.gathered("out.exr"), r"info: final gathering: 2\.3 k paths, .* a pixel")
+    def test_agrees_with_path_tracing_as_hybrid_shading_does_which_is_the_default(self):
         self.interflect("render", "room.mgf", "-o", "path.exr", "--size", "32x18", *VIEW, "--shading", "path", "--samples", "256")
-        self.assertAlmostEqual(self.json("compare", "out.exr", "path.exr")["ratio_of_means"], 1, delta=0.03)
+        for name, options in (("hybrid shading", ()), ("final gathering", ("--shading", "gather"))):
+            self.assertRegex(self.gathered("out.exr", *options), rf"info: {name}: 2\.3 k paths, .* a pixel")
+            self.assertAlmostEqual(self.json("compare", "out.exr", "path.exr")["ratio_of_means"], 1, delta=0.03)
 
     def test_pictures_for_people_are_filtered_unless_refused(self):
         for kind, filtered in (("png", True), ("exr", False)):

@@ -32,9 +32,11 @@ inline Solution uniform(const Scene& scene, float irradiance) {
     return solution_of(scene, 0, [&](const V3f&) { return Rgb(irradiance); });
 }
 
+/// With smooth shading.
 inline ExportOptions at(float texels_per_metre) {
     ExportOptions options;
     options.lightmap.emplace();
+    options.lightmap->shading = LightmapShading::smooth;
     options.lightmap->texels_per_metre = texels_per_metre;
     return options;
 }

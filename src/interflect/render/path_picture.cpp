@@ -219,12 +219,12 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     if (is_hybrid) {
         indirect_field.emplace(path_scene, first_points(path_scene, monitor.stop), monitor.stop);
         path_scene.indirect_field = &*indirect_field;
-        if (const char* e = getenv("HYB_SHADOW")) path_scene.hybrid_shadow_rays = atoi(e);
-        fprintf(stderr, "records %zu rays %ld\n", indirect_field->records(), (long)indirect_field->rays());
     }
     PathPicture picture(path_scene, options, monitor);
     picture.trace();
-    return picture.result();
+    PathTracing result = picture.result();
+    if (indirect_field) result.rays += indirect_field->rays();
+    return result;
 }
 
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance) {

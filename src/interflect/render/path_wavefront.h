@@ -49,9 +49,8 @@ struct PathScene {
     const KnownLight* known = nullptr;              // ends paths; null: only Russian roulette ends them
     const SmoothNormals* smooth_normals = nullptr;  // of the surfaces that the camera sees; null: flat patches
     const IndirectField* indirect_field = nullptr;  // replaces reflected paths at the first vertex
-    std::uint32_t hybrid_shadow_rays = 4;
-    bool is_indirect_only = false;  // without light that is reflected once
-    bool finds_points = false;      // paths end at the first vertex, see PathWavefront::points()
+    bool is_indirect_only = false;                  // without light that is reflected once
+    bool finds_points = false;                      // paths end at the first vertex, see PathWavefront::points()
 
     /// Whether some direct light is not exact, but also found by directions of paths.
     bool directions_find_light() const {
