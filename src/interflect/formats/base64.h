@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Decodes RFC 4648, with or without padding; nullopt if invalid.
+/// Decodes RFC 4648; padding is optional.
 std::optional<std::string> decode_base64(std::string_view text);
 
 }  // namespace interflect::detail

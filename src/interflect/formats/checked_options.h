@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// @return  `options`. @throws InputError if one is out of range.
+/// @throws InputError for options out of range.
 const ReadOptions& checked(const ReadOptions& options);
 
 }  // namespace interflect::detail

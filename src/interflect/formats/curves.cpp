@@ -12,11 +12,11 @@ namespace {
 using Imath::V3d;
 
 struct ProfilePoint {
-    double radius = 0;  ///< distance from the axis
-    double height = 0;  ///< along the axis
+    double radius = 0;
+    double height = 0;
 };
 
-/// Points with smaller radii, relative to the largest, are poles.
+/// Maximum relative radius of a pole.
 constexpr double pole = 1e-12;
 
 V3d perpendicular(const V3d& axis) {
@@ -31,7 +31,7 @@ void reverse_faces(PolygonMesh& mesh) {
     for (auto& face : mesh.faces) std::reverse(face.begin(), face.end());
 }
 
-/// Faces point outwards if the profile ascends. @param axis  Unit length.
+/// Faces point outwards if the profile ascends.
 PolygonMesh revolve(std::span<const ProfilePoint> profile, bool closed, const V3d& centre, const V3d& axis,
                     int divisions) {
     const auto around = static_cast<std::uint32_t>(4 * divisions);
@@ -40,7 +40,7 @@ PolygonMesh revolve(std::span<const ProfilePoint> profile, bool closed, const V3
     for (const ProfilePoint& p : profile) largest = std::max(largest, p.radius);
 
     PolygonMesh mesh;
-    std::vector<std::uint32_t> first_point;  // of each ring
+    std::vector<std::uint32_t> first_point;
     std::vector<bool> is_pole;
     for (const ProfilePoint& p : profile) {
         first_point.push_back(static_cast<std::uint32_t>(mesh.points.size()));

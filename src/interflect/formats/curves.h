@@ -13,12 +13,11 @@ struct PolygonMesh {
     std::vector<std::vector<std::uint32_t>> faces;  ///< Counter-clockwise seen from the front.
 };
 
-// Surfaces of MGF, tessellated as in its parser. Points lie on the surface, with `divisions` >= 1 steps per quarter
-// circle (4: circumference 0.6% short). Faces are triangles at poles and planar quadrilaterals elsewhere, with the
-// front outside, or inside for negative radii.
-// @throws std::invalid_argument for arguments that MGF forbids.
+// MGF surfaces with `divisions` >= 1 steps per quarter circle; with 4, the circumference is 0.6% too short. Faces are
+// planar, with the front outside, or inside for negative radii.
+// @throws std::invalid_argument for other arguments.
 
-/// Poles are on the z axis. @param radius  Not 0.
+/// Poles lie along z. @param radius  Not 0.
 PolygonMesh make_sphere(const Imath::V3d& centre, double radius, int divisions);
 
 /// The ends are open. @param radius1, radius2  Not both 0, not of opposite sign.
@@ -27,12 +26,12 @@ PolygonMesh make_cone(const Imath::V3d& end1, double radius1, const Imath::V3d& 
 /// @param normal  Unit length. @param inner, outer  0 <= inner < outer.
 PolygonMesh make_ring(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
 
-/// @param normal  Unit length. @param inner, outer  Distances from axis to tube: same sign, |inner| < |outer|; inner
-/// may be 0.
+/// @param normal  Unit length.
+/// @param inner, outer  Distances from axis to tube: inner * outer >= 0, |inner| < |outer|.
 PolygonMesh make_torus(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
 
-/// Closed. Extends by `length` behind the outline; if negative, to the front with faces inwards.
-/// @param outline  At least three points that enclose an area.
+/// Closed. Extends by `length` behind the outline; a negative length extends to the front, with inward faces.
+/// @param outline  Encloses an area.
 PolygonMesh make_prism(std::span<const Imath::V3d> outline, double length);
 
 }  // namespace interflect::detail

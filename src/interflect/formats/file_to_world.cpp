@@ -11,7 +11,7 @@ struct Turn {
     V3d x, y, z;
 };
 
-/// Returns the rotation that maps `up` to z.
+/// Rotates `up` to z.
 Turn turn(Axis up) {
     const V3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     switch (up) {

@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Scales to metres and rotates options.up_axis to z; for row vectors.
+/// Scales to metres; rotates options.up_axis to z.
 Imath::M44d file_to_world(const ReadOptions& options);
 
 }  // namespace interflect::detail

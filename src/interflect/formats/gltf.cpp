@@ -21,7 +21,6 @@ namespace {
 
 using Imath::M44d;
 
-/// Extensions that are read, or reported where they are used.
 constexpr std::string_view known_extensions[] = {
     "EXT_lights_ies",
     "EXT_mesh_gpu_instancing",
@@ -107,13 +106,12 @@ class SceneReader {
         std::uint64_t faces = 0;
         for (const std::uint32_t primitive : primitives) faces += asset_.model.meshes[primitive].indices.size() / 3;
         const std::vector<M44d> places = places_of(node, std::max<std::uint64_t>(faces, primitives.size()));
-        // Joints, not the node, place a skinned mesh in the world.
+        // A skinned mesh ignores the node's transform.
         for (const M44d& place : places)
             for (const std::uint32_t primitive : primitives)
                 asset_.model.instances.push_back({primitive, pose.skin != none ? M44d() : place, object});
     }
 
-    /// Each face becomes at least one patch.
     void require_room(const GltfValue& node, std::uint64_t copies, std::uint64_t faces) {
         faces_ += static_cast<double>(copies) * static_cast<double>(faces);
         if (faces_ > static_cast<double>(asset_.options().max_patches))
@@ -123,7 +121,7 @@ class SceneReader {
                             node.place(), copies, faces, asset_.options().max_patches));
     }
 
-    /// Returns the places of a node's mesh, several with EXT_mesh_gpu_instancing. @param faces  Per instance.
+    /// @param faces  Per instance.
     std::vector<M44d> places_of(const GltfNode& node, std::uint64_t faces) {
         const GltfValue extension = node.value->extension("EXT_mesh_gpu_instancing");
         if (!extension.exists()) {
@@ -158,7 +156,7 @@ class SceneReader {
         return places;
     }
 
-    /// Returns the matrix from mesh to world per joint.
+    /// Returns mesh-to-world matrices.
     const std::vector<M44d>& joints_of(std::uint32_t index) {
         const auto [entry, is_new] = joints_.try_emplace(index);
         std::vector<M44d>& result = entry->second;
@@ -187,7 +185,7 @@ class SceneReader {
     GltfNodes nodes_;
     GltfLights lights_;
     std::vector<GltfValue> skins_;
-    double faces_ = 0;                                   // over all instances so far
+    double faces_ = 0;
     std::map<std::uint32_t, std::vector<M44d>> joints_;  // by skin
     std::map<std::string, std::uint32_t> object_index_{{"", 0}};
 };

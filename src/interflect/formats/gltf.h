@@ -8,11 +8,10 @@
 
 namespace interflect::detail {
 
-/// Reads a glTF 2.0 file, .gltf or .glb (docs/gltf.md).
-/// @throws InputError for invalid input and limits of `options`; also as scene_of().
+/// Reads glTF 2.0, .gltf or .glb (docs/gltf.md). @throws InputError; see also scene_of().
 Scene read_gltf(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  Name for messages; its folder contains referenced files.
+/// @param path  For messages and references.
 Scene read_gltf_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace interflect::detail

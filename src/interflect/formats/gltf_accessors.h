@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Bounds-checked elements of an accessor.
+/// Bounds-checked accessor elements.
 struct GltfElements {
     const char* first = nullptr;
     std::size_t stride = 0;  ///< [bytes]; 0: all elements are equal.
@@ -18,20 +18,20 @@ struct GltfElements {
     int components = 1;
     bool normalized = false;  ///< Integers are fractions of their largest value.
 
-    /// Returns a normalised component; arguments must be in range.
+    /// Applies `normalized`; arguments must be in range.
     double number(std::uint64_t element, int component) const;
-    /// Returns an element of unsigned type, not normalised.
+    /// Requires an unsigned type.
     std::uint32_t whole_number(std::uint64_t element) const;
 };
 
-/// Supports sparse accessors and those without data (zeros).
+/// Supports sparse accessors and missing data (zeros).
 class GltfAccessors {
   public:
     GltfAccessors(GltfAsset& asset, GltfBuffers& buffers);
 
     std::size_t count() const { return accessors_.size(); }
-    /// @param types  Accepted types, such as "VEC3 VEC4". @param user  Object for messages.
-    /// @return  Valid while this object lives. @throws GltfFault if elements lie outside their buffer.
+    /// @param types  Accepted, such as "VEC3 VEC4". @param user  For messages.
+    /// @return  Valid while this object lives. @throws GltfFault
     GltfElements elements(std::uint32_t index, const std::string& types, const GltfValue& user);
     /// Requires unsigned scalars.
     GltfElements indices(std::uint32_t index, const GltfValue& user);

@@ -18,12 +18,11 @@ namespace fs = std::filesystem;
 namespace {
 
 std::uint32_t word(std::string_view bytes, std::size_t offset) {
-    std::uint32_t value = 0;  // little-endian, like all supported machines
+    std::uint32_t value = 0;  // assumes a little-endian machine
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
 }
 
-/// Removes the first chunk if it has this type.
 std::optional<std::string_view> take_chunk(std::string_view& bytes, std::uint32_t type) {
     constexpr std::size_t header = 8;
     if (bytes.empty()) return std::nullopt;

@@ -11,16 +11,15 @@
 
 namespace interflect::detail {
 
-/// Chunks of a GLB file; a .gltf file is all JSON.
+/// GLB chunks; a .gltf file is all JSON.
 struct GltfParts {
     std::string_view json, binary;
     bool is_binary = false;  ///< Has a binary chunk.
 };
 
-/// @throws GltfFault for a truncated GLB or another version.
+/// @throws GltfFault for an invalid GLB.
 GltfParts gltf_parts(std::string_view bytes);
 
-/// State shared by the glTF readers.
 class GltfAsset {
   public:
     GltfAsset(const std::filesystem::path& path, const ReadOptions& options, const nlohmann::json& json);
@@ -31,9 +30,9 @@ class GltfAsset {
 
     void warn(const char* kind, const std::string& message, const std::string& place);
 
-    /// Reads a data URI, or a file in the scene's folder. @param user  Object for messages.
+    /// Reads a data URI, or a file in the scene's folder.
     std::string read_uri(const std::string& uri, const GltfValue& user);
-    /// @throws GltfFault if the total exceeds options.max_model_bytes.
+    /// @throws GltfFault beyond max_model_bytes in total.
     void take_bytes(std::uint64_t count, const GltfValue& user);
 
     Model model;

@@ -36,7 +36,6 @@ std::string_view GltfBuffers::buffer(std::uint32_t index) {
     return bytes.substr(0, length);
 }
 
-/// @param owner  A view or its compression extension.
 std::string_view GltfBuffers::range(const GltfValue& owner) {
     const std::string_view bytes = buffer(owner.required_index("buffer", buffers_.size()));
     const std::uint64_t offset = owner.integer("byteOffset", 0), length = owner.integer("byteLength");

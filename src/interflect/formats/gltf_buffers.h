@@ -10,7 +10,6 @@
 
 namespace interflect::detail {
 
-/// Reads and decompresses on first use.
 class GltfBuffers {
   public:
     struct View {

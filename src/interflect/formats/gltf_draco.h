@@ -20,9 +20,8 @@ struct DracoMesh {
     std::vector<DracoAttribute> attributes;
 };
 
-/// @param attributes  Unique identifiers in the file, also the order of the result.
-/// @param most_triangles, most_vertices  Checked before memory is allocated.
-/// @throws GltfFault for damaged data.
+/// @param attributes  Unique identifiers, in the order of the result.
+/// @param most_triangles, most_vertices  Limits, checked before allocation. @throws GltfFault
 DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>& attributes,
                        std::uint64_t most_triangles, std::uint64_t most_vertices, const GltfValue& extension);
 

@@ -14,10 +14,9 @@ namespace {
 
 constexpr int repeat = 10497;  // glTF constant
 
-/// Limit of decoded pixels. Each texture decodes its images again.
+/// Each texture decodes its images again.
 constexpr std::uint64_t most_decoded = 32 * most_texels;
 
-/// Returns the linear values of 16-bit sRGB.
 const std::vector<float>& decoded_srgb() {
     static const std::vector<float> table = [] {
         std::vector<float> values(1 << 16);
@@ -33,7 +32,7 @@ Rgb colour_at(const StoredImage& image, std::size_t pixel) {
     return {decoded[values[0]], decoded[values[1]], decoded[values[2]]};
 }
 
-/// Returns the pixel of `image` at the centre of pixel (x, y) of `of`.
+/// Maps the centre of pixel (x, y) of `of` to `image`.
 std::size_t pixel_at(const StoredImage& image, std::uint32_t x, std::uint32_t y, const Texture& of) {
     const auto scaled = [](std::uint64_t i, std::uint64_t from, int to) {
         return static_cast<std::size_t>((2 * i + 1) * static_cast<std::uint64_t>(to) / (2 * from));

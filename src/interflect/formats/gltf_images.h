@@ -15,18 +15,18 @@ namespace interflect::detail {
 
 /// Opaque fraction of a surface.
 struct GltfCoverage {
-    std::uint32_t image = none;  ///< Image with alpha, if any.
-    float factor = 1;            ///< Multiplies alpha.
-    float cutoff = 0;            ///< Threshold, if positive.
+    std::uint32_t image = none;
+    float factor = 1;
+    float cutoff = 0;
 
     float at(float alpha) const { return cutoff > 0 ? (factor * alpha >= cutoff ? 1.0f : 0.0f) : factor * alpha; }
 };
 
-/// Inputs of a texture. Equal inputs share one.
+/// Inputs of a texture.
 struct GltfTexels {
-    std::uint32_t colour = none;    ///< sRGB image; white if absent.
-    std::uint32_t metallic = none;  ///< Image with metallic in its blue channel.
-    float metallic_factor = 0;      ///< Scales colours by 1 - metallic.
+    std::uint32_t colour = none;    ///< sRGB; white if absent.
+    std::uint32_t metallic = none;  ///< Image with metallic in blue.
+    float metallic_factor = 0;      ///< Scales by 1 - metallic_factor * metallic.
     Rgb factor{1, 1, 1};            ///< Scales colours before clamping to 1.
     GltfCoverage coverage{};        ///< Blends the colour with `open`.
     Rgb open{0, 0, 0};
@@ -38,26 +38,24 @@ struct GltfTexels {
 };
 
 struct GltfImageMeans {
-    Rgb colour{1, 1, 1};  ///< After sRGB decoding.
-    Rgb stored{1, 1, 1};  ///< Before sRGB decoding.
+    Rgb colour{1, 1, 1};  ///< Linear.
+    Rgb stored{1, 1, 1};  ///< Not decoded.
     float alpha = 1;
     float least_alpha = 1;
 };
 
-/// PNG and JPEG images from buffer views, data URIs and files.
+/// PNG and JPEG images.
 class GltfImages {
   public:
     GltfImages(GltfAsset& asset, GltfBuffers& buffers);
 
-    /// Warns about a missing image.
     std::uint32_t image_of_texture(std::uint32_t texture);
     std::size_t texture_count() const { return textures_.size(); }
     bool repeats(std::uint32_t texture) const;
 
-    /// @return  Index into Model::textures, and whether a texel was clamped to 1.
+    /// @return  Index into Model::textures; whether a texel was clamped.
     std::pair<std::uint32_t, bool> texture(const GltfTexels& texels);
-    /// Downsamples textures beyond the texel limit. Call it when all textures of a material exist, because they must
-    /// keep equal sizes.
+    /// Downsamples large textures. Call after all textures of a material, to keep their sizes equal.
     void limit_textures();
     const GltfImageMeans& means(std::uint32_t image);
 
@@ -70,7 +68,7 @@ class GltfImages {
     GltfAsset& asset_;
     GltfBuffers& buffers_;
     std::vector<GltfValue> images_, textures_, samplers_;
-    std::vector<std::uint32_t> first_alike_;  // first image with the same source
+    std::vector<std::uint32_t> first_alike_;
     std::map<decltype(GltfTexels().key()), std::pair<std::uint32_t, bool>> index_;
     std::map<std::uint32_t, GltfImageMeans> means_;
     std::uint64_t texels_ = 0, decoded_ = 0;

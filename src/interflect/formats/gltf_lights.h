@@ -16,7 +16,6 @@ class GltfLights {
   public:
     GltfLights(GltfAsset& asset, GltfBuffers& buffers);
 
-    /// @param object  Index into Model::objects.
     void add(const GltfNode& node, std::uint32_t object);
     bool has_light(const GltfNode& node) const;
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto most_reflected = static_cast<float>(largest_reflectance);
 
-/// For primitives without a material; glTF's own default does not reflect diffusely.
+/// glTF's default material does not reflect diffusely.
 constexpr float default_reflectance = 0.5f;
 
 GltfMapping mapping_of(const GltfValue& use) {
@@ -45,12 +45,11 @@ struct GltfMaterials::Parts {
     GltfTextureUse emissive_texture;
     float transmission = 0;  ///< mean over its texture
     GltfTextureUse coverage_texture;
-    float coverage = 1;  ///< opaque fraction of the area, or factor of the texture's alpha
-    float cutoff = 0;    ///< as in GltfCoverage
+    float coverage = 1;  ///< opaque fraction, or factor of the texture's alpha
+    float cutoff = 0;
     std::optional<GltfMapping> mapping;
 
     GltfCoverage coverage_from_texture() const { return {coverage_texture.image, coverage, cutoff}; }
-    /// Returns 1 if the textures contain the coverage.
     float even_coverage() const { return coverage_texture.image == none ? coverage : 1; }
 };
 
@@ -139,7 +138,6 @@ void GltfMaterials::apply_alpha(const GltfValue& owner, Parts& parts, GltfSurfac
     }
 }
 
-/// Textures with other mappings become their means.
 void GltfMaterials::choose_mapping(const GltfValue& owner, Parts& parts, bool textured) {
     GltfTextureUse* const uses[] = {&parts.coverage_texture, &parts.emissive_texture, &parts.base_texture,
                                     &parts.metallic_texture};

@@ -10,11 +10,11 @@
 namespace interflect::detail {
 
 struct GltfMapping {
-    std::uint64_t set = 0;                                ///< TEXCOORD_set
-    double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;  ///< (u, v) becomes (xx u + xy v + x, yx u + yy v + y)
+    std::uint64_t set = 0;  ///< TEXCOORD_set
+    double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;
 
     bool operator==(const GltfMapping&) const = default;
-    /// Returns coordinates as in Scene, v upwards.
+    /// Returns Scene coordinates, v upwards.
     V2f apply(double u, double v) const {
         return {static_cast<float>(xx * u + xy * v + x), static_cast<float>(1 - (yx * u + yy * v + y))};
     }
@@ -23,9 +23,9 @@ struct GltfMapping {
 struct GltfSurface {
     std::uint32_t material = 0;          ///< Index into Model::materials.
     std::optional<GltfMapping> mapping;  ///< Shared by all textures.
-    bool repeats = true;                 ///< Whether textures repeat beyond [0, 1].
+    bool repeats = true;                 ///< Beyond [0, 1].
     bool double_sided = false;
-    bool is_invisible = false;  ///< Hidden by its alpha mask.
+    bool is_invisible = false;
 };
 
 struct GltfTextureUse {
@@ -34,17 +34,16 @@ struct GltfTextureUse {
     bool repeats = true;
 };
 
-/// Converts materials on first use.
 class GltfMaterials {
   public:
     GltfMaterials(GltfAsset& asset, GltfImages& images);
 
     std::size_t count() const { return materials_.size(); }
-    /// @param index  Index in the file, or `none` for the default material.
-    /// @param textured  false: textures become their means.
+    /// @param index  In the file; `none`: default material.
+    /// @param textured  If false, uses means of textures.
     const GltfSurface& surface(std::uint32_t index, bool textured);
 
-    /// Warns about omitted reflection. Call after the last surface().
+    /// Call after the last surface().
     void warn_of_lost();
 
   private:
@@ -65,7 +64,7 @@ class GltfMaterials {
     std::vector<GltfValue> materials_;
     std::map<std::pair<std::uint32_t, bool>, GltfSurface> surfaces_;
     double lost_ = 0, all_ = 0;
-    std::vector<std::string> losing_;  // places of materials with omitted reflection
+    std::vector<std::string> losing_;  // places with omitted reflection
 };
 
 }  // namespace interflect::detail

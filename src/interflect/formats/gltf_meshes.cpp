@@ -34,7 +34,7 @@ GltfElements elements_of(const DracoAttribute& attribute, std::uint64_t count) {
             .components = attribute.components};
 }
 
-/// Converts strips and fans to single triangles, without the degenerate ones that join strips.
+/// Splits strips and fans; omits degenerate triangles.
 std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corners, std::uint64_t mode) {
     if (mode == triangles) return corners;
     std::vector<std::uint32_t> result;
@@ -48,8 +48,8 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corner
     return result;
 }
 
-/// Drops unused vertices if there are surely some (fewer corners than vertices): renumbers `indices` and returns the
-/// kept vertices in ascending order.
+/// Drops unused vertices, if corners are fewer than vertices, and renumbers `indices`. @return  Kept vertices,
+/// ascending.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uint64_t vertex_count) {
     std::vector<std::uint32_t> used;
     if (indices.size() >= vertex_count) {
@@ -74,7 +74,7 @@ struct GltfMeshes::Vertices {
     };
     GltfElements positions;
     std::optional<GltfElements> coordinates, lightmap_coordinates, normals;
-    DracoMesh draco;  // owns the data of the elements above
+    DracoMesh draco;  // owns decoded elements
     std::vector<Target> targets;
     GltfElements joint_indices, joint_weights;
     std::span<const Imath::M44d> joints;
@@ -119,7 +119,7 @@ GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, 
     return accessors_.elements(attributes.required_index(key, accessors_.count()), types, attributes);
 }
 
-/// Returns an empty text for untextured materials.
+/// Returns "" for untextured materials.
 std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
     const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), /*textured=*/true);
     return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";
@@ -130,7 +130,6 @@ void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extensi
     constexpr std::size_t most_ids = 1 << 16;
     std::vector<std::uint32_t> wanted = {ids.required_index("POSITION", most_ids)};
     const std::string texture_set = texture_set_of(primitive);
-    // Returns the set's place in `wanted`, if it exists.
     const auto want = [&](const std::string& set) -> std::optional<std::size_t> {
         if (set.empty() || !ids.has(set.c_str())) return std::nullopt;
         wanted.push_back(ids.index(set.c_str(), most_ids));
@@ -138,12 +137,12 @@ void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extensi
     };
     const auto coordinates = want(texture_set), lightmap = want(lightmap_set), normals = want(normal_set);
     const auto view = buffers_.view(extension.required_index("bufferView", buffers_.view_count()));
-    // Only the counts of these accessors are used; their data are compressed.
+    // Only the counts are used.
     const GltfElements indices =
         accessors_.elements(primitive.required_index("indices", accessors_.count()), "SCALAR", primitive);
     const GltfElements positions = attribute(primitive, "POSITION", "VEC3");
     add_triangles(indices.count / 3, primitive);
-    // Limits the decoder's memory: max_patches limits the corners, but only this check limits the vertices.
+    // Limits the decoder's memory; max_patches limits only the corners.
     if (positions.count > indices.count) extension.fail("it has more vertices than corners");
     vertices.draco = decode_draco(view.bytes, wanted, indices.count / 3, positions.count, extension);
     const auto decoded = [&](std::size_t i) {
@@ -201,7 +200,6 @@ GltfMeshes::Vertices GltfMeshes::vertices_of(const GltfValue& primitive) {
 
 std::vector<std::uint32_t> GltfMeshes::corners_of(const GltfValue& primitive, Vertices& vertices) {
     const std::uint64_t mode = primitive.integer("mode", triangles);
-    // Also adds the triangles.
     const auto check_corner_count = [&](std::uint64_t corners) {
         if (mode == triangles && corners % 3 != 0)
             primitive.fail(fmt::format("{} corners are no whole number of triangles", corners));
@@ -210,7 +208,7 @@ std::vector<std::uint32_t> GltfMeshes::corners_of(const GltfValue& primitive, Ve
     std::vector<std::uint32_t> corners;
     const std::uint64_t vertex_count = vertices.positions.count;
     if (primitive.extension("KHR_draco_mesh_compression").exists()) {
-        return std::move(vertices.draco.indices);  // triangles in any mode, counted by open_draco()
+        return std::move(vertices.draco.indices);  // counted by open_draco()
     } else if (primitive.has("indices")) {
         const GltfElements indices = accessors_.indices(primitive.index("indices", accessors_.count()), primitive);
         check_corner_count(indices.count);
@@ -242,7 +240,6 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     if (primitive.object("attributes").has("COLOR_0"))
         asset_.warn("vertex-colours", "colours of vertices (COLOR_0) are ignored", primitive.place());
     Vertices vertices = vertices_of(primitive);
-    // After the vertices: without coordinates, textures become their means.
     const GltfSurface& surface =
         materials_.surface(primitive.index("material", materials_.count()), vertices.coordinates.has_value());
     if (surface.is_invisible) return;
@@ -260,7 +257,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
         for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
     if (surface.mapping) {
-        const GltfElements& c = *vertices.coordinates;  // present: only then does a surface have a mapping
+        const GltfElements& c = *vertices.coordinates;  // a mapping implies coordinates
         mesh.texture_coordinates.reserve(used.size());
         for (const std::uint32_t v : used) {
             const V2f coordinate = surface.mapping->apply(c.number(v, 0), c.number(v, 1));
@@ -277,14 +274,13 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     asset_.model.meshes.push_back(std::move(mesh));
 }
 
-/// Clears the coordinates if any is outside [0, 1].
 void GltfMeshes::read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used,
                                            Mesh& mesh) {
     const auto is_in_range = [](double x) { return x >= -lightmap_tolerance && x <= 1 + lightmap_tolerance; };
     const auto clamped = [](double x) { return static_cast<float>(std::clamp(x, 0.0, 1.0)); };
     mesh.lightmap_coordinates.reserve(used.size());
     for (const std::uint32_t v : used) {
-        const double u = set.number(v, 0), v_down = set.number(v, 1);  // glTF's v points down
+        const double u = set.number(v, 0), v_down = set.number(v, 1);
         if (!is_in_range(u) || !is_in_range(v_down)) {
             asset_.warn("lightmap-coordinates",
                         fmt::format("{} is no lightmap, since it leaves [0, 1]: it is ignored", lightmap_set),

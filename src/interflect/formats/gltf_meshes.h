@@ -14,7 +14,7 @@
 namespace interflect::detail {
 
 struct GltfPose {
-    std::vector<double> weights;          ///< Morph target weights; empty: the mesh's own.
+    std::vector<double> weights;          ///< Morph weights; empty: the mesh's own.
     std::uint32_t skin = none;            ///< Cache key.
     std::span<const Imath::M44d> joints;  ///< Mesh to world.
 };
@@ -39,7 +39,7 @@ class GltfMeshes {
     void read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used, Mesh& mesh);
     GltfElements attribute(const GltfValue& primitive, const char* key, const char* types);
     std::vector<std::uint32_t> corners_of(const GltfValue& primitive, Vertices& vertices);
-    /// Adds to triangles_. @throws TooManyPatches above the limit.
+    /// @throws TooManyPatches
     void add_triangles(std::uint64_t count, const GltfValue& primitive);
 
     GltfAsset& asset_;

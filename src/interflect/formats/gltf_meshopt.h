@@ -7,8 +7,7 @@
 
 namespace interflect::detail {
 
-/// EXT_meshopt_compression. Counts memory with take_bytes() first.
-/// @throws GltfFault for damaged data or an invalid extension.
+/// Calls take_bytes() first. @throws GltfFault for invalid data.
 std::string decode_meshopt(const GltfValue& extension, std::string_view compressed, GltfAsset& asset);
 
 }  // namespace interflect::detail

@@ -59,7 +59,7 @@ GltfNodes::GltfNodes(GltfAsset& asset)
     if (reached < values_.size()) throw GltfFault("nodes: some are their own ancestors");
 }
 
-/// Depth first, without recursion, since files may nest arbitrarily deep.
+/// Depth first; not recursive, since nesting is unlimited.
 template <class Visit>
 void GltfNodes::traverse(const std::vector<std::uint32_t>& roots, const Visit& visit) const {
     std::vector<std::uint32_t> waiting(roots.rbegin(), roots.rend());
@@ -96,7 +96,7 @@ std::vector<std::uint32_t> GltfNodes::roots_of_scene() const {
 std::vector<GltfNode> GltfNodes::in_scene() const {
     const std::size_t longest = 4 * asset_.options().max_name_length;
     std::vector<GltfNode> result;
-    std::vector<std::uint32_t> place(values_.size(), none);  // index in `result`
+    std::vector<std::uint32_t> place(values_.size(), none);
     traverse(roots_of_scene(), [&](std::uint32_t i) {
         place[i] = static_cast<std::uint32_t>(result.size());
         const std::string outer = parents_[i] == none ? "" : result[place[parents_[i]]].dotted;

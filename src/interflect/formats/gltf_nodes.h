@@ -11,18 +11,18 @@ namespace interflect::detail {
 struct GltfNode {
     const GltfValue* value = nullptr;
     Imath::M44d to_world;
-    std::string name;    ///< May be empty.
-    std::string dotted;  ///< Name with its ancestors: "room.desk.leg".
+    std::string name;
+    std::string dotted;  ///< With ancestors: "room.desk.leg".
 };
 
 class GltfNodes {
   public:
-    /// @throws GltfFault for cycles, a node with two parents, or invalid transforms.
+    /// @throws GltfFault for cycles, two parents or invalid transforms.
     explicit GltfNodes(GltfAsset& asset);
 
     std::size_t count() const { return values_.size(); }
     const Imath::M44d& to_world(std::uint32_t node) const { return to_world_[node]; }
-    /// Returns the nodes of the file's default or first scene, or all without scenes. Parents come first.
+    /// Returns the nodes of the default or first scene, or all nodes of a file without scenes; parents first.
     std::vector<GltfNode> in_scene() const;
 
   private:

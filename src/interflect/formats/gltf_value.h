@@ -12,13 +12,13 @@
 
 namespace interflect::detail {
 
-/// Names the place in the file, not the file.
+/// Error with its place, without the file name.
 struct GltfFault : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// JSON value with its place, such as "meshes[3] 'chair'.primitives[0]". Absent values act as empty objects. Getters
-/// throw GltfFault for values of wrong type or range.
+/// JSON value with its place, such as "meshes[3] 'chair'". Absent values act as empty objects and arrays. Getters throw
+/// GltfFault for wrong types and ranges.
 class GltfValue {
   public:
     /// Prevents overflow of sums.
@@ -34,13 +34,12 @@ class GltfValue {
 
     GltfValue object(const char* key) const;
     GltfValue extension(const char* name) const { return object("extensions").object(name); }
-    /// Returns an empty array if absent.
     std::vector<GltfValue> objects(const char* key) const;
 
     std::optional<std::uint64_t> find_integer(const char* key) const;
     std::uint64_t integer(const char* key) const;
     std::uint64_t integer(const char* key, std::uint64_t otherwise) const;
-    /// Returns an index below `count`, or `none` if absent.
+    /// @return  Below `count`, or `none` if absent.
     std::uint32_t index(const char* key, std::size_t count) const;
     std::uint32_t required_index(const char* key, std::size_t count) const;
     std::vector<std::uint32_t> indices(const char* key, std::size_t count) const;
@@ -49,7 +48,6 @@ class GltfValue {
     double number(const char* key) const;
     /// Non-negative.
     double amount(const char* key, double otherwise) const;
-    /// Returns an array of any length; empty if absent.
     std::vector<double> numbers(const char* key) const;
     template <std::size_t size>
     std::array<double, size> numbers(const char* key, const std::array<double, size>& otherwise) const {

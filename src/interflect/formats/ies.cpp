@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr int first_year = 1986, last_year_of_factor = 1995, year_of_reserved = 2002;
 
-/// Luminous opening [m]: width across the C0 plane, length along it; negative if round.
+/// Luminous opening [m], length along C0; negative if round.
 struct Dimensions {
     double width, length, height;
 };
@@ -40,7 +40,6 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// Returns the text after "TILT="; nullopt for other lines.
 std::optional<std::string_view> tilt_of(std::string_view line) {
     constexpr std::string_view keyword = "TILT";
     if (!upper_case(line.substr(0, keyword.size())).starts_with(keyword)) return std::nullopt;
@@ -48,8 +47,8 @@ std::optional<std::string_view> tilt_of(std::string_view line) {
     return line.starts_with('=') ? std::optional(trimmed(line.substr(1))) : std::nullopt;
 }
 
-/// Two negative sizes are the diameters of a cylinder, three of an ellipsoid. Until LM-63-1995, one negative size is
-/// the diameter of a circle if the other is 0.
+/// Two negative sizes mean a cylinder, three an ellipsoid. Until LM-63-1995, one negative size means a circle if
+/// another is 0.
 LuminousOpening opening_of(const Dimensions& d, bool& is_known) {
     using Shape = LuminousOpening::Shape;
     const bool round[3] = {d.length < 0, d.width < 0, d.height < 0};
@@ -240,7 +239,7 @@ void IesReader::read_opening(double metres) {
     if (!is_known) warn("ies-opening", "the luminous opening has no shape of IES LM-63; it is read as a box");
 }
 
-/// Snaps to near multiples of 90 degrees, so symmetry tests are exact.
+/// Snaps to multiples of 90 degrees for exact symmetry tests.
 std::vector<float> IesReader::angles(std::size_t count, const char* kind, float low, float high) {
     constexpr float tolerance = 0.01f;  // [degrees]
     std::vector<float> result;
@@ -267,7 +266,7 @@ PhotometricPlanes IesReader::planes(std::vector<float> horizontal, std::size_t h
     return {std::move(horizontal), std::move(intensities)};
 }
 
-/// A single plane means rotational symmetry. Ranges of 90 and 180 degrees are mirrored.
+/// Mirrors ranges of 90 and 180 degrees.
 void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> horizontal) {
     constexpr auto half = static_cast<float>(half_turn), turn = static_cast<float>(full_turn);
     const bool is_complete = (vertical.front() == 0 || vertical.front() == right_angle) &&
@@ -292,7 +291,7 @@ void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> hori
     web_.intensities = all.intensities();
 }
 
-/// Ranges from 0 are mirrored; horizontal angles run clockwise. The pole is the nadir for type A and y for type B.
+/// Mirrors ranges from 0. Type A has its pole at the nadir and clockwise angles, type B its pole at y.
 void IesReader::read_type_a_or_b(std::vector<float> vertical, std::vector<float> horizontal, Type type) {
     if (horizontal.size() < 2) text_.refuse("a single horizontal angle; expected at least two of types A and B");
     if (std::abs(vertical.back()) < right_angle || std::abs(horizontal.back()) < right_angle)

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Parses again to find the position of an error, which some exceptions lack.
+/// Finds error positions, which some exceptions lack.
 class FaultFinder : public nlohmann::json_sax<json> {
   public:
     std::size_t offset() const { return offset_; }
@@ -39,7 +39,7 @@ class FaultFinder : public nlohmann::json_sax<json> {
     std::size_t offset_ = 0;
 };
 
-/// Removes the prefix "[json.exception.parse_error.101] ".
+/// Removes "[json.exception.parse_error.101] ".
 std::string_view message_of(const json::exception& error) {
     const std::string_view text = error.what();
     const auto end = text.find("] ");

@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// @throws InputError with file and line for invalid JSON, or numbers beyond double precision.
+/// @throws InputError for invalid JSON and numbers beyond double precision.
 nlohmann::json parse_json(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace interflect::detail

@@ -43,7 +43,7 @@ class LdtReader {
     const ReadOptions& options_;
     Warnings& warnings_;
     PhotometricText text_;
-    double factor_ = 1;  // scales intensities
+    double factor_ = 1;
     PhotometricWeb web_;
 };
 
@@ -154,7 +154,7 @@ std::vector<float> LdtReader::angles(std::size_t count, const char* kind, double
     return result;
 }
 
-/// Returns the stored planes. Isym 3 stores C270 to C90.
+/// Isym 3 stores C270 to C90.
 std::vector<float> LdtReader::planes_of(const std::vector<float>& all, Symmetry symmetry) const {
     const std::size_t count = all.size();
     const auto part = [&](std::size_t first, std::size_t end) {

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Splits text into lines of words. A backslash before a line end joins two lines.
+/// Splits lines into words; a final backslash joins two lines.
 class LineReader {
   public:
     struct Position {
@@ -17,11 +17,11 @@ class LineReader {
 
     explicit LineReader(std::string_view text) : text_(text) {}
 
-    /// Advances to the next line with words. @return  false at the end.
+    /// Skips blank lines. @return  false at the end.
     bool next();
 
-    std::span<const std::string_view> words() const { return words_; }  ///< Views, valid until next().
-    /// Returns the text from the second to the last word, such as a name with spaces.
+    std::span<const std::string_view> words() const { return words_; }  ///< Valid until next().
+    /// Returns the text from the second word on.
     std::string_view rest() const {
         if (words_.size() < 2) return {};
         return {words_[1].data(), words_.back().data() + words_.back().size()};

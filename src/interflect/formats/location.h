@@ -15,8 +15,8 @@ namespace interflect::detail {
 struct Location {
     const std::filesystem::path* file = nullptr;
     std::int64_t line = 0;       ///< From 1; 0: no lines.
-    std::string_view part = {};  ///< Such as "mesh 'chair'"; may be empty.
-    bool is_foreign = false;     ///< Referenced by another file, so messages do not quote it.
+    std::string_view part = {};  ///< Such as "mesh 'chair'", or empty.
+    bool is_foreign = false;     ///< Messages do not quote referenced files.
 
     std::string text() const {
         if (!file) return {};
@@ -24,7 +24,6 @@ struct Location {
         return part.empty() ? file->string() : fmt::format("{}: {}", file->string(), part);
     }
     std::string shown(const std::string& message) const { return is_foreign ? without_quotes(message) : message; }
-    /// @tparam Error  With the constructor of InputError.
     template <class Error = InputError>
     Error error(const std::string& message) const {
         return Error(*file, line, part.empty() ? shown(message) : fmt::format("{}: {}", part, shown(message)));

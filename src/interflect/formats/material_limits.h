@@ -7,13 +7,12 @@
 
 namespace interflect::detail {
 
-/// Whether a surface shows mirror images. @param roughness  RMS microfacet slope, as in MGF and Radiance.
+/// @param roughness  RMS microfacet slope.
 inline bool is_mirror(double specular_reflectance, double roughness) {
     constexpr double roughest = 0.02;
     return specular_reflectance > 0 && roughness <= roughest;
 }
 
-/// For surfaces without a material.
 inline Material default_material() {
     Material grey;
     grey.name = "default";
@@ -21,14 +20,14 @@ inline Material default_material() {
     return grey;
 }
 
-/// @return  Whether a channel exceeded `largest_reflectance`.
+/// @return  Whether it changed.
 inline bool limit_reflectance(Rgb& reflectance) {
     const Rgb given = reflectance;
     for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], static_cast<float>(largest_reflectance));
     return reflectance != given;
 }
 
-/// Scales transmittance and specular reflectance to conserve energy. @return  Whether it did.
+/// Scales transmittance and specular reflectance to conserve energy.
 inline bool limit_sum(Material& material) {
     const float straight = largest_channel(Rgb(material.transmittance + material.specular_reflectance));
     const float rest = 1 - largest_channel(material.reflectance);

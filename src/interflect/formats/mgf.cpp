@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 using Imath::V3d;
 
-/// Reads a scene far from the world's origin again, relative to a closer one, to preserve precision.
+/// Reads distant scenes twice, to find an origin that preserves precision.
 Scene read_about_middle(const fs::path& path, const ReadOptions& options, const std::string& text) {
     V3d origin(0);
     {

@@ -13,7 +13,7 @@ using MgfWords = std::span<const std::string_view>;
 /// Error without its place.
 using MgfFault = std::invalid_argument;
 
-/// @throws MgfFault unless the word is a finite number in single precision.
+/// @throws MgfFault unless finite in single precision.
 double number_argument(std::string_view word);
 
 /// @throws MgfFault also for negative numbers.

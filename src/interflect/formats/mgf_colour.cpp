@@ -42,7 +42,6 @@ V3d colour_matching_at(double wavelength) {
 /// Minimum of |Y| and |X + Y + Z|, relative to |X| + |Y| + |Z|.
 constexpr double least_share = 1e-6;
 
-/// Values may be negative. @throws std::invalid_argument
 Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
     const double size = std::abs(xyz.x) + std::abs(xyz.y) + std::abs(xyz.z), total = xyz.x + xyz.y + xyz.z;
     if (!(std::abs(xyz.y) > least_share * size && std::abs(total) > least_share * size))
@@ -50,7 +49,6 @@ Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
     return {xyz.x / total, xyz.y / total};
 }
 
-/// Normalised: equal energy gives equal tristimulus values.
 template <class Spectrum>
 Chromaticity integrate(const Spectrum& spectrum) {
     V3d sum(0), equal_energy(0);
@@ -64,7 +62,7 @@ Chromaticity integrate(const Spectrum& spectrum) {
 
 V3d xyz_of(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
 
-/// Transposed because Imath multiplies row vectors.
+/// Imath multiplies row vectors.
 V3d multiply(const M33d& m, const V3d& v) { return v * m.transposed(); }
 
 M33d diagonal(const V3d& d) { return {d.x, 0, 0, 0, d.y, 0, 0, 0, d.z}; }
@@ -89,7 +87,7 @@ const M33d& rec709_from_xyz() {
 /// Relative excess ignored as rounding.
 constexpr double rounding = 1e-9;
 
-/// Returns the largest saturation, 0 (neutral) to 1, that keeps a channel in [0, limit] at luminance 1.
+/// Returns the largest saturation (0: neutral) that keeps a channel in [0, limit] at luminance 1.
 double saturation_within(double channel, double limit) {
     if (channel < -rounding) return 1 / (1 - channel);
     if (channel > limit * (1 + rounding)) return (limit - 1) / (channel - 1);
@@ -120,7 +118,6 @@ Chromaticity chromaticity_of_spectrum(double first, double last, std::span<const
 Chromaticity chromaticity_of_black_body(double kelvin) {
     if (!(kelvin >= 1000)) throw std::invalid_argument("a colour temperature must be at least 1000 K");
     constexpr double second_radiation_constant = 1.438777e7;  // [nm K]
-    // Relative to 560 nm, because absolute values would overflow.
     const auto planck = [&](double nm) {
         return std::pow(nm, -5) / std::expm1(second_radiation_constant / (nm * kelvin));
     };
@@ -142,7 +139,7 @@ Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double larg
     }
     V3d rgb = multiply(rec709_from_xyz(), xyz_of(colour.x, colour.y));
     constexpr double least_channel = 1e-15;  // relative to white
-    // Adaptation preserves Y of neutral only, so the luminance is set after the gamut is entered.
+    // Adaptation changes Y, so the luminance is set later.
     const double in_gamut = smallest_saturation(rgb, std::numeric_limits<double>::infinity());
     result.out_of_gamut = in_gamut < 1;
     rgb = with_saturation(rgb, in_gamut);

@@ -16,8 +16,7 @@
 
 namespace interflect::detail {
 
-/// Named contexts of one kind and the current one. Context{} must be MGF's default. Names are views of the input text,
-/// which must outlive the table.
+/// Named contexts and the current one. Context{} must be MGF's default. The input text must outlive the table.
 template <class Context>
 class ContextTable {
   public:
@@ -27,15 +26,15 @@ class ContextTable {
     Context& current() { return *current_; }
     std::string_view current_name() const { return current_name_; }  ///< Empty if unnamed.
 
-    /// @throws std::invalid_argument for an undefined name.
+    /// @throws std::invalid_argument
     Context& find(std::string_view name) {
         const auto entry = named_.find(name);
         if (entry == named_.end()) throw std::invalid_argument(fmt::format("{} '{}' is not defined", kind_, name));
         return entry->second;
     }
 
-    /// @param words  After the keyword: none (new unnamed context), `name` (existing), `name =` (new) or `name =
-    /// template` (copy). @throws std::invalid_argument
+    /// @param words  None (new, unnamed), `name` (existing), `name =` (new) or `name = template` (copy).
+    /// @throws std::invalid_argument
     void enter(std::span<const std::string_view> words) {
         if (words.empty()) {
             unnamed_ = Context{};
@@ -60,7 +59,7 @@ class ContextTable {
         if (name.size() > max_name_length_)
             throw std::invalid_argument(
                 fmt::format("a name of {} characters; at most {} are read", name.size(), max_name_length_));
-        // '-' separates loops of a face; a lone '=' lacks a name.
+        // '-' separates loops; a lone '=' lacks a name.
         if (name[0] == '-' || name == "=") throw std::invalid_argument(fmt::format("'{}' cannot be a name", name));
     }
 
@@ -68,7 +67,7 @@ class ContextTable {
     std::size_t max_name_length_;
     std::unordered_map<std::string_view, Context> named_;
     Context unnamed_;
-    Context* current_ = &unnamed_;  // unordered_map does not move elements
+    Context* current_ = &unnamed_;  // elements do not move
     std::string_view current_name_;
 };
 
@@ -77,7 +76,6 @@ struct MgfColour {
     std::uint32_t fault = none;  ///< Index in MgfFaults.
 };
 
-/// Path is empty if absent.
 struct MgfTexture {
     std::string path;
     Location where;
@@ -93,7 +91,7 @@ struct MgfMaterial {
     MgfTexture rd_texture, ts_texture, ed_texture;
     Location defined;                  ///< Last change.
     std::uint32_t fault = none;        ///< First error, in MgfFaults.
-    std::uint32_t scene_index = none;  ///< Index into Scene::materials, once used.
+    std::uint32_t scene_index = none;  ///< In Scene::materials, once used.
 
     bool is_textured() const {
         return !(rd_texture.path.empty() && ts_texture.path.empty() && ed_texture.path.empty());

@@ -10,10 +10,10 @@
 
 namespace interflect::detail {
 
-/// Errors in colours and materials, reported only if a face uses them, since files define more than they use.
+/// Errors in colours and materials, reported only if a face uses them.
 class MgfFaults {
   public:
-    /// Stores one error per line. @return  Its index.
+    /// Stores one error per line.
     std::uint32_t add(const Location& where, const std::string& message);
 
     /// @throws InputError unless `fault` is none.

@@ -1,4 +1,4 @@
-// `ies`, and the extension `light` (docs/mgf-extensions.md).
+// `ies` and `light` (docs/mgf-extensions.md).
 #include <fmt/format.h>
 
 #include <cctype>
@@ -23,7 +23,6 @@ bool is_name(std::string_view word) { return std::isalpha(static_cast<unsigned c
 
 }  // namespace
 
-/// Returns the unit normal of a vertex in the world.
 V3f MgfReader::direction_of(std::string_view vertex) { return turned(normal_of(vertex)); }
 
 V3f MgfReader::turned(const V3d& direction) const {
@@ -34,7 +33,7 @@ V3f MgfReader::turned(const V3d& direction) const {
 
 void MgfReader::light(MgfWords words) {
     struct Kind {
-        std::size_t fewest, most;  // argument counts
+        std::size_t fewest, most;
         const char* usage;
     };
     static const std::unordered_map<std::string_view, Kind> kinds = {
@@ -92,7 +91,6 @@ void MgfReader::luminaire(MgfWords words) {
     } while (next_index(copy, sequence.array_sizes()));
 }
 
-/// Files are relative to the including file and read once.
 std::shared_ptr<const PhotometricWeb> MgfReader::photometric_web(std::string_view name) {
     const std::filesystem::path path = file_->source.path.parent_path() / name;
     std::shared_ptr<const PhotometricWeb>& web = webs_[path.string()];

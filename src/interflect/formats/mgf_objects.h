@@ -19,11 +19,11 @@ class MgfObjects {
 
     std::size_t depth() const { return open_.size(); }
 
-    /// @param is_copy  Closed by close_copy() only. @throws std::invalid_argument beyond a limit.
+    /// @param is_copy  Closed by close_copy() only. @throws std::invalid_argument
     void open(std::string_view name, bool is_copy, const Location& where);
-    /// @return  false for an array copy, or an object of an including file (depth at most `outer_depth`).
+    /// @return  false for an array copy or a depth of at most `outer_depth`.
     bool close_innermost(std::size_t outer_depth);
-    /// Closes the innermost copy and all objects in it.
+    /// Closes the innermost copy with its objects.
     void close_copy();
     /// Warns about unclosed objects.
     void close_down_to(std::size_t depth);
@@ -36,7 +36,7 @@ class MgfObjects {
         std::string dotted_name;
         Location opened;
         bool is_copy = false;
-        std::optional<std::uint32_t> scene_index;  // set on first use
+        std::optional<std::uint32_t> scene_index;
     };
 
     const ReadOptions& options_;

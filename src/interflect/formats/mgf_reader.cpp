@@ -65,12 +65,11 @@ void MgfReader::read(const std::filesystem::path& path, std::string text) {
 }
 
 Scene MgfReader::finish() {
-    // A deferred error is more specific than the lack of faces.
+    // A deferred error is more specific than missing faces.
     if (scene_.patch_count() == 0) faults_.refuse_first();
     return scene_.finish();
 }
 
-/// Reads a file once per copy of the array in `transform`.
 void MgfReader::read_file(const SourceFile& source, MgfWords transform) {
     OpenMgfFile file{source, LineReader(source.text), 0, objects_.depth(), file_};
     const LineReader::Position start = file.lines.position();
@@ -130,7 +129,6 @@ void MgfReader::apply(const Entity& entity, MgfWords arguments) {
     (this->*entity.handle)(arguments);
 }
 
-/// Stores the error with its colour or material, and warns in case no face uses it.
 void MgfReader::defer(Defines defines, const std::string& message) {
     if (unused_fault_.empty())
         unused_fault_ = "fault in a colour or material that no face uses is ignored, such as: " + here().shown(message);

@@ -25,7 +25,7 @@
 
 namespace interflect::detail {
 
-/// Open file. It cannot close transforms or objects opened outside it.
+/// Open file, which cannot close outer transforms or objects.
 struct OpenMgfFile {
     const SourceFile& source;
     LineReader lines;
@@ -33,14 +33,14 @@ struct OpenMgfFile {
     const OpenMgfFile* includer;
 };
 
-/// Open `xf` or include, with the current copy of its array.
+/// Open `xf` or include, with its array copy.
 struct OpenMgfTransform {
     TransformSequence sequence;
     Imath::M44d total;  // to the world
     Location opened;
-    std::vector<int> copy;  // empty if not an array
+    std::vector<int> copy;  // empty: no array
     LineReader::Position body;
-    double copies_together = 1;  // product of the sizes of this and all outer arrays
+    double copies_together = 1;  // including outer arrays
     std::uint64_t first_patch = 0;
     bool repeating = false;
 };
@@ -55,7 +55,7 @@ class MgfReader {
 
   private:
     using Handler = void (MgfReader::*)(MgfWords);
-    /// Owner of an entity's errors, which are deferred until a face uses it.
+    /// Owner of an entity's deferred errors.
     enum class Defines { colour, material, other };
     struct Entity {
         Handler handle;
@@ -75,7 +75,6 @@ class MgfReader {
     Location here() const { return {&file_->source.path, file_->lines.line(), {}, file_->includer != nullptr}; }
     void count_repeated(std::uint64_t words);
 
-    // Entities, in the order of the table.
     void include(MgfWords words);
     void colour(MgfWords words) { colours_.enter(words); }
     void colour_xy(MgfWords words);
@@ -141,9 +140,8 @@ class MgfReader {
     ContextTable<MgfMaterial> materials_;
     ContextTable<MgfVertex> vertices_;
     std::vector<OpenMgfTransform> transforms_;
-    std::vector<std::vector<std::uint32_t>> loops_;  // of the current face
-    std::vector<Imath::V3d> outline_;                // first loop, in the world
-    // Quote the first occurrence.
+    std::vector<std::vector<std::uint32_t>> loops_;
+    std::vector<Imath::V3d> outline_;  // latest loop, in the world
     std::string unknown_entity_, unused_fault_;
     std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;
     std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;

@@ -16,9 +16,7 @@
 
 namespace interflect::detail {
 
-/// Builds a Scene from MGF data in world coordinates: welds vertices, converts materials on first use, and counts
-/// omitted reflection and transmission. Throws std::invalid_argument for invalid requests. SceneFaces documents
-/// forwarded calls.
+/// Builds a Scene from MGF data in world coordinates. Throws std::invalid_argument for invalid requests.
 class MgfSceneBuilder {
   public:
     MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options, const Imath::V3d& origin);
@@ -30,8 +28,7 @@ class MgfSceneBuilder {
     void require_room(double patches) const { faces_.require_room(patches); }
 
     V3f position(const Imath::V3d& world) const { return faces_.position(world); }
-    /// @param world  [m].
-    /// @param normal  World direction of any length, or 0.
+    /// @param world  [m]. @param normal  Any length, or 0.
     std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate,
                          const Imath::V3d& normal = Imath::V3d(0)) {
         return weld_.vertex(position(world),
@@ -42,7 +39,7 @@ class MgfSceneBuilder {
     /// Also stores the index in `material`.
     std::uint32_t material(MgfMaterial& material, std::string_view name);
     std::uint32_t object(const std::string& name);
-    /// Names the luminaire "spot-3", by `name` and its number. @throws std::invalid_argument
+    /// Adds a number to the name: "spot-3".
     void add_light(Luminaire luminaire, const std::string& name);
     Warnings& warnings() { return scene_.warnings; }
     void place_face(std::span<const Imath::V3d> outline) { faces_.place(outline); }
@@ -55,15 +52,12 @@ class MgfSceneBuilder {
     /// If it differs from Scene::origin, read the file again.
     Imath::V3d suitable_origin() const { return faces_.suitable_origin(); }
 
-    /// Adds summary warnings. @throws InputError as SceneFaces::require_usable().
+    /// @throws InputError as SceneFaces::require_usable().
     Scene finish();
 
   private:
-    /// @param largest  largest_reflectance, or the largest float for an exitance.
     Rgb converted(const MgfColour& colour, double luminance, double largest, const Location& where);
-    /// Reads an image on first use.
     std::uint32_t texture(const MgfTexture& texture);
-    /// Checks the products of reflectance and exitance with their textures.
     void require_products(const Material& result, const MgfMaterial& material) const;
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 
@@ -71,9 +65,9 @@ class MgfSceneBuilder {
     SceneFaces faces_;
     VertexWeld weld_;
     std::unordered_map<std::string, std::uint32_t> material_index_, object_index_, texture_index_;
-    std::vector<Rgb> largest_texels_;          // per texture
-    std::uint64_t texels_ = 0;                 // in all textures
-    std::vector<MgfMaterial> used_materials_;  // per material of the scene
+    std::vector<Rgb> largest_texels_;  // per texture
+    std::uint64_t texels_ = 0;
+    std::vector<MgfMaterial> used_materials_;  // per scene material
 };
 
 }  // namespace interflect::detail

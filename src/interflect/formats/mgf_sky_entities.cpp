@@ -1,4 +1,4 @@
-// `light sky NAME` and `light environment`, extensions of MGF (docs/skies.md).
+// `light sky NAME` and `light environment` (docs/skies.md).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// @param words  Name of the sky and its arguments.
 void require_arguments(MgfWords words, std::size_t fewest, std::size_t most, const char* usage) {
     if (words.size() >= fewest && words.size() <= most) return;
     throw MgfFault(

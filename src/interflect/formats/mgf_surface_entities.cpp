@@ -36,7 +36,7 @@ void MgfReader::add_loop(MgfWords names) {
         if (materials_.current().is_textured() && !vertex.has_texture_coordinate)
             throw MgfFault(fmt::format("vertex '{}' needs texture coordinates (uv): the material has a texture", name));
         outline_.push_back(vertex.point * to_world);
-        V3d normal;  // no inverse transpose needed, since MGF scales uniformly
+        V3d normal;  // multDirMatrix() suffices: MGF scales uniformly
         to_world.multDirMatrix(vertex.normal, normal);
         loop.push_back(scene_.vertex(outline_.back(), vertex.coordinate(), normal));
     }
@@ -45,7 +45,6 @@ void MgfReader::add_loop(MgfWords names) {
     if (to_world.determinant() < 0) std::reverse(loop.begin(), loop.end());
 }
 
-/// @throws InputError if the material's definition is invalid.
 std::uint32_t MgfReader::usable_material() {
     MgfMaterial& material = materials_.current();
     faults_.refuse_faults_of(material);

@@ -19,7 +19,6 @@ void MgfReader::transform(MgfWords words) {
     close_transform();
 }
 
-/// @param body  Start of the text to read for each copy.
 void MgfReader::open_transform(MgfWords words, const LineReader::Position& body) {
     if (transforms_.size() >= static_cast<std::size_t>(options_.max_nesting))
         throw MgfFault(fmt::format("transforms are nested more than {} deep", options_.max_nesting));
@@ -39,7 +38,7 @@ void MgfReader::open_transform(MgfWords words, const LineReader::Position& body)
     place_copy(transforms_.back());
 }
 
-/// @return  Whether it returned to the start of the body for another copy.
+/// @return  Whether another copy follows.
 bool MgfReader::close_transform() {
     OpenMgfTransform& transform = transforms_.back();
     if (transform.sequence.is_array()) {
@@ -63,10 +62,9 @@ void MgfReader::place_copy(OpenMgfTransform& transform) {
     if (transform.sequence.is_array()) objects_.open(fmt::format("a{}", fmt::join(transform.copy, ".")), true, here());
 }
 
-/// @return  false after the last copy.
 bool MgfReader::next_copy(OpenMgfTransform& transform) {
     if (!transform.repeating) {
-        // The first copy is complete, so its patch count is known.
+        // The first copy is complete.
         double copies = 1;
         for (const int size : transform.sequence.array_sizes()) copies *= size;
         scene_.require_room(static_cast<double>(scene_.patch_count() - transform.first_patch) * (copies - 1));

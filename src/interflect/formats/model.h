@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 /// Faces of one material in local coordinates.
 struct Mesh {
-    std::string name;  ///< For messages: "mesh 3 'chair', primitive 0".
+    std::string name;  ///< For messages.
     std::vector<Imath::V3d> positions;
     std::vector<V2f> texture_coordinates;   ///< Per vertex, as in Scene; or empty.
     std::vector<V2f> lightmap_coordinates;  ///< Per vertex, in [0, 1]; or empty.
@@ -22,7 +22,7 @@ struct Mesh {
     std::vector<std::uint32_t> indices;     ///< Counter-clockwise seen from the front.
     std::vector<std::uint32_t> face_sizes;  ///< Corners per face, >= 3; empty: triangles.
     std::uint32_t material = 0;             ///< Index into Model::materials.
-    bool back_emits = true;                 ///< If false, backs do not emit.
+    bool back_emits = true;
 };
 
 struct MeshInstance {
@@ -31,13 +31,11 @@ struct MeshInstance {
     std::uint32_t object = 0;  ///< Index into Model::objects.
 };
 
-/// Independent of the scene's origin.
 struct PlacedLight {
     Luminaire luminaire;           ///< Placed at (0, 0, 0).
     Imath::V3d position{0, 0, 0};  ///< World position [m].
 };
 
-/// Input of scene_of().
 struct Model {
     std::filesystem::path file;
     std::vector<Mesh> meshes;
@@ -52,13 +50,12 @@ struct Model {
 };
 
 /// Converts a model to a scene with two-sided faces. Welds corners with equal positions, coordinates and normals.
-/// Merges two triangles to a patch if they form a planar, convex quadrilateral with linear coordinates. Omits faces
-/// without area, with a warning.
+/// Merges two triangles that form a planar, convex quadrilateral with linear coordinates. Omits faces without area,
+/// with a warning.
 ///
-/// Meshes with lightmap coordinates share the lightmap of their object; other patches have NaN. Ignores these
-/// coordinates, with a warning, if instances with different transforms would share them.
-/// @throws InputError for indices out of range, invalid or too distant positions, scenes without faces, and
-/// scene_faults(). @throws TooManyPatches
+/// Meshes with lightmap coordinates share their object's lightmap; other patches have NaN. Ignores these coordinates,
+/// with a warning, if instances with different transforms would share them.
+/// @throws InputError for an invalid model, scenes without faces, and scene_faults(). @throws TooManyPatches
 Scene scene_of(Model&& model, const ReadOptions& options);
 
 }  // namespace interflect::detail

@@ -30,7 +30,6 @@ void for_each_face(const Mesh& mesh, auto use) {
     }
 }
 
-/// Returns the first fault, or an empty string.
 std::string mesh_fault(const Mesh& mesh, const Model& model, const ReadOptions& options) {
     if (mesh.material >= model.materials.size()) return fmt::format("its material {} does not exist", mesh.material);
     if (!mesh.texture_coordinates.empty() && mesh.texture_coordinates.size() != mesh.positions.size())
@@ -68,7 +67,7 @@ void require_valid(const Model& model, const ReadOptions& options) {
             throw InputError(model.file, 0, "an instance shows a mesh or an object that does not exist");
         faces += static_cast<double>(face_count(model.meshes[instance.mesh]));
     }
-    // Two triangles may merge into one face with two sides.
+    // Two triangles may merge into one two-sided face.
     if (faces > static_cast<double>(options.max_patches))
         throw TooManyPatches(model.file, 0,
                              fmt::format("{:.0f} faces, its instances counted each, would give more than {} patches "
@@ -76,7 +75,6 @@ void require_valid(const Model& model, const ReadOptions& options) {
                                          faces, options.max_patches));
 }
 
-/// Finds the objects with a usable layout. Instances with different transforms would overlap.
 std::vector<bool> objects_with_layouts(Model& model) {
     std::vector<const MeshInstance*> first(model.objects.size(), nullptr);
     std::vector<bool> has_layout(model.objects.size(), true);
@@ -127,7 +125,7 @@ class InstanceAdder {
         return result;
     }
 
-    /// Transforms by the cofactors of the linear part, up to length and sign.
+    /// Multiplies by cofactors, up to length and sign.
     static V3f to_world_normal(const V3d& n, const MeshInstance& instance) {
         const Imath::M44d& m = instance.to_world;
         const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
@@ -183,7 +181,7 @@ class InstanceAdder {
         faces_.add({&face_, 1}, mesh.material, instance.object, true, where);
     }
 
-    /// Replaces the material of the backs, from patch `first` on, by a material that does not emit.
+    /// Removes the emission of backs from patch `first` on.
     void darken_backs(std::size_t first) {
         if (first == scene_.patches.size()) return;
         const Material& material = scene_.materials[scene_.patches[first].material];
@@ -205,8 +203,8 @@ class InstanceAdder {
     SceneFaces faces_;
     VertexWeld weld_;
     std::vector<std::uint32_t> dark_material_ = std::vector(model_.materials.size(), none);
-    std::vector<V3d> outline_;         // reused memory
-    std::vector<std::uint32_t> face_;  // reused memory; input of add_face()
+    std::vector<V3d> outline_;
+    std::vector<std::uint32_t> face_;
 };
 
 Luminaire placed(const PlacedLight& light, const V3d& origin) {

@@ -5,8 +5,7 @@
 
 namespace interflect::detail {
 
-/// Parses a decimal number that fills `text` and is finite in single precision; otherwise nullopt (nan, inf, 1e39,
-/// hexadecimal). Accepts '+'. Independent of the locale.
+/// Parses a decimal number that fills `text` and is finite in single precision. Accepts '+'. Independent of the locale.
 std::optional<double> parse_number(std::string_view text);
 
 /// Same rules as parse_number().

@@ -8,12 +8,10 @@
 
 namespace interflect::detail {
 
-/// Reads a Wavefront OBJ file with its material libraries (docs/formats.md).
-/// @throws InputError for invalid input, limits of `options` and files outside the scene's folder; also as scene_of().
-/// @throws TooManyPatches
+/// Reads Wavefront OBJ with its material libraries (docs/formats.md). @throws InputError; see also scene_of().
 Scene read_obj(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  Name for messages; its folder contains referenced files.
+/// @param path  For messages and references.
 Scene read_obj_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

@@ -43,14 +43,13 @@ Rgb mtl_colour(std::span<const std::string_view> words) {
 
 constexpr std::string_view map_of_colours = "map_Kd";
 
-/// If not, the mask is stored as grey values.
 bool has_transparency(const StoredImage& image) {
     for (std::size_t i = 0; i < image.pixel_count(); ++i)
         if (image.value(i, 3) < 1) return true;
     return false;
 }
 
-/// Returns the maximum number of words after a texture option. The words of -o, -s and -t are numbers.
+/// Returns the maximum argument count. -o, -s and -t take numbers.
 std::size_t option_words(std::string_view option) {
     if (option == "-mm") return 2;
     return option == "-o" || option == "-s" || option == "-t" ? 3 : 1;

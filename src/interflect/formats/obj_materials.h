@@ -14,17 +14,16 @@
 
 namespace interflect::detail {
 
-/// Materials of OBJ libraries (.mtl).
 class ObjMaterials {
   public:
-    /// @param model  Receives the materials, with a default first.
+    /// Adds a default material.
     ObjMaterials(Model& model, const ReadOptions& options);
 
-    /// @param where  Line that refers to the library. @throws InputError, std::invalid_argument
+    /// @throws InputError, std::invalid_argument
     void read(const std::filesystem::path& path, const Location& where);
-    /// @param path  Name for messages; its folder contains textures.
+    /// @param path  For messages and references.
     void read_text(std::string_view text, const std::filesystem::path& path);
-    /// @return  Index into Model::materials; the default, with a warning, for unknown names.
+    /// @return  Index into Model::materials; 0, with a warning, if unknown.
     std::uint32_t find(const std::string& name, const Location& where);
 
   private:
@@ -32,20 +31,19 @@ class ObjMaterials {
         Rgb diffuse{0.5f, 0.5f, 0.5f}, emitted{0, 0, 0}, specular{0, 0, 0};
         float opacity = 1;
         bool has_dissolve = false;      // `d`, which overrides `Tr`
-        std::filesystem::path texture;  // of the diffuse reflectance
-        std::filesystem::path mask;     // of the opacity
+        std::filesystem::path texture;  // map_Kd
+        std::filesystem::path mask;     // map_d
         Location where;
-        std::uint32_t material = none;  // index into Model::materials, once used
+        std::uint32_t material = none;  // index, once used
     };
     void read_line(std::span<const std::string_view> words, Definition& definition, const Location& where);
     std::filesystem::path texture_path(std::span<const std::string_view> words, const Location& where);
     std::uint32_t convert(const std::string& name, const Definition& definition);
-    /// @return  Index into Model::textures. Warns about unreadable files.
+    /// Warns about unreadable files.
     std::uint32_t texture(const Definition& definition);
     /// White if unreadable.
     Texture read_colours(const Definition& definition);
     StoredImage read_mask(const Definition& definition);
-    /// Checks file and format; warns. @param key  For the warning.
     bool is_readable(const std::filesystem::path& texture, std::string_view key, const Definition& definition);
     void cut_out(const Definition& definition, Material& material);
     std::uint32_t add_texture(Texture texture);

@@ -30,14 +30,13 @@ std::optional<std::int64_t> whole_number(std::string_view text) {
     return number;
 }
 
-/// @param number  Counts from 1, or backwards from -1. @return  `none` if out of range.
+/// @param number  From 1, or backwards from -1. @return  `none` if out of range.
 std::uint32_t index_of(std::int64_t number, std::size_t count) {
     const std::int64_t index = number > 0 ? number - 1 : static_cast<std::int64_t>(count) + number;
     const bool exists = number != 0 && index >= 0 && index < static_cast<std::int64_t>(count);
     return exists ? static_cast<std::uint32_t>(index) : none;
 }
 
-/// @throws std::invalid_argument if out of range.
 std::uint32_t resolved(std::string_view text, std::size_t count, std::string_view of) {
     const std::optional<std::int64_t> number = whole_number(text);
     if (!number || *number == 0)
@@ -95,7 +94,7 @@ void ObjReader::read_line(const LineReader& line, Words words, const Location& w
     } else if (key == "mtllib") {
         libraries(line, words, where);
     } else if (key != "s" && key != "vp") {
-        constexpr std::string_view known = "l p";  // lines and points
+        constexpr std::string_view known = "l p";
         model_.warnings.add("unsupported-entity",
                             known.find(key) != known.npos ? "lines and points are left out"
                                                           : fmt::format("'{}' is left out", key.substr(0, 20)),
@@ -117,7 +116,7 @@ void ObjReader::coordinate(Words words) {
     coordinates_.emplace_back(static_cast<float>(coordinate_value(words[1])), static_cast<float>(v));
 }
 
-/// An invalid normal counts as missing, since only shading uses it.
+/// Invalid normals count as missing; only shading uses them.
 void ObjReader::normal(Words words) {
     if (normals_.size() >= none) throw std::invalid_argument("there are more normals than 32 bits can count");
     Imath::V3d n(0);
@@ -151,7 +150,7 @@ void ObjReader::face(Words words, const Location& where) {
     target.face_sizes.push_back(static_cast<std::uint32_t>(words.size()));
 }
 
-/// Returns the index in the current mesh. @param word  "3", "3/1", "3//2" or "-1/-1/-1".
+/// @param word  "3", "3/1", "3//2" or "-1/-1/-1".
 std::uint32_t ObjReader::corner(std::string_view word, const Location& where) {
     const std::size_t slash = word.find('/');
     const std::size_t second_slash = slash == word.npos ? word.npos : word.find('/', slash + 1);

@@ -15,7 +15,7 @@
 
 namespace interflect::detail {
 
-/// Makes one mesh per object and material. tinyobjloader would accept invalid indices and numbers.
+/// Replaces tinyobjloader, which accepts invalid indices and numbers.
 class ObjReader {
   public:
     ObjReader(const std::filesystem::path& path, const ReadOptions& options);
@@ -47,7 +47,7 @@ class ObjReader {
     std::vector<Use> uses_;  // per position
     std::string object_, group_;
     std::uint32_t material_ = 0;
-    std::uint32_t mesh_ = none;  // mesh of the current object, group and material, once used
+    std::uint32_t mesh_ = none;                                                // current mesh, if used
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // by object and material
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };

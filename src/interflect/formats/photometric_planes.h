@@ -5,7 +5,7 @@
 
 namespace interflect::detail {
 
-/// Half planes of a photometric file, completed by symmetry.
+/// Half planes of a photometric file.
 class PhotometricPlanes {
   public:
     /// @param angles  Azimuths [degrees], ascending.
@@ -14,7 +14,6 @@ class PhotometricPlanes {
 
     std::size_t count() const { return angles_.size(); }
     float span() const { return angles_.back() - angles_.front(); }  ///< [degrees]
-    /// Appends the mirror images.
     void mirror_at_last();
     void mirror_at_first();
     /// Repeats the first plane after a full turn.

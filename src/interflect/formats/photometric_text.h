@@ -11,11 +11,11 @@
 
 namespace interflect::detail {
 
-/// Removes the byte order mark and the end mark of MS-DOS (0x1a).
-/// @throws InputError as read_text_file(), and beyond options.max_photometric_bytes.
+/// Removes the byte order mark and the end mark of MS-DOS.
+/// @throws InputError as read_text_file(), and beyond max_photometric_bytes.
 std::string read_photometric_text(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Reads by line (LF, CR or both) or by word. Errors are InputErrors with file and line.
+/// Reads lines (ended by LF, CR or both) or words. Errors are InputErrors.
 class PhotometricText {
   public:
     /// @param separators  Besides white space.
@@ -24,10 +24,10 @@ class PhotometricText {
 
     /// Returns the next line, trimmed; nullopt at the end.
     std::optional<std::string_view> line();
-    /// Returns the next word, on any line; nullopt at the end.
+    /// Returns the next word on any line.
     std::optional<std::string_view> word();
 
-    /// @param what  For messages: "the lamp's flux".
+    /// @param what  For messages.
     double number(const std::string& what);
     /// Reads an integer in [least, most].
     std::size_t count(const std::string& what, std::size_t least, std::size_t most);

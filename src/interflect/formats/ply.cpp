@@ -152,7 +152,6 @@ class PlyReader {
         }
     }
 
-    /// Uses the colour of all vertices, if equal and in sRGB bytes.
     Material material() {
         Material result = default_material();
         if (!colour_) return result;

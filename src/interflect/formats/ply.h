@@ -8,12 +8,11 @@
 
 namespace interflect::detail {
 
-/// Reads the faces of a PLY file (docs/formats.md). The reflectance is the colour of all vertices, if equal, else 0.5.
-/// @throws InputError for invalid or truncated input and limits of `options`; also as scene_of().
-/// @throws TooManyPatches
+/// Reads PLY faces (docs/formats.md). The reflectance is the vertex colour, if constant and in sRGB bytes, else 0.5.
+/// @throws InputError; see also scene_of().
 Scene read_ply(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  Name for messages.
+/// @param path  For messages.
 Scene read_ply_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

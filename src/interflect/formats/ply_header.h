@@ -12,7 +12,7 @@ namespace interflect::detail {
 struct PlyProperty {
     std::string name;
     PlyType type = PlyType::float32;
-    std::optional<PlyType> count_type;  ///< Type of a list's length; nullopt for a single value.
+    std::optional<PlyType> count_type;  ///< Type of a list's length, if any.
 };
 
 struct PlyElement {
@@ -21,7 +21,7 @@ struct PlyElement {
     std::vector<PlyProperty> properties;
 
     std::optional<std::size_t> find(std::string_view wanted) const;
-    /// Minimum per element; a list counts as its length alone.
+    /// Minimum per element: lists may be empty.
     std::uint64_t fewest_values() const { return properties.size(); }
     std::uint64_t fewest_bytes() const;
 };
@@ -32,7 +32,7 @@ struct PlyHeader {
     std::size_t size = 0;  ///< [bytes]
 };
 
-/// @param line  Set to the line of the error or to the header's last line. @throws std::invalid_argument
+/// @param line  Set to the last line read. @throws std::invalid_argument
 PlyHeader parse_ply_header(std::string_view bytes, std::int64_t& line);
 
 }  // namespace interflect::detail

@@ -18,13 +18,13 @@ class PlyValues {
 
     PlyValues(std::string_view bytes, Form form) : bytes_(bytes), rest_(bytes), form_(form) {}
 
-    /// Counts line breaks up to the last value read; nullopt for binary forms.
+    /// Counts line breaks read; nullopt if binary.
     std::optional<std::int64_t> lines() const;
 
-    /// Binary values may be infinite or NaN. @throws std::invalid_argument at the end and for invalid numbers.
+    /// Binary values may be infinite or NaN. @throws std::invalid_argument
     double next(PlyType type);
     bool is_at_end() const;
-    /// Whether enough bytes remain. A value in text takes two characters, except the last one.
+    /// A value in text takes two characters, except the last one.
     bool may_hold(std::uint64_t values, std::uint64_t bytes) const {
         return form_ == Form::ascii ? values <= (rest_.size() + 1) / 2 : bytes <= rest_.size();
     }

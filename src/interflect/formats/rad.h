@@ -9,12 +9,10 @@
 namespace interflect::detail {
 
 /// Reads a Radiance scene without running commands (docs/radiance.md). Radiance [W/(m^2 sr)] becomes exitance [lm/m^2]
-/// at 179 lm/W.
-/// @throws InputError for invalid input, limits of `options` and files outside the scene's folder; also as scene_of().
-/// @throws TooManyPatches
+/// at 179 lm/W. @throws InputError; see also scene_of().
 Scene read_rad(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  Name for messages; its folder contains referenced files.
+/// @param path  For messages and references.
 Scene read_rad_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

@@ -13,10 +13,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Type of modifiers that an ignored command may define; invalid in files.
+/// Type of modifiers that an ignored command may define.
 constexpr std::string_view missing_type = "of a command";
 
-/// @throws std::invalid_argument for negative values.
 Rgb colour_of(const RadPrimitive& p) {
     Rgb colour;
     for (int c = 0; c < 3; ++c) {
@@ -33,8 +32,7 @@ float share(const RadPrimitive& p, std::size_t i, const char* what) {
     return static_cast<float>(p.numbers[i]);
 }
 
-/// Returns the 5th number of plastic, metal and trans, or the larger one of anisotropic types. Measured and procedural
-/// BRDFs count as rough.
+/// Measured and procedural BRDFs count as rough.
 double roughness_of(const RadPrimitive& p) {
     if (p.type.ends_with("func") || p.type.ends_with("data")) return 1;
     return p.type.ends_with('2') ? std::max(p.numbers[4], p.numbers[5]) : p.numbers[4];
@@ -132,7 +130,7 @@ void RadMaterials::define(const RadPrimitive& primitive, const Location& where) 
     }
     if (primitive.modifier != "inherit") modifier.base = find(primitive.modifier, where);
     if (types().at(modifier.primitive.type).role == Role::mixture) {
-        // The foreground, or the background if that is void.
+        // Foreground, or background if void.
         const auto& strings = modifier.primitive.strings;
         if (strings.size() < 2) throw std::invalid_argument("a mixture needs a foreground and a background");
         modifier.base = find(strings[0], where);
@@ -191,7 +189,7 @@ std::uint32_t RadMaterials::convert(const Modifier& modifier, const Type& type) 
     return static_cast<std::uint32_t>(model_.materials.size() - 1);
 }
 
-/// Keeps mirrors; warns about other specular reflection.
+/// Keeps only mirrors, for the camera.
 void RadMaterials::reflect(const Modifier& modifier, const Rgb& specular, double roughness, Material& result) {
     if (is_mirror(largest_channel(specular), roughness)) result.specular_reflectance = specular;
     if (largest_channel(specular) > 0)
@@ -246,7 +244,7 @@ void RadMaterials::glass(const Modifier& modifier, Material& result) {
     }
 }
 
-/// Models one surface of a solid, without absorption or refraction.
+/// Models one surface, without absorption or refraction.
 void RadMaterials::dielectric(const Modifier& modifier, Material& result) {
     const std::vector<double>& numbers = modifier.primitive.numbers;
     const double inside = numbers[3], outside = modifier.primitive.type == "interface" ? numbers[7] : 1;

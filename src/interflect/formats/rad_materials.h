@@ -16,8 +16,8 @@ namespace interflect::detail {
 /// Radiance's luminous efficacy of white light [lm/W].
 inline constexpr double rad_efficacy = 179;
 
-/// Glass pane at normal incidence, with all internal reflections.
-/// @param transmissivity  Transmittance of the interior in one pass, 0 to 1. @param index  Refractive index, > 0.
+/// Pane at normal incidence, with all internal reflections.
+/// @param transmissivity  Of the interior in one pass, 0 to 1. @param index  Refractive index, > 0.
 struct GlassShares {
     double transmittance = 0, reflectance = 0;
 };
@@ -29,15 +29,15 @@ class RadMaterials {
     explicit RadMaterials(Model& model) : model_(model) {}
 
     static bool is_modifier(std::string_view type);
-    /// Hides an earlier modifier of the same name. @throws std::invalid_argument
+    /// Hides earlier modifiers of the same name. @throws std::invalid_argument
     void define(const RadPrimitive& primitive, const Location& where);
 
-    /// Makes undefined modifiers diffuse grey with a warning, since an ignored command may define them.
+    /// Makes undefined modifiers grey: an ignored command may define them.
     void allow_missing() { may_miss_ = true; }
 
-    /// `none` for "void". @throws std::invalid_argument if undefined.
+    /// @return  `none` for "void". @throws std::invalid_argument if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
-    /// @return  Index into Model::materials; `none` if invisible. @throws InputError with the modifier's place.
+    /// @return  Index into Model::materials; `none` if invisible. @throws InputError
     std::uint32_t material(std::uint32_t modifier);
 
   private:

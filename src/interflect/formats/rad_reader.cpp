@@ -97,7 +97,6 @@ void RadReader::read_statement(RadStatements& statements, RadStatements::Kind ki
     add_surface(primitive, file, where);
 }
 
-/// Applies `xform`; ignores other commands.
 void RadReader::run(const std::string& command, const OpenFile& file, const Location& where) {
     const std::optional<RadXform> xform = parse_xform(command);
     if (!xform) {
@@ -120,7 +119,7 @@ void RadReader::run(const std::string& command, const OpenFile& file, const Loca
     }
 }
 
-/// Names are relative to the scene's folder, where Radiance usually runs, or else to the including file.
+/// Searches the scene's folder, where Radiance usually runs, then the includer's.
 const SourceFile& RadReader::included_file(const std::string& name, const OpenFile& file) {
     const SourceFile*& known = included_[{&file.source, name}];
     if (!known) {
@@ -190,7 +189,7 @@ void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file,
         model_.warnings.add("void-surface", "surface without a material is invisible, and left out", where.text());
         return;
     }
-    // Spheres have the most faces of all surfaces.
+    // Spheres have the most faces.
     const double d = options_.curve_divisions;
     if (primitive.type == "sphere" || primitive.type == "bubble") require_room(8 * d * d, file.copies.size());
     add_mesh((this->*surface.read)(primitive.numbers), primitive, material, file, where);
@@ -223,7 +222,6 @@ std::uint32_t RadReader::object(const std::string& name) {
     return entry->second;
 }
 
-/// Each face makes two patches per copy.
 void RadReader::require_room(double faces, std::size_t copies) {
     if (patches_ + 2 * faces * static_cast<double>(copies) > static_cast<double>(options_.max_patches))
         throw PatchLimit(fmt::format("this would give more than {} patches (max_patches)", options_.max_patches));

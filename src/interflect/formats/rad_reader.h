@@ -17,7 +17,7 @@
 
 namespace interflect::detail {
 
-/// Reads a file once for all copies of an array, which become instances.
+/// Reads a file once; array copies become instances.
 class RadReader {
   public:
     RadReader(const std::filesystem::path& path, const ReadOptions& options);
@@ -29,11 +29,10 @@ class RadReader {
         Imath::M44d to_world;
         std::string prefix;  // of surface names
     };
-    /// Open file, and changes to its surfaces.
     struct OpenFile {
         const SourceFile& source;
         std::vector<Copy> copies;
-        std::string modifier;  // overrides the surfaces' own unless empty
+        std::string modifier;  // as in RadXform
         bool is_inverted = false;
         const OpenFile* includer = nullptr;
         int depth = 0;

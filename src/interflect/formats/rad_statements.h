@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// `modifier type name` with arguments, or `modifier alias name original`; views of the text.
+/// `modifier type name` with arguments, or `modifier alias name original`.
 struct RadPrimitive {
     std::string_view modifier, type, name;
     std::string_view original;  ///< Alias only.
@@ -25,9 +25,9 @@ class RadStatements {
     Kind next();
     std::int64_t line() const { return line_; }  ///< Start of the statement, from 1
 
-    /// Returns the text after `!`; joins continued lines.
+    /// Joins continued lines.
     std::string command();
-    /// @throws std::invalid_argument for a truncated or malformed primitive.
+    /// @throws std::invalid_argument
     RadPrimitive primitive();
 
   private:

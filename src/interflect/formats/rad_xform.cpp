@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Removes quotes; returns nullopt if a shell is needed.
+/// Returns nullopt if a shell is needed.
 std::optional<std::vector<std::string>> shell_words(std::string_view command) {
     constexpr std::string_view special = "|&;<>()$`\\*?[]{}#~!\n";
     std::vector<std::string> words;
@@ -30,7 +30,6 @@ std::optional<std::vector<std::string>> shell_words(std::string_view command) {
     return words;
 }
 
-/// Returns nullopt for other options.
 std::optional<std::size_t> number_count(std::string_view option) {
     if (option == "-t") return 3;
     if (option == "-mx" || option == "-my" || option == "-mz") return 0;

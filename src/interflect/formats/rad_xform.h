@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 /// `xform [-n name] [-m modifier] [-I] [transform] file ...`
 struct RadXform {
-    std::string name;      ///< Prefix of surface names; may be empty.
+    std::string name;      ///< Prefix of surface names, or empty.
     std::string modifier;  ///< Overrides the surfaces' own unless empty.
     bool inverts = false;  ///< Swaps front and back.
     TransformSequence transform;
@@ -22,7 +22,7 @@ struct RadXform {
 };
 
 /// @param command  Without `!`.
-/// @return  nullopt for other commands and for shell syntax beyond quotes.
+/// @return  nullopt for other commands, stdin and shell syntax beyond quotes.
 /// @throws std::invalid_argument if xform would reject it.
 std::optional<RadXform> parse_xform(std::string_view command);
 

@@ -4,16 +4,15 @@
 
 namespace interflect::detail {
 
-/// Limits the words repeated by arrays and includes: a short file can request 10^14. A two-sided quadrilateral with its
-/// own vertices takes 33 words.
+/// Limits the words that arrays and includes repeat; a short file can request 10^14. A quadrilateral with its vertices
+/// takes 33.
 class RepeatedWork {
   public:
-    /// Costs in words.
     static constexpr std::uint64_t words_per_include = 50, words_per_copy = 10;
 
     explicit RepeatedWork(std::uint64_t max_patches) : max_patches_(max_patches) {}
 
-    /// @param patches  Made so far. @throws std::invalid_argument for too many words per patch.
+    /// @param patches  Made so far. @throws PatchLimit, std::invalid_argument
     void add(std::uint64_t words, std::uint64_t patches);
 
   private:

@@ -12,7 +12,7 @@ namespace {
 /// Minimum doubled area / size^2 of faces that affect the origin.
 constexpr double least_shape = 1e-6;
 
-/// Relative to the reach of the scene: 60 float steps. Narrower slivers are common and may be lost.
+/// Relative to the scene's reach. Narrower slivers are common.
 constexpr double largest_lost_width = 0x1p-16;
 
 }  // namespace

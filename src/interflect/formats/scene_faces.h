@@ -18,33 +18,31 @@ struct PatchLimit : std::invalid_argument {
     using std::invalid_argument::invalid_argument;
 };
 
-/// Adds faces relative to the scene's origin and records omitted ones. Throws std::invalid_argument for invalid
-/// requests.
+/// Adds faces relative to the scene's origin. Throws std::invalid_argument for invalid requests.
 class SceneFaces {
   public:
     /// @param scene  With name and origin.
     SceneFaces(Scene& scene, const ReadOptions& options) : scene_(scene), max_patches_(options.max_patches) {}
 
-    /// @throws PatchLimit beyond the limit, to which omitted faces count.
+    /// @throws PatchLimit beyond the limit, including omitted faces.
     void require_room(double patches) const;
-    /// Returns a world position [m] relative to the scene's origin.
+    /// @return  Relative to the scene's origin [m].
     V3f position(const Imath::V3d& world) const;
-    /// Sets the unrounded world outline of the next face.
+    /// Sets the unrounded outline of the next face.
     void place(std::span<const Imath::V3d> outline);
     /// Omits faces without area; see add_polygon().
     void add(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
              bool two_sided, const Location& where);
-    /// @param message  Kind of face.
     void leave_out(const std::string& message, const Location& where);
 
     Imath::V3d suitable_origin() const { return origin_for(core_of(sample_.faces())); }
-    /// @throws InputError if no face is left, if a large distant one was lost to rounding, or if the scene is too
-    /// small, too dark or too bright.
+    /// @throws InputError if no face is left, rounding removed a large distant one, or the scene's size or brightness
+    /// is out of range.
     void require_usable() const;
 
   private:
     struct LostFace {
-        double width = 0;  // area over longest extent [m]
+        double width = 0;  // doubled area over diagonal [m]
         Imath::V3d centre{0, 0, 0};
         Location where;
     };
@@ -59,7 +57,7 @@ class SceneFaces {
     Scene& scene_;
     std::uint64_t max_patches_;
     FaceSample sample_;
-    LostFace placed_;  // next face; width 0 without area
+    LostFace placed_;  // next face
     LostFace lost_;    // widest one lost to rounding
     LeftOut first_left_out_;
     std::uint64_t left_out_ = 0;

@@ -17,9 +17,9 @@ struct SourceFile {
 /// Reads each file once. Addresses are stable.
 class SourceFiles {
   public:
-    /// @return  The file, with its first path and text, and whether it is new.
+    /// @return  The file as first added; whether it is new.
     std::pair<const SourceFile&, bool> add(const std::filesystem::path& path, std::string&& text);
-    /// @param name  Relative to `includer`. @throws std::invalid_argument if unreadable.
+    /// @param name  Relative to `includer`. @throws std::invalid_argument
     std::pair<const SourceFile&, bool> find(std::string_view name, const SourceFile& includer);
 
   private:

@@ -8,11 +8,10 @@
 
 namespace interflect::detail {
 
-/// Reads an STL file, with reflectance 0.5 (docs/formats.md).
-/// @throws InputError for invalid input and limits of `options`; also as scene_of(). @throws TooManyPatches
+/// Reads STL, with reflectance 0.5 (docs/formats.md). @throws InputError; see also scene_of().
 Scene read_stl(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  Name for messages.
+/// @param path  For messages.
 Scene read_stl_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

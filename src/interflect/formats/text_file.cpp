@@ -42,7 +42,7 @@ void require_regular_file(const fs::path& path) {
 
 bool is_within(const fs::path& path, const fs::path& folder) {
     std::error_code error;
-    const auto resolved = [&](const fs::path& given) {  // absolute, since a nonexistent path would stay relative
+    const auto resolved = [&](const fs::path& given) {  // else nonexistent paths stay relative
         const fs::path whole = fs::absolute(given, error);
         return error ? fs::path() : fs::weakly_canonical(whole, error);
     };

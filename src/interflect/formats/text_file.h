@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// @throws InputError if the path is not a readable regular file, or with the line of a control character.
+/// Removes the byte order mark. @throws InputError as read_bytes() and require_text().
 std::string read_text_file(const std::filesystem::path& path);
 
 /// @param most  Limit [bytes]. @throws InputError if unreadable or larger.

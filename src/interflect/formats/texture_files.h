@@ -10,10 +10,10 @@
 namespace interflect::detail {
 
 /// Reads .png or .jpg (sRGB), .exr or .hdr (linear). @param most  Texel limit.
-/// @throws InputError as read_image(), and for an invalid texture.
+/// @throws InputError as read_image(), and for invalid textures.
 Texture read_texture(const std::filesystem::path& path, std::uint64_t most = most_texels);
 
-/// Reads radiances from .exr or .hdr. @throws InputError also for other formats.
+/// Reads radiances from .exr or .hdr. @throws InputError
 std::shared_ptr<const Texture> read_environment(const std::filesystem::path& path);
 
 /// Lossless: ".png" for 8-bit sRGB values, else ".exr".

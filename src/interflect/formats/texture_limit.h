@@ -8,7 +8,6 @@
 namespace interflect::detail {
 
 /// Halves the largest textures by area means until all have at most `most` texels in total. Equal sizes stay equal.
-/// @return  Whether any was halved.
 bool reduce_textures(std::vector<Texture>& textures, std::uint64_t most = most_texels);
 
 std::uint64_t texel_count(const std::vector<Texture>& textures);

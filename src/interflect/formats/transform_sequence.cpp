@@ -16,7 +16,7 @@ namespace {
 using Imath::M44d;
 using Imath::V3d;
 
-/// Consumes arguments; errors name the option.
+/// Errors name the option.
 class Arguments {
     std::span<const std::string_view> words_;
     std::string_view option_;
@@ -63,7 +63,7 @@ SineCosine sine_cosine(double degrees) {
     return {std::sin(radians), std::cos(radians)};
 }
 
-/// Counter-clockwise, seen from the positive end of `axis`.
+/// Right-handed.
 M44d rotation(int axis, double degrees) {
     const auto [sine, cosine] = sine_cosine(degrees);
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -86,7 +86,6 @@ M44d mirror(int axis) {
     return scaling(factors);
 }
 
-/// Transforms other than -i and -a.
 M44d elementary(std::string_view option, Arguments& arguments) {
     if (option == "-t") {
         const double x = arguments.number(), y = arguments.number(), z = arguments.number();
@@ -108,7 +107,7 @@ M44d elementary(std::string_view option, Arguments& arguments) {
         "'{}' is no transform; there are -t x y z, -rx -ry -rz degrees, -s factor, -mx -my -mz, -i N, -a N", option));
 }
 
-/// Squares repeatedly, since files may request a billion repetitions.
+/// Squares repeatedly: files may request a billion repetitions.
 M44d power(M44d base, int exponent) {
     M44d result;
     for (; exponent > 0; exponent /= 2, base = base * base)

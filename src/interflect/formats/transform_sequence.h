@@ -9,12 +9,11 @@
 
 namespace interflect::detail {
 
-/// Arguments of MGF's `xf`: -t x y z, -rx -ry -rz degrees, -s factor, -mx -my -mz, -i N, -a N, applied from left to
-/// right to row vectors. -i N repeats the transforms up to the next -i or -a N times. -a N makes N copies; copy k, from
-/// 0, repeats them k times. Several -a make a grid.
+/// Arguments of MGF's `xf`, applied from left to right to row vectors. -i N repeats the transforms up to the next -i or
+/// -a N times. -a N makes N copies; copy k, from 0, repeats them k times. Several -a make a grid.
 class TransformSequence {
   public:
-    /// @throws std::invalid_argument for unknown arguments, missing numbers, and scaling by 0.
+    /// @throws std::invalid_argument for invalid arguments and scaling by 0.
     explicit TransformSequence(std::span<const std::string_view> arguments);
 
     bool is_array() const { return !array_sizes_.empty(); }
@@ -33,7 +32,7 @@ class TransformSequence {
     std::vector<int> array_sizes_;
 };
 
-/// Advances to the next copy, the last array fastest. @return  false after the last copy, with all indices 0.
+/// Advances to the next copy, the last array fastest. @return  false after the last copy.
 bool next_index(std::vector<int>& copy, std::span<const int> sizes);
 
 }  // namespace interflect::detail

@@ -22,7 +22,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Rejects unknown members.
 class Members {
   public:
     Members(const json& object, std::string where, const fs::path& file)
@@ -32,7 +31,6 @@ class Members {
 
     [[noreturn]] void fail(const std::string& message) const { throw InputError(file_, 0, where_ + ": " + message); }
 
-    /// nullptr if absent.
     const json* find(const std::string& key) {
         asked_for_.insert(key);
         const auto member = object_.find(key);
@@ -82,7 +80,7 @@ View parse_view(const json& value, std::size_t index, const fs::path& path) {
 
 class RadianceView {
   public:
-    /// Returns the words after the first option.
+    /// Returns the remaining words.
     std::span<const std::string_view> take(std::span<const std::string_view> words);
     View view() const {
         View view;
@@ -153,7 +151,7 @@ std::vector<View> read_view_list(const fs::path& path) {
 }
 
 void write_view_list(std::span<const View> views, const fs::path& path) {
-    // fmt writes the shortest decimals that round to the same value.
+    // fmt writes the shortest decimals that round-trip.
     const auto vector = [](const auto& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
     std::vector<std::string> lines;
     for (const View& v : views)

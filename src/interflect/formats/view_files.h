@@ -16,13 +16,12 @@ std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
 /// @throws InputError for invalid or unknown members, and duplicate names.
 std::vector<View> read_view_list(const std::filesystem::path& path);
 
-/// Writes views for read_view_list(), exactly but without `extent`.
-/// @param views  With unique names. @throws std::runtime_error if writing fails.
+/// Writes views exactly, but without `extent`. @param views  With unique names. @throws std::runtime_error
 void write_view_list(std::span<const View> views, const std::filesystem::path& path);
 
-/// Reads a Radiance view such as `rvu -vtv -vp 1 2 3 -vd 0 1 0 -vu 0 0 1 -vh 60 -vv 45`, named after the file. Defaults
-/// are Radiance's; later lines override earlier ones. Ignores -vh, because the picture's shape determines it.
-/// @throws InputError for views other than perspective (-vtv), shift, lift or clipping planes, and invalid input.
+/// Reads a Radiance view (rvu options), named after the file. Defaults are Radiance's; later lines override earlier
+/// ones. Ignores -vh, because the picture's shape determines it.
+/// @throws InputError for invalid input, and for projections other than -vtv, shift, lift or clipping planes.
 View read_radiance_view(const std::filesystem::path& path);
 
 }  // namespace interflect::detail

@@ -32,14 +32,14 @@ std::string printable(std::string_view name) {
     return text;
 }
 
-/// White space ends a name, '-' separates loops of a face, '=' defines.
+/// '-' separates loops of a face; '=' defines names.
 std::string material_name(const Material& material) {
     std::string name = printable(material.name);
     if (name.starts_with('-') || name == "=") name[0] = '_';
     return name;
 }
 
-/// Returns the parts of "room.desk.leg"; empty for "".
+/// Splits "room.desk.leg".
 std::vector<std::string> object_path(const std::string& dotted_name) {
     std::vector<std::string> path;
     if (dotted_name.empty()) return path;
@@ -52,7 +52,7 @@ std::vector<std::string> object_path(const std::string& dotted_name) {
     }
 }
 
-/// About x, y and z, in this order [degrees].
+/// About x, then y, then z [degrees].
 struct Turns {
     double x, y, z;
 };
@@ -71,10 +71,10 @@ Frame frame_of(const MeasuredLight& light) {
 /// x east, y north.
 Frame frame_of(const SkyFrame& sky) { return {Imath::V3d(sky.east), Imath::V3d(sky.north), Imath::V3d(sky.zenith)}; }
 
-/// Returns the rotations that turn the axes into a frame.
+/// Rotates the axes into the frame.
 Turns turns_of(const Frame& frame) {
     const auto& [x, y, z] = frame;
-    constexpr double no_turn = 1e-9;  // cosine of the y rotation at gimbal lock
+    constexpr double no_turn = 1e-9;  // cosine at gimbal lock
     const double cosine = std::hypot(x.x, x.y);
     if (cosine < no_turn) return {degrees(std::atan2(-z.y, y.y)), degrees(std::atan2(-x.z, cosine)), 0};
     return {degrees(std::atan2(y.z, z.z)), degrees(std::atan2(-x.z, cosine)), degrees(std::atan2(x.y, x.x))};
@@ -110,7 +110,6 @@ class MgfWriter {
   private:
     static constexpr int two_sides = 2;  // default of new materials
 
-    /// Latest of a material name.
     struct Definition {
         std::uint32_t material = none;
         int sides = two_sides;
@@ -143,8 +142,7 @@ class MgfWriter {
         for (; open_objects_.size() > depth; open_objects_.pop_back()) put("o\n");
     }
 
-    /// Redefines a material if its name was reused, or if it is unnamed and another was entered since. `sides` belongs
-    /// to the material and may change too.
+    /// Defines a material again if its name was reused, or if it is unnamed and was left.
     void enter_material(std::uint32_t material, int sides) {
         const std::string& name = names_[material];
         Definition& definition = definitions_[name];
@@ -206,7 +204,6 @@ class MgfWriter {
         put("\n");
     }
 
-    /// A vertex provides position and direction.
     void add_light(const Luminaire& luminaire) {
         enter_object(luminaire.object);
         const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind);
