@@ -47,7 +47,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
     caption = f"""The maze without furniture from above: the importance of the view from one room, the hierarchical
         solution that it drives, and that on fixed elements, {config['rays'] / 1e6:g} million rays each, all of which follow
         importance. Below, a room that the view does not see: with a hierarchy its error is coarseness, on fixed elements
-        it is noise. The rooms on the right have no importance at all and stay dark, which is why by default a share of the
+        it is noise. The rooms on the right have no importance at all and are dim or dark, which is why by default a share of the
         rays follows power alone."""
     drawing.save(figure, folder, "fig4-unseen", caption)
 

@@ -25,13 +25,13 @@ using namespace detail;
 
 namespace {
 
-/// Minimum width of strips divided across, relative to the face's diameter.
+/// Narrower strips are not divided across. Relative to the face's diameter.
 constexpr double narrow = 2e-3;
 
 constexpr std::size_t facets_at_once = 256;
 
-/// Relative to the width of a sliver's flat surface. Reduces the error of pixel blocks in `slivers` (experiments/run
-/// audit) from 8.8% to 1.3%.
+/// Maximum length of a sliver, relative to the width of its flat surface. Reduces the error of pixel blocks in
+/// `slivers` (experiments/run audit) from 8.8% to 1.3%.
 constexpr double longest_sliver_share = 1.0 / 16;
 
 struct CutFacet {
@@ -40,12 +40,12 @@ struct CutFacet {
     bool reached_limit = false;
 };
 
-/// Returns [m]. Quartering preserves aspect ratios, so long patches yield long elements. Strips without coplanar
-/// neighbours stay whole.
+/// Returns the length above which a sliver is cut across [m]. Quartering preserves aspect ratios, so long patches yield
+/// long elements. Facets with at least a quarter of their flat surface's area have no limit.
 double longest_sliver(const Facet& facet, double surface_area) {
     const double width = surface_area / facet.diameter;
-    const bool has_neighbours = surface_area > 4 * facet.area();
-    return has_neighbours ? longest_sliver_share * width : std::numeric_limits<double>::infinity();
+    const bool is_small_part = surface_area > 4 * facet.area();
+    return is_small_part ? longest_sliver_share * width : std::numeric_limits<double>::infinity();
 }
 
 /// @param surface_area  Of the facet's flat surface [m^2].
@@ -65,6 +65,7 @@ CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_are
     return result;
 }
 
+/// Returns the area of each facet's flat surface [m^2].
 std::vector<double> areas_of_surfaces(const Scene& scene, const std::vector<Facet>& facets) {
     const std::vector<std::uint32_t> surfaces = flat_surfaces(scene);
     std::vector<double> area(scene.patches.size(), 0.0), result;
@@ -138,13 +139,15 @@ class PieceWriter {
     VertexWeld weld_;
 };
 
+/// Facets first ... last - 1 of one face.
 struct FacetRange {
     std::size_t first, last;
-    std::uint64_t patches = 0;  ///< On both sides; 0: not cut.
+    std::uint64_t patches = 0;  ///< Number of resulting patches, on both sides; 0: the face stays whole.
 };
 
-std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& facets, const std::vector<CutFacet>& cut,
-                               const ContactOptions& options, Warnings& warnings) {
+std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<Facet>& facets,
+                                         const std::vector<CutFacet>& cut, const ContactOptions& options,
+                                         Warnings& warnings) {
     std::vector<FacetRange> faces;
     std::uint64_t count = scene.patches.size();
     for (std::size_t first = 0, last; first < facets.size(); first = last) {
@@ -175,7 +178,7 @@ std::vector<FacetRange> decide(const Scene& scene, const std::vector<Facet>& fac
     return faces;
 }
 
-/// Numbers only patches whose flat surface has a cut face or a number already.
+/// Returns Patch::surface of each patch: `none` unless its flat surface contains a cut face or a patch with a number.
 std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
                                                    const std::vector<FacetRange>& faces) {
     std::vector<std::uint32_t> surface = flat_surfaces(scene);
@@ -196,7 +199,7 @@ Scene cut_at_contacts(const Scene& scene, const ContactOptions& options) {
     const std::vector<Facet> facets = facets_of(scene);
     const std::vector<CutFacet> cut = cut_facets(scene, facets, options);
     Scene result = scene;
-    const std::vector<FacetRange> faces = decide(scene, facets, cut, options, result.warnings);
+    const std::vector<FacetRange> faces = choose_cut_faces(scene, facets, cut, options, result.warnings);
     const std::vector<std::uint32_t> surfaces = numbers_of_cut_surfaces(scene, facets, faces);
     result.patches.clear();
     PieceWriter writer(scene, surfaces, result);

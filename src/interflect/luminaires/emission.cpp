@@ -17,7 +17,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Enlarged: rays that start on it are outside the scene.
+/// Returns the scene's box, enlarged so that rays starting on it start outside the scene.
 Imath::Box3f box_around(const Scene& scene) {
     constexpr float margin = 1e-3f;  // relative to the diagonal
     Imath::Box3f box;
@@ -36,7 +36,8 @@ float sample_cosine(float v, float inner, float outer, float inner_share) {
     return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));
 }
 
-/// @param turn  In full turns.
+/// Returns the unit vector at an angle from `axis` with this cosine and sine.
+/// @param turn  Azimuth from s towards t, in full turns.
 V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float sine, float turn) {
     const float angle = 2 * pi * turn;
     return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
@@ -60,8 +61,8 @@ std::array<BoxSide, 6> sides_of(const V3f& low, const V3f& size) {
     return sides;
 }
 
-/// Splits a map into this grey part and the excess of each channel.
 float least_channel(const Rgb& c) { return std::min({c.x, c.y, c.z}); }
+/// A map is the sum of its grey part, the least channel, and the excess of each channel over it.
 constexpr std::array<SkyComponent, 4> map_components = {
     {{Rgb(1, 1, 1), least_channel},
      {Rgb(1, 0, 0), [](const Rgb& c) { return c.x - least_channel(c); }},
@@ -70,16 +71,16 @@ constexpr std::array<SkyComponent, 4> map_components = {
 
 DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<const Rgb> integrals,
                          const SkyComponent& component, const V3f& normal) {
-    std::vector<float> of_horizon(grid.columns);
+    std::vector<float> cosine_at_horizon(grid.columns);
     for (std::size_t column = 0; column < grid.columns; ++column)
-        of_horizon[column] = -normal.dot(frame.direction({grid.middle(column, 0).s, 0}));
-    const float of_zenith = -normal.dot(frame.zenith);
+        cosine_at_horizon[column] = -normal.dot(frame.direction({grid.middle(column, 0).s, 0}));
+    const float cosine_at_zenith = -normal.dot(frame.zenith);
     std::vector<float> weights(grid.size());
     for (std::size_t row = 0; row < grid.rows; ++row) {
         const float up = grid.middle(0, row).cosine, aside = std::sqrt(1 - up * up);
         for (std::size_t column = 0; column < grid.columns; ++column) {
             const std::size_t cell = row * grid.columns + column;
-            const float cosine = up * of_zenith + aside * of_horizon[column];
+            const float cosine = up * cosine_at_zenith + aside * cosine_at_horizon[column];
             weights[cell] = component.amount(integrals[cell]) * std::max(0.0f, cosine);
         }
     }
@@ -121,8 +122,8 @@ Emission::Emission(const Scene& scene, std::span<const Imath::Box3f> targets) {
         std::visit([&](const auto& light) { add(light); }, scene.luminaires[i].kind);
         for (std::size_t e = first; e < emitters_.size(); ++e) emitters_[e].luminaire = i;
     }
-    of_boxes_.resize(boxes_.size());
-    for (std::size_t e = 0; e < emitters_.size(); ++e) of_boxes_[emitters_[e].box].push_back(e);
+    emitters_of_boxes_.resize(boxes_.size());
+    for (std::size_t e = 0; e < emitters_.size(); ++e) emitters_of_boxes_[emitters_[e].box].push_back(e);
 }
 
 RgbD Emission::power_of_boxes(std::size_t begin, std::size_t end) const {
@@ -165,7 +166,7 @@ void Emission::add(const DirectionalLight& light) {
         const float sine = light.disc_sine(), margin = (high.z - low.z) * sine / std::sqrt(1 - sine * sine);
         for (int k = 0; k < 2; ++k) low[k] -= margin, high[k] += margin;
         const V3f corner = frame.s * low.x + frame.t * low.y + direction * low.z;
-        add_window(
+        add_rectangle(
             {corner, frame.s * (high.x - low.x), frame.t * (high.y - low.y), direction, frame.s, frame.t, sine, 0},
             light.irradiance, b);
     }
@@ -176,8 +177,8 @@ void Emission::add(const UniformSky& sky) {
     for (std::size_t b = 0; b < boxes_.size(); ++b)
         for (const BoxSide& side : sides_of(boxes_[b].min, boxes_[b].size())) {
             const TangentFrame frame(side.normal);
-            add_window({side.corner, side.edge_u, side.edge_v, side.normal, frame.s, frame.t, 1, 0}, sky.radiance * pi,
-                       b);
+            add_rectangle({side.corner, side.edge_u, side.edge_v, side.normal, frame.s, frame.t, 1, 0},
+                          sky.radiance * pi, b);
         }
 }
 
@@ -218,11 +219,11 @@ void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyG
         }
 }
 
-void Emission::add_window(Window window, const Rgb& exitance, std::size_t box) {
-    const float part_area = window.edge_u.length() * window.edge_v.length() / float{parts_per_emitter};
-    const std::size_t outer = emitters_.size() - box * (window.is_sky() ? 6 : 1);  // same side of the scene's box
-    window.part_area = box == 0 ? part_area : std::get<Window>(emitters_[outer].shape).part_area;
-    emitters_.push_back({window, exitance, RgbD(exitance) * double{part_area}, box});
+void Emission::add_rectangle(Rectangle rectangle, const Rgb& exitance, std::size_t box) {
+    const float part_area = rectangle.edge_u.length() * rectangle.edge_v.length() / float{parts_per_emitter};
+    const std::size_t outer = emitters_.size() - box * (rectangle.is_sky() ? 6 : 1);  // same side of the scene's box
+    rectangle.part_area = box == 0 ? part_area : std::get<Rectangle>(emitters_[outer].shape).part_area;
+    emitters_.push_back({rectangle, exitance, RgbD(exitance) * double{part_area}, box});
 }
 
 void Emission::add(const MeasuredLight& light) {
@@ -241,7 +242,7 @@ Ray Emission::Beam::ray(float u, float v, float, float) const {
     return {position, turned(axis, s, t, cosine, std::sqrt(std::max(0.0f, 1 - cosine * cosine)), u)};
 }
 
-Ray Emission::Window::ray(float u, float v, float c, float d) const {
+Ray Emission::Rectangle::ray(float u, float v, float c, float d) const {
     const float squared = c * sine * sine;
     return {corner + edge_u * u + edge_v * v, turned(direction, s, t, std::sqrt(1 - squared), std::sqrt(squared), d)};
 }
@@ -279,15 +280,15 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
         };
         std::visit(shoot_from, emitter.shape);
         const bool is_from_outside =
-            std::holds_alternative<Window>(emitter.shape) || std::holds_alternative<SkySide>(emitter.shape);
+            std::holds_alternative<Rectangle>(emitter.shape) || std::holds_alternative<SkySide>(emitter.shape);
         if (boxes_.size() == 1 || !is_from_outside) continue;
-        for (Ray& ray : rays.subspan(begin, count)) ray = of_box(ray, emitter.box);
+        for (Ray& ray : rays.subspan(begin, count)) ray = restrict_to_box(ray, emitter.box);
     }
 }
 
-/// Moves a ray's origin to the scene's box. Returns a ray that misses the scene if its line misses `box` or crosses a
-/// later one.
-Ray Emission::of_box(const Ray& ray, std::size_t box) const {
+/// Returns a ray that misses the scene if the ray's line misses the target `box`, or crosses a later box, which samples
+/// it. Else moves the origin of a target's ray back to the scene's box.
+Ray Emission::restrict_to_box(const Ray& ray, std::size_t box) const {
     const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };
     const auto own = boxes_.begin() + static_cast<std::ptrdiff_t>(box);
     const bool is_missing = (box > 0 && !crosses(*own)) || std::any_of(own + 1, boxes_.end(), crosses);
@@ -298,21 +299,21 @@ Ray Emission::of_box(const Ray& ray, std::size_t box) const {
 
 bool Emission::has_sky() const {
     return std::any_of(emitters_.begin(), emitters_.end(), [](const Emitter& e) {
-        const Window* window = std::get_if<Window>(&e.shape);
-        return std::holds_alternative<SkySide>(e.shape) || (window && window->is_sky());
+        const Rectangle* rectangle = std::get_if<Rectangle>(&e.shape);
+        return std::holds_alternative<SkySide>(e.shape) || (rectangle && rectangle->is_sky());
     });
 }
 
 V3f Emission::sun_direction(std::size_t sun, float c, float d) const {
-    return std::get<Window>(emitters_[suns_[sun]].shape).ray(0, 0, c, d).direction;
+    return std::get<Rectangle>(emitters_[suns_[sun]].shape).ray(0, 0, c, d).direction;
 }
 
 std::vector<Emission::PartAlong> Emission::parts_along(const Ray& light, std::uint32_t sun) const {
     std::size_t box = boxes_.size() - 1;
     while (box > 0 && !line_crosses(boxes_[box], light)) --box;
     std::vector<PartAlong> parts;
-    const auto add_if_from = [&](std::size_t e, const V3f& corner, const V3f& edge_u, const V3f& edge_v,
-                                 const V3f& normal, double brightness) {
+    const auto add_crossed_part = [&](std::size_t e, const V3f& corner, const V3f& edge_u, const V3f& edge_v,
+                                      const V3f& normal, double brightness) {
         const float cosine = light.direction.dot(normal);
         if (!(cosine > 0)) return;
         const V3f start = light.origin + light.direction * ((corner - light.origin).dot(normal) / cosine) - corner;
@@ -321,18 +322,18 @@ std::vector<Emission::PartAlong> Emission::parts_along(const Ray& light, std::ui
         const auto cell = [](float x) { return static_cast<std::size_t>(x * float{cells_per_side}); };
         parts.push_back({e * parts_per_emitter + cell(v) * cells_per_side + cell(u), brightness});
     };
-    for (const std::size_t e : of_boxes_[box]) {
+    for (const std::size_t e : emitters_of_boxes_[box]) {
         const Emitter& emitter = emitters_[e];
         if (const SkySide* side = std::get_if<SkySide>(&emitter.shape); side && sun == none) {
             const float amount = side->component.amount(side->sky->towards(-light.direction));
-            add_if_from(e, side->corner, side->edge_u, side->edge_v, side->normal,
-                        channel_sum(RgbD(emitter.rating)) * double{amount});
+            add_crossed_part(e, side->corner, side->edge_u, side->edge_v, side->normal,
+                             channel_sum(RgbD(emitter.rating)) * double{amount});
         }
-        const Window* window = std::get_if<Window>(&emitter.shape);
-        if (!window || window->is_sky() != (sun == none)) continue;
+        const Rectangle* rectangle = std::get_if<Rectangle>(&emitter.shape);
+        if (!rectangle || rectangle->is_sky() != (sun == none)) continue;
         if (sun != none && emitter.luminaire != emitters_[suns_[sun]].luminaire) continue;
-        add_if_from(e, window->corner, window->edge_u, window->edge_v, window->direction,
-                    channel_sum(RgbD(emitter.rating)) / (sun == none ? std::numbers::pi : 1));
+        add_crossed_part(e, rectangle->corner, rectangle->edge_u, rectangle->edge_v, rectangle->direction,
+                         channel_sum(RgbD(emitter.rating)) / (sun == none ? std::numbers::pi : 1));
     }
     return parts;
 }
@@ -350,11 +351,11 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
     if (const SkySide* side = std::get_if<SkySide>(&emitter.shape))
         return of_side(side->normal, side->part_area,
                        emitter.rating * (pi * side->component.amount(side->sky->towards(-ray.direction))));
-    const Window& window = std::get<Window>(emitter.shape);
-    if (window.is_sky()) return of_side(window.direction, window.part_area, emitter.rating);
+    const Rectangle& rectangle = std::get<Rectangle>(emitter.shape);
+    if (rectangle.is_sky()) return of_side(rectangle.direction, rectangle.part_area, emitter.rating);
     // Far enough for equal direction and distance over the scene.
     const float far = 100 * boxes_.front().size().length();
-    return {ray.origin - far * ray.direction, window.direction, emitter.rating * (far * far)};
+    return {ray.origin - far * ray.direction, rectangle.direction, emitter.rating * (far * far)};
 }
 
 }  // namespace interflect::detail

@@ -20,7 +20,7 @@
 
 namespace interflect::detail {
 
-/// Part of a sky's radiance in one colour, for equal power per ray.
+/// Part of a sky's radiance with one colour: colour * amount(radiance). All rays of an emitter then carry equal power.
 struct SkyComponent {
     Rgb colour;
     float (*amount)(const Rgb& radiance);
@@ -29,9 +29,10 @@ struct SkyComponent {
 /// Whether a ray's infinite line crosses a box.
 bool line_crosses(const Imath::Box3f& box, const Ray& ray);
 
-/// Generates rays from luminaires, in parts of equal power per emitter: by direction (point, spot and measured lights)
-/// or position (directional lights and skies). Targets are boxes of high importance for outside light; each line is
-/// sampled from the last box it crosses. Immutable, thread-safe.
+/// Generates the rays of luminaires. A point, spot or measured light is one emitter. Outside light (directional lights
+/// and skies) has emitters for each box: the scene's box and targets, which are boxes of high importance. Each line of
+/// outside light is sampled from the last box that it crosses. Each emitter is divided into parts of equal power: by
+/// direction, or by position for outside light. Immutable, thread-safe.
 class Emission {
   public:
     Emission() = default;  ///< No luminaires.
@@ -39,20 +40,20 @@ class Emission {
     explicit Emission(const Scene& scene, std::span<const Imath::Box3f> targets = {});
 
     std::size_t part_count() const { return emitters_.size() * parts_per_emitter; }
-    /// Returns the power [lm or W]; outside light counts through the part's box. Rays start on the scene's box; rays on
-    /// lines of another box miss the scene.
+    /// Returns the power [lm or W]; of outside light, the power sent through the part's box.
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
-    /// Counts outside light through the scene's box.
+    /// Returns the power of all parts, without those of targets.
     RgbD total_power() const { return power_of_boxes(0, 1); }
     /// Returns the power of all targets' parts.
     RgbD repeated_power() const { return power_of_boxes(1, boxes_.size()); }
     /// Returns an index into Scene::luminaires.
     std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }
-    /// Consecutive parts of an emitter have comparable importance.
+    /// An emitter's parts are the cells of a grid over its (u, v), numbered row by row. Their importance is comparable.
     static constexpr std::size_t cells_per_side = 8, parts_per_emitter = cells_per_side * cells_per_side;
 
     bool has_sky() const;
     std::size_t sun_count() const { return suns_.size(); }
+    /// Samples the direction in which the sun's light travels.
     /// @param c, d  Uniform in (0, 1).
     V3f sun_direction(std::size_t sun, float c, float d) const;
     const Imath::Box3f& scene_box() const { return boxes_.front(); }
@@ -64,17 +65,21 @@ class Emission {
         std::size_t part;
         double brightness;  ///< Sum of channels: radiance of a sky, or irradiance facing the sun.
     };
-    /// @param light  Line in the direction of the light.
+    /// Returns the parts that emit along a line.
+    /// @param light  Any point of the line, and the direction in which light travels.
     /// @param sun    Index; `none` for parts of skies.
     std::vector<PartAlong> parts_along(const Ray& light, std::uint32_t sun) const;
 
-    /// Generates a part's samples first_sample ..., of equal power.
+    /// Generates rays of equal power from the part's samples, starting with number `first_sample`. Rays of outside
+    /// light start on or outside the scene's box. If another box samples the line of a ray, the ray misses the scene
+    /// instead.
     /// @param key     Of the part's point sequence (fill_points).
     /// @param points  Working memory.
     void shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                std::span<Ray> rays) const;
 
-    /// Point source that replaces a part near a ray from it, to estimate received power.
+    /// Point source that stands for a part in the oracle. At the end of a ray of the part, both cause about the same
+    /// irradiance.
     struct Proxy {
         V3f position{0, 0, 0};  ///< [m]
         V3f normal{0, 0, 0};    ///< Emission is proportional to the cosine to it; zero: isotropic.
@@ -92,12 +97,12 @@ class Emission {
         float inner_share;   // share of the power within `inner`
         Ray ray(float u, float v, float, float) const;
     };
-    /// Parallelogram that emits by cos(theta) about a direction, up to an angle.
-    struct Window {
+    /// Emits at angles theta from `direction`, up to a maximum, with density proportional to cos(theta).
+    struct Rectangle {
         V3f corner, edge_u, edge_v;
         V3f direction, s, t;
-        float sine;       // of that angle; 0: parallel, 1: diffuse
-        float part_area;  // on the scene's box, also for targets
+        float sine;       // of the maximum angle; 0: parallel, 1: diffuse
+        float part_area;  // of the same emitter for the scene's box, even if this one is for a target
         bool is_sky() const { return sine == 1; }
         Ray ray(float u, float v, float c, float d) const;
     };
@@ -106,7 +111,7 @@ class Emission {
         std::shared_ptr<const SkyRadiance> sky;
         std::shared_ptr<const DirectionTable> places;
         SkyComponent component;
-        float part_area;  // as in Window
+        float part_area;  // as in Rectangle
         Ray ray(float u, float v, float c, float d) const;
     };
     /// Rays start `offset` above the opening, which may lie in a surface.
@@ -119,8 +124,8 @@ class Emission {
         Ray ray(float u, float v, float c, float d) const;
     };
     struct Emitter {
-        std::variant<Beam, Window, SkySide, Web> shape;
-        Rgb rating;
+        std::variant<Beam, Rectangle, SkySide, Web> shape;
+        Rgb rating;  // Beam: intensity; Rectangle: exitance; SkySide: colour of the component; Web: factor
         RgbD part_power;
         std::size_t box = 0;
         std::size_t luminaire = 0;
@@ -136,13 +141,13 @@ class Emission {
     void add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
                  std::span<const SkyComponent> components);
     void add_beam(const Beam& beam, const Rgb& intensity);
-    void add_window(Window window, const Rgb& exitance, std::size_t box);
+    void add_rectangle(Rectangle rectangle, const Rgb& exitance, std::size_t box);
     RgbD power_of_boxes(std::size_t begin, std::size_t end) const;
-    Ray of_box(const Ray& ray, std::size_t box) const;
+    Ray restrict_to_box(const Ray& ray, std::size_t box) const;
 
     std::vector<Imath::Box3f> boxes_;  // the scene's, then targets; empty without patches
     std::vector<std::size_t> suns_;    // emitters of directional lights for box 0
-    std::vector<std::vector<std::size_t>> of_boxes_;
+    std::vector<std::vector<std::size_t>> emitters_of_boxes_;
     std::vector<Emitter> emitters_;
     std::map<const PhotometricWeb*, std::shared_ptr<const WebSampler>> samplers_;
 };

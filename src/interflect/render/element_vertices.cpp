@@ -19,7 +19,8 @@ using Corners = std::array<std::uint32_t, 4>;
 
 std::uint32_t corner_count(const Corners& corners) { return corners[3] == none ? 3 : 4; }
 
-/// Corners of the children in their parent: its corners 0 to 3, midpoints 4 to 7 of the edges from them, centre 8.
+/// Corners of each child as points of the parent: its corners 0 to 3, the midpoint 4 + c of the edge that starts at
+/// corner c, and the centre 8.
 using Places = std::array<std::array<std::uint32_t, 4>, 4>;
 constexpr Places quadrilateral_children{{{0, 4, 8, 7}, {4, 1, 5, 8}, {7, 8, 6, 3}, {8, 5, 2, 6}}};
 constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};
@@ -58,7 +59,7 @@ class VertexBuilder {
         : forest_(forest),
           surfaces_(find_smooth_surfaces(scene, options)),
           corners_(forest.size()),
-          middles_(forest.size() - forest.patch_count()) {  // a parent has four children and at most four edges
+          middles_(forest.size() - forest.patch_count()) {  // a parent has at most four midpoints, and four children
         edges_of_.assign(surfaces_.corners.count, no_edge);
         for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
             for (std::uint32_t c = 0; c < 4; ++c) corners_[p][c] = surfaces_.corners.group[4 * p + c];
@@ -92,7 +93,7 @@ class VertexBuilder {
         const std::uint32_t a = corners[c], b = corners[(c + 1) % corner_count(corners)];
         return {std::min(a, b), std::max(a, b)};
     }
-    /// Patch edges use their group, because two creases can have the same ends.
+    /// Edges of patches use their group: both sides of a crease can have the same ends, but not the same midpoint.
     std::uint64_t edge_key(std::uint32_t e, std::uint32_t c) const {
         const auto key = [](std::uint64_t low, std::uint64_t high) { return high << 32 | low; };
         if (e < forest_.patch_count()) return key(surfaces_.edges.group[4 * e + c], surfaces_.edges.group[4 * e + c]);
@@ -161,7 +162,7 @@ class VertexBuilder {
 
     struct SeamSide {
         std::vector<LeafEdge> leaves;
-        float length;  // [m]
+        float length;  // of the whole patch edge [m]
     };
     using SeamSides = std::array<SeamSide, 2>;
 
@@ -185,7 +186,7 @@ class VertexBuilder {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
         float fraction, angle;
-        float edge_length;  // [m]
+        float edge_length;  // of the leaf edge from ends[0] to ends[1] [m]
     };
 
     static void add_seam_vertices(const SmoothSurfaces::Seam& seam, const SeamSides& sides, std::size_t k,
@@ -224,7 +225,7 @@ class VertexBuilder {
                     }
             }
         }
-        // Ends of an edge hang only on longer edges.
+        // By decreasing length: the ends of an edge can hang only on longer edges, so they precede the vertices on it.
         std::stable_sort(found.begin(), found.end(),
                          [](const SeamVertex& a, const SeamVertex& b) { return a.edge_length > b.edge_length; });
         constexpr float clearly_longer = 1.01f;
@@ -239,7 +240,7 @@ class VertexBuilder {
     const ElementForest& forest_;
     const SmoothSurfaces surfaces_;
     std::vector<Corners> corners_;
-    std::vector<Ends> edges_of_;  // ends of the halved edge
+    std::vector<Ends> edges_of_;  // [vertex] ends of the edge that it halves, or no_edge
     KeyTable middles_;
 };
 

@@ -39,7 +39,7 @@ Estimate darkness(const SolverState& state) {
     return dark;
 }
 
-/// Moves the variance; the irradiance remains, as unshot light.
+/// Adds a bounce to the sum. May move its variance, but not its irradiance, which the next bounce reflects.
 void add(Estimate& sum, Received& received) {
     sum.escaped_power += received.escaped_power;
     accumulate(sum.groups, received.groups);
@@ -77,7 +77,7 @@ struct Passes::Pass {
     ImportanceWeights weights;
     /// See leaves_reflecting_where_received(). Empty while the oracle refines.
     std::vector<std::uint8_t> reflecting_where_received = {};
-    bool emits = true;             ///< The next bounce is the first.
+    bool emits = true;             ///< Whether the next bounce shoots the emitted power: only the first does.
     std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
     StartPoints start_points = {};
@@ -119,14 +119,14 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     if (pass.emits) pass.first_power = bounce.power, pass.first_weighted_power = bounce.weighted_power;
     const double weight =
         unshot_weight(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
-    // Random walks count as their expected number of rays.
+    // If random walks complete the bounce, rays.expected includes the expected rays after their first.
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(weight) : BounceRays();
     if (rays.expected == 0) return false;
 
     bounce.plan.rays = rays.started;
     TransportStep step = make_step(state, pass, std::move(bounce.plan));
     const std::uint32_t old_elements = state.forest->size();
-    // Random walks complete the last bounce in every subclass.
+    // Random walks use run_step() even if a subclass overrides trace_step().
     Received received = step.completes_by_walks ? run_step(state, std::move(step)) : trace_step(state, std::move(step));
 
     const double share = carries_importance ? state.options.experimental.alpha : 0;
@@ -136,7 +136,7 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     state.payloads += received.payloads;
     grow_pass(*state.forest, old_elements, pass);
     add(pass.sum, received);
-    if (carries_importance)  // at once: it guides the next bounces
+    if (carries_importance)  // at once: the oracle uses it in the next bounces
         detail::merge(state, solution.indirect_importance, received.importance, IterationPlan{.rays = rays.expected});
     pass.emits = false;
     pass.start_points = std::move(received.start_points);

@@ -14,7 +14,7 @@ namespace interflect::detail {
 /// mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
-    /// Estimates importance and the initial mesh (Eq. 14, 15) in small passes, whose light is not in the mean.
+    /// Estimates importance, then makes the initial mesh (Eq. 14, 15) by two small passes. Their light is not averaged.
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
@@ -25,11 +25,11 @@ class Passes : public IterationMethod {
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
-    /// Makes a first estimate for other methods by prepare() and a pass.
+    /// Calls prepare() and computes the irradiance of one pass, as the start of another IterationMethod.
     void make_first_estimate(SolverState& state);
 
   protected:
-    /// Traces the rays of a bounce. @throws Interrupted
+    /// Traces the rays of a bounce, unless random walks complete it: then run_step() is called. @throws Interrupted
     virtual Received trace_step(SolverState& state, TransportStep step) { return run_step(state, std::move(step)); }
 
   private:
@@ -41,7 +41,7 @@ class Passes : public IterationMethod {
 
     /// BounceBudget::bounces() of the last pass; 0: unknown.
     double bounces_ = 0;
-    bool needs_importance_ = false;  // before the next iteration, after a change of views
+    bool needs_importance_ = false;  // the views have changed: the next iteration starts with find_importance()
     ViewChange view_change_;
 };
 

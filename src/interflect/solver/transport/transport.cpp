@@ -28,9 +28,9 @@ std::uint64_t walk_key(const SampleStreams& streams) {
     return mix(mix(streams.seed, purpose), streams.allocations);
 }
 
-/// Rays per task: enough to amortise it, few enough for the second-level cache.
+/// Rays per task: enough to amortise the cost of a task, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
-/// Hits whose elements are prefetched before their deposit.
+/// Number of hits between the prefetch of an element and its deposit.
 constexpr std::size_t rays_ahead = 32;
 
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
@@ -48,8 +48,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Returns the visits of a random walk that fit into the sums: the expected 1 / (1 - rho), times 2^12 for chance and
-/// panes. The expected power keeps 2^49 units.
+/// Returns the `visits` of ContributionUnits for random walks: their expected number, at most 1 / (1 - rho), times 2^12
+/// for chance and panes. The expected sum of power then still has 2^49 of the 2^61 units of FixedPoint.
 double most_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
@@ -90,8 +90,8 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Makes the sums for leaves and luminaire parts; empty if the step carries no importance, or if importance is for
-/// patches and no luminaire shoots.
+/// Creates the sums of importance found by the rays of each leaf and luminaire part. Returns nothing if the step
+/// carries no importance, or if it deposits importance at patches and no luminaire shoots.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -131,18 +131,18 @@ void deposit(const TransportStep& step, const StepData& data, Batch& batch) {
     std::span<const Panes::HitBehind> behind = all_behind;
     std::size_t fetched = 0;
     for (const SourceRays& rays : shot.sources) {
-        const auto [source, first, last] = rays;
-        const std::size_t fetch = std::min<std::size_t>(last + rays_ahead, hits.size()), count = last - first;
+        const auto [source, begin, end] = rays;
+        const std::size_t fetch = std::min<std::size_t>(end + rays_ahead, hits.size()), count = end - begin;
         for (; fetched < fetch; ++fetched) descent.prefetch(hits[fetched]);
         data.units.fill_groups(step, data.payload, source, group_terms);
         descent.deposit(source, data.units.contribution(step, data.payload, source), group_terms,
-                        std::span(shot.rays).subspan(first, count), std::span(shot.origins).subspan(first, count),
-                        std::span(hits).subspan(first, count));
-        const auto of_others =
-            std::find_if(behind.begin(), behind.end(), [last = last](const auto& b) { return b.ray >= last; });
-        const auto own = static_cast<std::size_t>(of_others - behind.begin());
-        deposit_behind(step, data, rays, behind.first(own), batch);
-        behind = behind.subspan(own);
+                        std::span(shot.rays).subspan(begin, count), std::span(shot.origins).subspan(begin, count),
+                        std::span(hits).subspan(begin, count));
+        const auto first_of_others =
+            std::find_if(behind.begin(), behind.end(), [end = end](const auto& b) { return b.ray >= end; });
+        const auto own_count = static_cast<std::size_t>(first_of_others - behind.begin());
+        deposit_behind(step, data, rays, behind.first(own_count), batch);
+        behind = behind.subspan(own_count);
     }
     descent.finish_batch();
 }
@@ -158,15 +158,15 @@ void walk(const TransportStep& step, const StepData& data, const Walks& walks, s
             walkers.received_groups.push_back(data.payload.power(source, g) * RgbD(transmittance));
     };
     auto behind = batch.behind.begin();
-    for (const auto [source, first, last] : batch.shot.sources) {
-        for (std::uint32_t ray = first; ray < last; ++ray) add(source, ray, batch.hits[ray], Rgb(1));
-        for (; behind != batch.behind.end() && behind->ray < last; ++behind)
+    for (const auto [source, begin, end] : batch.shot.sources) {
+        for (std::uint32_t ray = begin; ray < end; ++ray) add(source, ray, batch.hits[ray], Rgb(1));
+        for (; behind != batch.behind.end() && behind->ray < end; ++behind)
             add(source, behind->ray, behind->hit, behind->transmittance);
     }
     walks.follow(first_ray, walkers, batch.descent);
 }
 
-/// StartPoints sorts the joined points.
+/// Joins the points of all threads in any order; StartPoints sorts them.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
@@ -214,7 +214,8 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     received.start_points = start_points_of(start_points);
     received.escaped_rays = escaped.rays;
     received.escaped_power = data.units.power.to_colour(escaped.power);
-    if (step.emission) {  // targets emit the same light again
+    // Each line is sampled from one box. Rays of other boxes along it miss the scene, with this power on average.
+    if (step.emission) {
         received.shot_power -= step.emission->repeated_power();
         received.escaped_power -= step.emission->repeated_power();
     }
