@@ -150,7 +150,7 @@ void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
     emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
-/// Emits from the box's projection along the light, enlarged for the tilted rays of a disc.
+/// Emits from the bounding rectangle of the box as seen along the light, enlarged because rays of a disc are tilted.
 void Emission::add(const DirectionalLight& light) {
     const V3f direction = light.direction.normalized();
     const TangentFrame frame(direction);
@@ -195,7 +195,7 @@ void Emission::add(const EnvironmentMap& map) {
     add_sky(std::make_shared<SkyRadiance>(map), finest, map_components);
 }
 
-/// Parallel sides of different boxes share tables of radiance times cosine.
+/// The same side of all boxes shares one table of radiance times cosine per component.
 void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
                        std::span<const SkyComponent> components) {
     const std::vector<Rgb> integrals = sky->cell_integrals(grid);
@@ -247,7 +247,7 @@ Ray Emission::Rectangle::ray(float u, float v, float c, float d) const {
     return {corner + edge_u * u + edge_v * v, turned(direction, s, t, std::sqrt(1 - squared), std::sqrt(squared), d)};
 }
 
-/// Cells may extend behind the side's plane: mirrors directions sampled there.
+/// A cell of the table may extend behind the side's plane. Directions behind the plane are mirrored to its front.
 Ray Emission::SkySide::ray(float u, float v, float c, float d) const {
     V3f direction = -sky->frame().direction(places->sample(c, d));
     const float cosine = direction.dot(normal);
@@ -345,7 +345,8 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
     if (const Web* web = std::get_if<Web>(&emitter.shape))
         return {ray.origin, V3f(0), emitter.rating * web->light->intensity(web->frame.to_luminaire(ray.direction))};
     const auto of_side = [&](const V3f& normal, float part_area, const Rgb& exitance) {
-        const float form_factor = part_area / (part_area + pi * squared);  // of a disk of that area
+        // Of a disk of this area, from a point on its axis.
+        const float form_factor = part_area / (part_area + pi * squared);
         return Proxy{ray.origin, normal, exitance * (form_factor * squared)};
     };
     if (const SkySide* side = std::get_if<SkySide>(&emitter.shape))
@@ -353,7 +354,7 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
                        emitter.rating * (pi * side->component.amount(side->sky->towards(-ray.direction))));
     const Rectangle& rectangle = std::get<Rectangle>(emitter.shape);
     if (rectangle.is_sky()) return of_side(rectangle.direction, rectangle.part_area, emitter.rating);
-    // Far enough for equal direction and distance over the scene.
+    // At this distance, direction and irradiance are nearly constant over the scene.
     const float far = 100 * boxes_.front().size().length();
     return {ray.origin - far * ray.direction, rectangle.direction, emitter.rating * (far * far)};
 }

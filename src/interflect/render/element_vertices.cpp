@@ -127,7 +127,7 @@ class VertexBuilder {
         for (std::uint32_t c = 0; c < corner_count(corners_[leaf]); ++c)
             if (const std::uint32_t middle = middles_.find(edge_key(leaf, c)); middle != none) hangs[middle] = true;
     }
-    /// Vertices before v must be marked.
+    /// Requires the final value of `hangs` for all vertices before v.
     bool lies_on_half_of_a_leafs_edge(std::uint32_t v, const std::vector<bool>& hangs) const {
         const auto [end, later_end] = edges_of_[v];
         return later_end != none && hangs[later_end] &&
@@ -142,7 +142,7 @@ class VertexBuilder {
         float size() const { return at[1] - at[0]; }
     };
 
-    /// `e` covers [low, high] of the patch's edge.
+    /// Adds the leaf edges that overlap [from, to] of the patch's edge. `e` covers [low, high] of it.
     void collect_leaf_edges(std::uint32_t e, std::uint32_t c, float low, float high, float from, float to,
                             std::vector<LeafEdge>& found) const {
         if (high <= from || low >= to) return;

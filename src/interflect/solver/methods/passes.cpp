@@ -22,10 +22,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum rays of a run that prepares before its first iteration.
+/// Passes::prepare() does nothing in a run with fewer rays.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Returns the unshot power, partly weighted by importance, relative to the first bounce.
+/// Returns the unshot power relative to the first bounce. With importance, only the share `beta` is this ratio; the
+/// rest is the same ratio of importance-weighted power.
 double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -81,11 +82,11 @@ struct Passes::Pass {
     std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
     StartPoints start_points = {};
-    double first_power = 0, first_weighted_power = 0;  ///< In the first bounce; see PowerPlan.
+    double first_power = 0, first_weighted_power = 0;  ///< PowerPlan::power and weighted_power of the first bounce.
     Estimate sum = {};
 };
 
-/// @param oracle_refines  Whether Eq. 14 and 15 refine the mesh meanwhile. @throws Interrupted
+/// @param oracle_refines  Whether the oracle (Eq. 14, 15) refines the mesh during the pass. @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
     state.payloads = {};  // reported for the last pass only
     Pass pass{rays, oracle_refines, BounceBudget(rays, bounces_),
@@ -212,7 +213,7 @@ Estimate Passes::trace(SolverState& state, IterationPlan& plan) {
     if (plan.rays <= plan.importance_rays) return {};
     const std::int64_t rays_before = rays_so_far(state);
     Estimate estimate = trace_pass(state, plan.rays - plan.importance_rays, oracle_refines_passes(state));
-    plan.rays = plan.traced =  // the weight in the mean, at least 1
+    plan.rays = plan.traced =  // also the weight in the mean, so at least 1
         std::max<std::int64_t>(1, plan.importance_rays + rays_so_far(state) - rays_before);
     return estimate;
 }
