@@ -9,14 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "interflect/elements/forest.h"
-#include "interflect/generators/two_rooms.h"
-#include "interflect/prepare.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/render/unoccluded_light.h"
 #include "interflect/solve.h"
-#include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 #include "tests/support/textured_scenes.h"
@@ -180,28 +176,6 @@ TEST(Hybrid, HasNoNoiseInDirectLightWithoutShadows) {
     }
     EXPECT_NEAR(mean_of(few.layers.reflected.direct) / mean_of(many.layers.reflected.direct), 1, 0.003);
 }
-
-class SealedRoomsPicture : public testing::TestWithParam<TwoRoomsOptions> {};
-
-/// The wall is 1 cm thick. Seen to fail when records reach across contacts.
-TEST_P(SealedRoomsPicture, LeaksNoLight) {
-    const Scene scene = cut_at_contacts(make_two_rooms(GetParam()));
-    const RayCaster ray_caster(scene);
-    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 300'000}});
-    // From above, without the ceiling's upper side: both rooms and the foot of the wall.
-    for (const View& view : scene.views) {
-        const PathOptions options{.width = 96, .height = 54, .samples = 8};
-        const double mean = mean_of(render_hybrid(scene, solution, ray_caster, view, options).image);
-        if (view.name == "lit")
-            EXPECT_GT(mean, 1);
-        else
-            EXPECT_LT(mean, 1e-3);
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Walls, SealedRoomsPicture,
-                         testing::Values(TwoRoomsOptions{}, TwoRoomsOptions{.turn = 30},
-                                         TwoRoomsOptions{.turn = 30, .furniture = true}));
 
 TEST(Hybrid, SameSeedSameBits) {
     Scene scene = room();
