@@ -150,7 +150,7 @@ def draw() -> None:
     panels[0].legend(loc="lower left", fontsize=7)
     caption = """Pictures of 960 x 540 pixels: relative root mean square error of pixels of reflected light against the time that the
         picture takes with its solve, processor time over two. Reference: two path-traced pictures, whose noise does not
-        count. Dashed: what is asked for, 5% in 15 seconds."""
+        count. Dashed lines: the target, 5% in 15 seconds."""
     folder = program.ROOT / "docs/figures"
     drawing.save(figure, folder, "pictures", caption)
     header = ["scene", "picture", "rays to solve", "samples", "seconds", "pixels", "blocks of 9", "mean"]

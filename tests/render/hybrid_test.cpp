@@ -124,7 +124,8 @@ std::vector<LitScene> lit_scenes() {
 
 class HybridScene : public testing::TestWithParam<LitScene> {};
 
-/// The means of all light and of direct light are those of path tracing within 1%. The solution's own error is 0.3%.
+/// All light, direct light and indirect light have the means of path tracing within 1%. The solution's own error is
+/// 0.3%.
 TEST_P(HybridScene, HasTheMeanOfPathTracing) {
     const Scene& scene = GetParam().scene;
     const RayCaster ray_caster(scene);
@@ -158,7 +159,7 @@ TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
     EXPECT_NEAR(mean_of(hybrid.layers.reflected.indirect), 60, 0.3);
 }
 
-/// Nothing hides the sources: direct light is exact in every pixel.
+/// Without occluders, direct light is exact in every pixel.
 TEST(Hybrid, HasNoNoiseInDirectLightWithoutShadows) {
     Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0.5f)}});
     add_lamp(scene, 0.6f);

@@ -32,7 +32,7 @@ namespace {
 struct TexelPlace {
     std::uint32_t patch = none;
     Parameters at;
-    std::array<Parameters, 2> sides{};  ///< Of the texel, along columns and rows.
+    std::array<Parameters, 2> sides{};  ///< Extent of the texel along columns and rows.
     bool is_inside = false;
 };
 

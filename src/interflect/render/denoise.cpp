@@ -219,7 +219,7 @@ NoisyLight noisy_light(const PictureLayers& layers, const std::array<Fields, 2>&
     return light;
 }
 
-/// Mean of what the filter has removed around pixel (x, y), reduced by the noise of this mean (James-Stein).
+/// Mean difference between unfiltered and filtered light around pixel (x, y), reduced by its noise (James-Stein).
 Rgb removed_around(const PictureLayers& layers, const NoisyLight& noisy, const Image& filtered, int x, int y) {
     const int width = filtered.width, height = filtered.height;
     const std::size_t i = pixel_at(x, y, width);
@@ -237,8 +237,8 @@ Rgb removed_around(const PictureLayers& layers, const NoisyLight& noisy, const I
     return square > variance ? removed * ((1 - variance / square) / weight) : Rgb(0);
 }
 
-/// Returns the filtered light of a pixel with the means of its surroundings: the filter blurs what varies by less than
-/// its noise.
+/// Returns the filtered light of a pixel, corrected by removed_around(), because the filter blurs variations below the
+/// noise.
 Rgb result_at(const PictureLayers& layers, const NoisyLight& noisy, const Image& filtered, int x, int y) {
     const std::size_t i = pixel_at(x, y, filtered.width);
     Rgb light = layers.emitted.pixels[i];

@@ -16,7 +16,7 @@ struct Gauge {
     V3f tangent{0, 0, 0};                  // perpendicular, in the arc's plane; both have unit length
     float half_arc = 0;                    // [rad]
     float offset = 0;                      // of ray origins along the normal [m]
-    std::uint32_t patch = none;            // that it lies on; none: it is a point in space
+    std::uint32_t patch = none;            // patch below the gauge; none for a point in space
     V3f side_u{0, 0, 0}, side_v{0, 0, 0};  // parallelogram around `position`, from which rays start on the patch [m]
     float inset = 0;                       // least distance of their starts from the patch's border [m]
 

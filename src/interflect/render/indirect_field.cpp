@@ -16,7 +16,7 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t paths_per_record = 512, records_per_tile = 4;
-/// Of a record, relative to the harmonic mean distance to what it sees, and in spacings of the points.
+/// Reach of a record: relative to the harmonic mean length of its rays, and its limits in spacings of the points.
 constexpr float reach_share = 0.35f, least_spacings = 4, most_spacings = 100;
 constexpr float least_cosine = 0.97f;  // of the angle between normals at the end of the reach: 14 degrees
 /// Distances along the normal count more: parallel surfaces differ.
@@ -25,7 +25,7 @@ constexpr float height_factor = 10;
 constexpr float covering_weight = 1;
 constexpr std::size_t points_of_first_round = 256;  // each round doubles them
 constexpr std::size_t points_at_once = 1024;
-/// Of the linear fit, relative to the records' spread: bounds the slope if they are few or nearly in line.
+/// Ridge of the linear fit, relative to the records' spread. Bounds the slope of few or nearly collinear records.
 constexpr float relative_ridge = 0.1f;
 
 V3f nearest_on(const Contact& contact, const V3f& x) {

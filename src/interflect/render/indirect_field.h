@@ -24,9 +24,9 @@ struct SurfacePoint {
 };
 
 /// Indirect irradiance of surfaces, interpolated between sparse records (irradiance caching, Ward et al. 1988). A
-/// record gathers the light of a solution, which averages its noise over a hemisphere. It reaches a share of the
-/// harmonic mean distance to what it sees, but at least a few spacings. Values are local linear fits to the records in
-/// reach. No record reaches across a contact. Immutable, thread-safe.
+/// record gathers the light of a solution, which averages its noise over a hemisphere. Its reach is a
+/// share of the harmonic mean length of its rays, but at least a few spacings. Values are local linear fits to the
+/// records in reach. No record reaches across a contact. Immutable, thread-safe.
 class IndirectField {
   public:
     /// Makes records until all points are covered.

@@ -65,7 +65,7 @@ struct FirstHit {
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
     double distance = 0;  // from the camera, through panes and by mirrors [m]
     double level = 0;     // of the element, with a known solution
-    double nearness = 0;  // 1 / distance to what a gauge sees [1/m]
+    double nearness = 0;  // 1 / length of the first ray from a gauge [1/m]
 
     FirstHit& operator+=(const FirstHit& o) {
         albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance, level += o.level;
@@ -121,7 +121,7 @@ class PathWavefront {
     /// Irradiance by the sources of a kind, without occlusion: exact, and estimated by shadow rays.
     struct ExactLight {
         Rgb exact{0, 0, 0};
-        Rgb sampled{0, 0, 0}, visible{0, 0, 0};  // by shadow rays: all, and those that are not occluded
+        Rgb sampled{0, 0, 0}, visible{0, 0, 0};  // contributions of all shadow rays, and of unoccluded ones
         Rgb result() const;
     };
     /// Place that the camera sees in a pixel: light of a patch, which all its paths there share.
@@ -158,7 +158,7 @@ class PathWavefront {
     /// Connects `ray.origin` to the lights and samples a direction. Returns as interact().
     /// @param middle  Of the pixel's or texel's part of the surface.
     bool leave(Ray& ray, Path& path, const V3f& middle);
-    /// Returns the place in seen_ of the first vertex, which may be new; none where light is gathered.
+    /// Returns the index in seen_ of the first vertex, added if new; none without indirect light.
     std::uint32_t seen_place(const V3f& x, const Path& path);
     void add_light_of_seen_places();
     /// Adds the connection to a place, which then estimates the visible share of exact light.

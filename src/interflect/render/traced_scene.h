@@ -50,7 +50,7 @@ class TracedScene {
     std::optional<SmoothNormals> smooth_normals_;  // for hybrid shading of scenes with normals
 };
 
-/// Points that paths start at: those that the camera sees, about one a pixel, or the gauges.
+/// First vertices: about one per pixel of the camera, or the gauges.
 /// @param stop  If set, some points are missing; may be null.
 std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop);
 

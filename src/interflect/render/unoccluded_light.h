@@ -10,8 +10,8 @@
 
 namespace interflect::detail {
 
-/// Exact irradiance of surfaces by light sources that nothing hides. Shadow rays then estimate only the visible share
-/// of it. Immutable, thread-safe. Cost: linear in the number of sources, hence only for few.
+/// Exact irradiance by light sources without occluders. Shadow rays then estimate only its visible share. Immutable,
+/// thread-safe. Cost: linear in the number of sources, hence only for few.
 class UnoccludedLight {
   public:
     /// Arguments must outlive this object.
@@ -33,8 +33,9 @@ class UnoccludedLight {
     bool has_patches_ = false, has_luminaires_ = false;
 };
 
-/// Returns the irradiance at x on a surface with normal n by a convex polygon of radiance 1, of which only the part
-/// above the surface counts. Its vertices may be in either order.
+/// Returns the irradiance at x on a surface with normal n, by the part above the surface of a convex polygon of
+/// radiance
+/// 1. Its vertices may be in either order.
 float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f& n);
 
 }  // namespace interflect::detail
