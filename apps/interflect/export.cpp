@@ -213,12 +213,12 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
         ->default_str("irradiance");
     of_lightmap(add_choice<LightmapShading>(
                     command, "--shading", lightmap.shading,
-                    {{"hybrid", LightmapShading::hybrid},
-                     {"smooth", LightmapShading::smooth},
+                    {{"smooth", LightmapShading::smooth},
+                     {"hybrid", LightmapShading::hybrid},
                      {"gather", LightmapShading::gather}},
-                    "hybrid: direct light of each texel, indirect light interpolated; smooth: interpolated between the "
-                    "elements; gather: each texel finds its own light"))
-        ->default_str("hybrid");
+                    "smooth: interpolated between the elements; hybrid: direct light of each texel, indirect light "
+                    "interpolated; gather: each texel finds its own light"))
+        ->default_str("smooth");
     of_lightmap(command.add_option("--samples", lightmap.samples,
                                    "Points a texel (default: 16); with --shading gather, directions (default: 64)"))
         ->check(CLI::Range(2, 1 << 24));

@@ -20,8 +20,8 @@ namespace interflect {
 
 /// Source of the irradiance of a lightmap's texels.
 enum class LightmapShading {
-    hybrid,  ///< Direct light of each texel, averaged over it; indirect light interpolated, as by render_hybrid().
     smooth,  ///< Interpolated between the elements, as by Shading::smooth.
+    hybrid,  ///< Direct light of each texel, averaged over it; indirect light interpolated, as by render_hybrid().
     gather,  ///< Gathered at each texel, as by measure_irradiance().
 };
 
@@ -35,7 +35,7 @@ struct LightmapOptions {
     float texels_per_metre = 20;  ///< Minimum, > 0; less only on surfaces that would exceed an image.
     int max_size = 4096;          ///< Side of an image [texels], 64 to 16384, a multiple of 4; more images if needed.
     int gutter = 2;               ///< Margin of each chart, filled from its edge [texels], 1 to 64.
-    LightmapShading shading = LightmapShading::hybrid;
+    LightmapShading shading = LightmapShading::smooth;
     LightmapContent content = LightmapContent::irradiance;
     int samples = 16;  ///< Points per texel, at which direct light is sampled; or gathered directions. >= 2.
     std::uint64_t seed = 1;
