@@ -28,18 +28,12 @@ constexpr std::uint32_t hybrid_shadow_rays = 4;
 /// In hybrid shading, one of this many paths also samples emitters and skies by its direction, best near emitters.
 constexpr std::uint32_t paths_per_direction = 4;
 
-/// Projects x onto its patch, against rounding.
-V3f offset_origin(const PathScene& s, std::uint32_t patch, const V3f& x) {
-    const PatchGeometry& geometry = s.geometry[patch];
-    return geometry.point(geometry.parameters_of(x)) + geometry.normal() * s.ray_caster.ray_offset(patch);
-}
-
 /// Uniform in the gauge's parallelogram, moved to its patch.
 V3f start_on(const PathScene& s, const Gauge& gauge, float u, float v) {
     if (gauge.patch == none) return gauge.position;
     const PatchGeometry& geometry = s.geometry[gauge.patch];
     const V3f x = gauge.position + (u - 0.5f) * gauge.side_u + (v - 0.5f) * gauge.side_v;
-    return offset_origin(s, gauge.patch, geometry.point(geometry.inset(geometry.parameters_of(x), gauge.inset)));
+    return s.lifted(gauge.patch, geometry.point(geometry.inset(geometry.parameters_of(x), gauge.inset)));
 }
 
 }  // namespace
@@ -88,12 +82,13 @@ void PathWavefront::start_at_gauges(std::span<const BatchOfPaths> batches) {
     for (std::size_t b = 0; b < batches.size(); ++b) {
         fill_points(PointSet::sobol, keys_[b], 0, size, points);
         const Gauge& gauge = s_.start->gauges[batches[b].pixel];
+        const V3f middle = start_on(s_, gauge, 0.5f, 0.5f);
         for (std::size_t i = 0; i < size; ++i) {
             const V3f normal = gauge.normal_at(points.coordinate[0][i]);
             Path path{Rgb(1, 1, 1), static_cast<std::uint32_t>(b * size + i), normal, gauge.patch};
             Ray ray{start_on(s_, gauge, points.coordinate[1][i], points.coordinate[2][i]) + normal * gauge.offset,
                     normal};
-            if (!leave(ray, path, gauge.position + normal * gauge.offset)) continue;
+            if (!leave(ray, path, middle)) continue;
             rays_.push_back(ray);
             paths_.push_back(path);
         }
@@ -140,7 +135,7 @@ void PathWavefront::split_paths() {
             if (vertex_ > 1 || !s_.options.mirrors || largest_channel(m.specular_reflectance) <= 0) continue;
             const V3f n = s_.geometry[hit.patch].normal();
             const V3f mirrored = ray.direction - 2 * n.dot(ray.direction) * n;
-            add_path({offset_origin(s_, hit.patch, ray.origin + hit.distance * ray.direction), mirrored}, path,
+            add_path({s_.lifted(hit.patch, ray.origin + hit.distance * ray.direction), mirrored}, path,
                      m.specular_reflectance, reflectance_of_hit(ray, hit));
         }
         hits_.resize(rays_.size());
@@ -199,7 +194,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
                       ? s_.smooth_normals->at(geometry, hit.patch, geometry.parameters_of(x))
                       : geometry.normal();
     path.patch = hit.patch;
-    ray.origin = offset_origin(s_, hit.patch, x);
+    ray.origin = s_.lifted(hit.patch, x);
     if (s_.finds_points) {
         points_.push_back(
             {ray.origin, path.normal, hit.patch, distance * s_.start->pixel_angle + s_.start->pixel_size});
@@ -249,7 +244,7 @@ std::uint32_t PathWavefront::seen_place(const V3f& x, const Path& path) {
         SeenPlace& place = seen_.emplace_back();
         place.batch = batch, place.patch = path.patch, place.index = path.index, place.normal = path.normal;
         place.indirect = s_.indirect_field->at(x, path.normal, path.patch);
-        if (s_.unoccluded.has_patches()) place.patches.exact = s_.unoccluded.by_patches(x, path.normal);
+        if (s_.unoccluded.has_patches()) place.patches.exact = s_.unoccluded.by_patches(x, path.normal, path.patch);
         if (s_.unoccluded.has_luminaires()) place.luminaires.exact = s_.unoccluded.by_luminaires(x, path.normal);
     }
     SeenPlace& place = seen_[i - 1];

@@ -56,6 +56,11 @@ struct PathScene {
     bool directions_find_light() const {
         return !unoccluded.has_patches() || skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
     }
+    /// Projects x onto its patch, against rounding, and lifts it off.
+    V3f lifted(std::uint32_t patch, const V3f& x) const {
+        const PatchGeometry& g = geometry[patch];
+        return g.point(g.parameters_of(x)) + g.normal() * ray_caster.ray_offset(patch);
+    }
     const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
 };
 

@@ -69,7 +69,10 @@ std::size_t TracedScene::batch_size(int samples, int batches) {
 
 std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop) {
     std::vector<SurfacePoint> points;
-    for (const Gauge& g : scene.start->gauges) points.push_back({g.position, g.normal, g.patch, g.spacing()});
+    for (const Gauge& g : scene.start->gauges) {
+        const V3f start = g.patch == none ? g.position : scene.lifted(g.patch, g.position);
+        points.push_back({start, g.normal, g.patch, g.spacing()});
+    }
     if (!scene.start->camera) return points;
     PathScene finding = scene;
     finding.batch_size = 1;

@@ -55,14 +55,14 @@ UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeomet
     has_luminaires_ = luminaires_.size() <= most_sources;
 }
 
-Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n) const {
+Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n, std::uint32_t own) const {
     Rgb irradiance(0);
     for (const std::uint32_t i : patches_) {
         const Patch& patch = scene_.patches[i];
         std::array<V3f, 4> vertices;
         const auto count = static_cast<std::size_t>(patch.vertex_count());
         for (std::size_t k = 0; k < count; ++k) vertices[k] = scene_.vertices[patch.vertices[k]];
-        if (geometry_[i].normal().dot(x - vertices[0]) <= 0) continue;
+        if (i == own || geometry_[i].normal().dot(x - vertices[0]) <= 0) continue;
         irradiance += scene_.materials[patch.material].exitance *
                       (polygon_irradiance(std::span(vertices).first(count), x, n) / pi);
     }

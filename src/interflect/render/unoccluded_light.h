@@ -21,8 +21,9 @@ class UnoccludedLight {
     bool has_patches() const { return has_patches_; }
     bool has_luminaires() const { return has_luminaires_; }
 
-    /// Returns the irradiance [as H] at x on a surface with normal n. Lambert's formula for polygons.
-    Rgb by_patches(const V3f& x, const V3f& n) const;
+    /// Returns the irradiance [as H] at x on a surface with normal n, by Lambert's formula for polygons.
+    /// @param own  The patch below x, which does not count; may be none.
+    Rgb by_patches(const V3f& x, const V3f& n, std::uint32_t own) const;
     /// Measured luminaires: the mean over 16 points of the opening.
     Rgb by_luminaires(const V3f& x, const V3f& n) const;
 
