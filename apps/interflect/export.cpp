@@ -151,7 +151,7 @@ void check_format_options(const ExportArguments& arguments, const CLI::App& comm
     }
     constexpr std::array<std::string_view, 2> of_sampling = {"--samples", "--seed"};
     if (arguments.lightmap.shading == LightmapShading::smooth)
-        refuse_options(command, of_sampling, "it has no effect with --shading smooth");
+        refuse_options(command, of_sampling, "it has no effect without --shading hybrid or gather");
 }
 
 void run(const ExportArguments& arguments, const CLI::App& command, int& exit_code) {
