@@ -77,8 +77,9 @@ Rgb UnoccludedLight::by_luminaires(const V3f& x, const V3f& n) const {
         const int across = is_extended ? 4 : 1;
         const float share = 1 / static_cast<float>(across * across);
         for (int k = 0; k < across * across; ++k) {
-            const float u = (static_cast<float>(k % across) + 0.5f) / static_cast<float>(across),
-                        v = (static_cast<float>(k / across) + 0.5f) / static_cast<float>(across);
+            const int column = k % across, row = k / across;
+            const float u = (static_cast<float>(column) + 0.5f) / static_cast<float>(across),
+                        v = (static_cast<float>(row) + 0.5f) / static_cast<float>(across);
             const Illumination light = illumination(luminaire, x, u, v);
             irradiance += light.irradiance * (std::max(0.0f, n.dot(light.towards)) * share);
         }
