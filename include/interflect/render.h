@@ -111,7 +111,7 @@ struct PictureLayers {
 
 /// A picture with its standard error.
 struct PathTracing {
-    /// Radiance L = (M + rho H) / pi seen by each pixel, the mean over its square; black for escaped rays. In the units
+    /// Radiance L = (M + rho H) / pi seen by each pixel, the mean over its square; the sky for escaped rays. In the units
     /// of render(). Unbiased: the expected value is the exact solution. Pixels not reached by an interrupted run are
     /// black.
     Image image;

@@ -106,11 +106,12 @@ IndirectField::IndirectField(const PathScene& scene, std::span<const SurfacePoin
         uncovered.clear();
         for (std::size_t i = 0; i < is_covered.size(); ++i)
             if (is_covered[i] == 0) uncovered.push_back(points[order[begin + i]]);
-        add_records(scene, uncovered);
+        add_records(scene, uncovered, stop);
     }
 }
 
-void IndirectField::add_records(const PathScene& scene, std::span<const SurfacePoint> points) {
+void IndirectField::add_records(const PathScene& scene, std::span<const SurfacePoint> points,
+                                const std::atomic<bool>* stop) {
     std::vector<Gauge> gauges;
     std::vector<BatchOfPaths> batches;
     for (const SurfacePoint& p : points) {
@@ -129,10 +130,12 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
         (scene.options.quantity == PathQuantity::irradiance ? 1 : std::numbers::pi) / paths_per_record;
     std::vector<std::int64_t> rays((batches.size() + records_per_tile - 1) / records_per_tile);
     parallel_for_ranges(batches.size(), records_per_tile, [&](std::size_t begin, std::size_t end) {
+        if (stop && *stop) return;
         PathWavefront wavefront(gathering);
         wavefront.trace(std::span(batches).subspan(begin, end - begin));
         rays[begin / records_per_tile] = wavefront.counts().rays;
     });
+    if (stop && *stop) return;
     rays_ = std::accumulate(rays.begin(), rays.end(), rays_);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const SurfacePoint& p = points[i];

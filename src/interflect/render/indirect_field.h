@@ -31,7 +31,7 @@ class IndirectField {
   public:
     /// Makes records until all points are covered.
     /// @param scene  With a known solution; its starts and batches are ignored.
-    /// @param stop   If set, ends early; may be null.
+    /// @param stop   If set, ends within milliseconds, with fewer records; may be null.
     IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
 
     /// Returns the irradiance [as H]; nullopt without a record in reach.
@@ -51,7 +51,7 @@ class IndirectField {
     struct Fit;
 
     Fit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
-    void add_records(const PathScene& scene, std::span<const SurfacePoint> points);
+    void add_records(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
     float distance_to_contact(const V3f& x, float most) const;
 
     std::vector<Contact> contacts_;
