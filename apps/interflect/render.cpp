@@ -244,11 +244,14 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     // A signal that ended the solver would end gathering before its first ray.
     const bool needs_paths = options.path.layers || !options.path.error_image.empty();
     const bool gathers = traces_paths(options.shading) && (needs_paths || !is_stop_requested());
-    if (traces_paths(options.shading) && !gathers)
-        spdlog::warn("stopped before gathering: the light is drawn as by --shading smooth");
-    const Picture picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
-                            : gathers ? draw_paths(solved.scene, &solved.solution, ray_caster, view, options)
-                                      : draw_light(solved, ray_caster, view, options);
+    Picture picture;
+    if (gathers) picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options);
+    const bool is_drawn = gathers && (needs_paths || picture.traced.paths > 0);
+    if (traces_paths(options.shading) && !is_drawn)
+        spdlog::warn("stopped before the first pixel: the light is drawn as by --shading smooth");
+    if (!is_drawn)
+        picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
+                                             : draw_light(solved, ray_caster, view, options);
     if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
     if (!solved_before) stats.write(solved.scene, solved.solution);

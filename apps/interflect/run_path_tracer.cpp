@@ -123,7 +123,7 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
     });
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
         spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());
-    if (arguments.denoise) {
+    if (arguments.denoise && traced.paths > 0) {
         const LongWork work("filtering noise");
         traced.image = denoise(traced.layers);
     }
