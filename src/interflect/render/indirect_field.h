@@ -9,6 +9,8 @@
 
 #include "interflect/core.h"
 #include "interflect/geometry/box_tree.h"
+#include "interflect/render/local_fit.h"
+#include "interflect/render/part_statistics.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
@@ -24,9 +26,9 @@ struct SurfacePoint {
 };
 
 /// Indirect irradiance of surfaces, interpolated between sparse records (irradiance caching, Ward et al. 1988). A
-/// record gathers the light of a solution, which averages its noise over a hemisphere. Its reach is a
-/// share of the harmonic mean length of its rays, but at least a few spacings. Values are local linear fits to the
-/// records in reach. No record reaches across a contact. Immutable, thread-safe.
+/// record gathers the light of a solution, which averages its noise over a hemisphere. Its reach is a share of the
+/// harmonic mean length of its rays, but at least a few spacings. Noisy records gather more. Values are local linear
+/// fits to the records in reach. No record reaches across a contact. Immutable, thread-safe.
 class IndirectField {
   public:
     /// Makes records until all points are covered.
@@ -37,7 +39,6 @@ class IndirectField {
     /// Returns the irradiance [as H]; nullopt without a record in reach.
     std::optional<Rgb> at(const V3f& x, const V3f& n, std::uint32_t patch) const;
 
-    std::size_t records() const { return records_.size(); }
     std::int64_t rays() const { return rays_; }
 
   private:
@@ -46,12 +47,21 @@ class IndirectField {
         std::uint32_t patch = none;
         float reach = 0;            // on its own patch, which no contact crosses [m]
         float reach_elsewhere = 0;  // at most the distance to the nearest contact [m]
-        Rgb irradiance{0, 0, 0};
-    };
-    struct Fit;
+        float level = 0;            // luminance of all irradiance there, to which errors are relative [as H]
+        float nearness = 0;         // sum of 1 / length over the first rays of its paths [1/m]
+        PartStatistics gathered{};  // irradiance by groups of paths [as H]
 
-    Fit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
+        /// Squared distance relative to the reach; 1 or more beyond it.
+        float distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const;
+    };
+
+    LocalFit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
+    void cover(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
+    void gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,
+                const std::atomic<bool>* stop);
     void add_records(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
+    void gather_more_where_noisy(const PathScene& scene, const std::atomic<bool>* stop);
+    float pooled_variance(const Record& record) const;
     float distance_to_contact(const V3f& x, float most) const;
 
     std::vector<Contact> contacts_;

@@ -27,6 +27,7 @@ class KnownLight {
     Place place(std::uint32_t patch, const V3f& x) const;
     int level(std::uint32_t patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
+    const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
     /// Returns rho H / pi.
     Rgb reflected_radiance(const Place& place) const;
 

@@ -24,9 +24,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum batches per pixel: 7 degrees of freedom for its standard error. Hybrid shading has less noise; larger
-/// batches reduce it further.
-constexpr int least_batches = 8, least_hybrid_batches = 2;
+/// Minimum batches per pixel: 7 degrees of freedom for its standard error.
+constexpr int least_batches = 8;
+/// Hybrid shading begins with fewer. Without a target, only pixels of a larger relative error get all.
+constexpr std::uint32_t first_hybrid_batches = 2;
 /// Amortises the cost of a call.
 constexpr std::size_t paths_per_tile = 2048;
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
@@ -40,15 +41,19 @@ class PathPicture {
           pixels_(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height)) {}
 
     void trace() {
-        const auto batch = static_cast<int>(s_.batch_size);
-        const auto least = static_cast<std::uint32_t>((options_.samples + batch - 1) / batch);
-        const auto most =
-            static_cast<std::uint32_t>((std::max(options_.max_samples, options_.samples) + batch - 1) / batch);
+        const auto batches_of = [&](int samples) {
+            const auto batch = static_cast<int>(s_.batch_size);
+            return static_cast<std::uint32_t>((samples + batch - 1) / batch);
+        };
+        const bool has_target = options_.until > 0, is_hybrid = s_.indirect_field != nullptr;
+        const double target = has_target || !is_hybrid ? options_.until : hybrid_target;
+        const std::uint32_t usual = batches_of(options_.samples);
+        const std::uint32_t least = is_hybrid ? std::min(usual, first_hybrid_batches) : usual;
+        const std::uint32_t most = has_target ? batches_of(std::max(options_.max_samples, options_.samples)) : usual;
         std::vector<std::uint32_t> wanted(pixels_.size(), least);
         foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
         trace_round(wanted);
-        if (options_.until <= 0) return;
-        while (!stopped() && want_more(wanted, most)) trace_round(wanted);
+        while (target > 0 && !stopped() && want_more(wanted, target, most)) trace_round(wanted);
         if (!stopped()) report(1);
     }
 
@@ -122,8 +127,8 @@ class PathPicture {
 
     bool stopped() const { return monitor_.stop && *monitor_.stop; }
 
-    bool want_more(std::vector<std::uint32_t>& wanted, std::uint32_t most) {
-        const std::vector<double> needed = needed_batches(pixels_, options_);
+    bool want_more(std::vector<std::uint32_t>& wanted, double target, std::uint32_t most) {
+        const std::vector<double> needed = needed_batches(pixels_, options_, target);
         bool more = false;
         foreseen_ = 0;
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
@@ -145,12 +150,19 @@ class PathPicture {
             more = false;
             for (std::uint32_t i = 0; i < pixels_.size() && !stopped(); ++i) {
                 if (present[i] >= wanted[i]) continue;
-                chunk.push_back({i, present[i]++});
+                chunk.push_back(batch_of(i, present[i]++));
                 more = true;
                 if (chunk.size() >= per_chunk) trace_chunk(chunk);
             }
         }
         trace_chunk(chunk);
+    }
+
+    /// In hybrid shading, the batches of a pixel continue one sequence, which stratifies them; the error is then
+    /// overestimated. Otherwise they are independent.
+    BatchOfPaths batch_of(std::uint32_t pixel, std::uint32_t number) const {
+        if (!s_.indirect_field) return {pixel, number};
+        return {pixel, 0, number * static_cast<std::uint32_t>(s_.batch_size)};
     }
 
     void trace_chunk(std::vector<BatchOfPaths>& chunk) {
@@ -213,8 +225,7 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     ray_caster.require_made_for(scene);
     const TracedScene traced(scene, ray_caster, known);
     const bool is_hybrid = known && known->is_interpolated;
-    PathScene path_scene = traced.paths(
-        start, options, TracedScene::batch_size(options.samples, is_hybrid ? least_hybrid_batches : least_batches));
+    PathScene path_scene = traced.paths(start, options, TracedScene::batch_size(options.samples, least_batches));
     std::optional<IndirectField> indirect_field;
     if (is_hybrid) {
         indirect_field.emplace(path_scene, first_points(path_scene, monitor.stop), monitor.stop);

@@ -42,7 +42,8 @@ V3f PathWavefront::start_of(const Ray& ray, const Path& path) { return ray.origi
 
 void PathWavefront::trace(std::span<BatchOfPaths> batches) {
     light_.resize(batches.size() * s_.batch_size);
-    for (const BatchOfPaths& b : batches) keys_.push_back(mix(mix(s_.options.seed, b.pixel), b.batch));
+    for (const BatchOfPaths& b : batches)
+        sequences_.push_back({mix(mix(s_.options.seed, b.pixel), b.batch), b.first_point});
     if (s_.start->camera)
         start_at_camera(batches);
     else
@@ -66,7 +67,7 @@ void PathWavefront::start_at_camera(std::span<const BatchOfPaths> batches) {
     const auto width = static_cast<std::uint32_t>(s_.options.width);
     thread_local PointBlock points;
     for (std::size_t b = 0; b < batches.size(); ++b) {
-        fill_points(PointSet::sobol, keys_[b], 0, size, points);
+        fill_points(PointSet::sobol, sequences_[b].key, sequences_[b].first, size, points);
         const std::uint32_t column = batches[b].pixel % width, row = batches[b].pixel / width;
         const auto left = static_cast<float>(column), top = static_cast<float>(row);
         for (std::size_t i = 0; i < size; ++i) {
@@ -80,7 +81,7 @@ void PathWavefront::start_at_gauges(std::span<const BatchOfPaths> batches) {
     const std::size_t size = s_.batch_size;
     thread_local PointBlock points;
     for (std::size_t b = 0; b < batches.size(); ++b) {
-        fill_points(PointSet::sobol, keys_[b], 0, size, points);
+        fill_points(PointSet::sobol, sequences_[b].key, sequences_[b].first, size, points);
         const Gauge& gauge = s_.start->gauges[batches[b].pixel];
         const V3f middle = start_on(s_, gauge, 0.5f, 0.5f);
         for (std::size_t i = 0; i < size; ++i) {
@@ -206,12 +207,12 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
 bool PathWavefront::leave(Ray& ray, Path& path, const V3f& middle) {
     path.travelled = 0;
     path.place = s_.indirect_field && vertex_ == 1 ? seen_place(middle, path) : none;
-    const auto size = static_cast<std::uint32_t>(s_.batch_size);
-    const std::uint64_t key = keys_[path.index / size];
+    const std::uint64_t key = sequence(path).key;
+    const std::uint32_t point = point_index(path);
     const bool samples_emitters = s_.options.emitter_sampling != EmitterSampling::directions;
     const std::uint32_t count = shadow_rays_at(vertex_);
     for (std::uint32_t k = 0; k < count; ++k) {
-        const std::uint32_t index = path.index % size * count + k;
+        const std::uint32_t index = point * count + k;
         const LightSample sample = light_sample(key, vertex_, index);
         if (samples_emitters) connect_to_patch(ray.origin, path, sample);
         // Reflected paths cannot hit luminaires other than skies.
@@ -221,10 +222,10 @@ bool PathWavefront::leave(Ray& ray, Path& path, const V3f& middle) {
     if (s_.known && path.place == none) connect_to_known_light(ray.origin, path);
 
     if (path.place != none) {
-        if (!s_.directions_find_light() || path.index % size % paths_per_direction != 0) return false;
+        if (!s_.directions_find_light() || point % paths_per_direction != 0) return false;
         path.throughput *= static_cast<float>(paths_per_direction);
     }
-    const VertexSample sample = vertex_sample(key, vertex_, path.index % size);
+    const VertexSample sample = vertex_sample(key, vertex_, point);
     const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
     if (sample.roulette >= survival) return false;
     path.throughput /= survival;
@@ -255,8 +256,15 @@ std::uint32_t PathWavefront::seen_place(const V3f& x, const Path& path) {
 
 Rgb PathWavefront::ExactLight::result() const {
     Rgb light(0);
-    for (int c = 0; c < 3; ++c)
-        if (sampled[c] > 0) light[c] = exact[c] * (visible[c] / sampled[c]);
+    for (int c = 0; c < 3; ++c) {
+        const float all = sampled[0][c] + sampled[1][c];
+        if (!(all > 0)) continue;
+        float share = (visible[0][c] + visible[1][c]) / all;
+        // The bias of a ratio of sums falls with their number of terms: extrapolates (Quenouille 1956).
+        if (sampled[0][c] > 0 && sampled[1][c] > 0)
+            share = 2 * share - (visible[0][c] / sampled[0][c] + visible[1][c] / sampled[1][c]) / 2;
+        light[c] = exact[c] * share;
+    }
     return light;
 }
 
@@ -272,7 +280,10 @@ void PathWavefront::add_light_of_seen_places() {
 void PathWavefront::estimate_visible_share(Connection& connection, const Path& path, ExactLight SeenPlace::*kind) {
     connection.place = path.place;
     connection.kind = kind;
-    (seen_[path.place].*kind).sampled += connection.radiance;
+    ExactLight& light = seen_[path.place].*kind;
+    connection.half = light.next_half;
+    light.next_half = 1 - light.next_half;
+    light.sampled[connection.half] += connection.radiance;
 }
 
 void PathWavefront::add_sky(const Ray& ray, const Path& path) {
@@ -329,8 +340,7 @@ bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Pat
 }
 
 void PathWavefront::connect_to_known_light(const V3f& x, const Path& path) {
-    const auto size = static_cast<std::uint32_t>(s_.batch_size);
-    const PlaceSample sample = place_sample(keys_[path.index / size], vertex_, path.index % size);
+    const PlaceSample sample = place_sample(sequence(path).key, vertex_, point_index(path));
     const KnownLight::Place place = s_.known->sample(x, path.normal, sample.patch, sample.u, sample.v);
     if (place.patch == none) return;
     const V3f to_light = s_.geometry[place.patch].point(place.parameters) - x;
@@ -407,7 +417,7 @@ void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const L
 }
 
 void PathWavefront::connect_to_sky(const V3f& x, const Path& path, std::uint32_t index) {
-    const SkySample numbers = sky_sample(keys_[path.index / s_.batch_size], vertex_, index);
+    const SkySample numbers = sky_sample(sequence(path).key, vertex_, index);
     const Skies::Sample sample = s_.skies.sample(numbers.sky, numbers.u, numbers.v);
     const float cosine = path.normal.dot(sample.direction);
     const float sky_density = static_cast<float>(shadow_rays_at(vertex_)) * sample.density;
@@ -464,7 +474,7 @@ void PathWavefront::trace_shadow_rays() {
         if (c.place == none)
             add(c.index, c.bounces, c.radiance);
         else
-            (seen_[c.place].*c.kind).visible += c.radiance;
+            (seen_[c.place].*c.kind).visible[c.half] += c.radiance;
     }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -81,7 +82,8 @@ struct FirstHit {
 
 /// Sums over one batch of a pixel's paths.
 struct BatchOfPaths {
-    std::uint32_t pixel = 0, batch = 0;
+    std::uint32_t pixel = 0, batch = 0;  // together the key of a sequence of points
+    std::uint32_t first_point = 0;
     bool done = false;
     RgbD emitted{0, 0, 0};
     RgbD direct{0, 0, 0};
@@ -119,6 +121,11 @@ class PathWavefront {
         bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
         std::uint32_t place = none;  // in seen_: ends at the next vertex, because its indirect light is known
     };
+    /// Points of a batch.
+    struct Sequence {
+        std::uint64_t key;
+        std::uint32_t first;
+    };
     struct PathLight {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
         FirstHit first{};
@@ -126,7 +133,9 @@ class PathWavefront {
     /// Irradiance by the sources of a kind, without occlusion: exact, and estimated by shadow rays.
     struct ExactLight {
         Rgb exact{0, 0, 0};
-        Rgb sampled{0, 0, 0}, visible{0, 0, 0};  // contributions of all shadow rays, and of unoccluded ones
+        // Contributions of all shadow rays, and of unoccluded ones, each in two halves.
+        std::array<Rgb, 2> sampled{Rgb(0), Rgb(0)}, visible{Rgb(0), Rgb(0)};
+        std::uint32_t next_half = 0;
         Rgb result() const;
     };
     /// Place that the camera sees in a pixel: light of a patch, which all its paths there share.
@@ -144,6 +153,7 @@ class PathWavefront {
         float distance;              // to the luminaire [m]
         std::uint32_t bounces;       // reflections of its light
         std::uint32_t place = none;  // in seen_; then `radiance` only estimates the visible share of exact light
+        std::uint32_t half = 0;      // of that estimate
         ExactLight SeenPlace::*kind = nullptr;
     };
 
@@ -175,6 +185,11 @@ class PathWavefront {
     /// Returns the weight of light found by the path's own direction, against shadow rays to it. Densities in [1/sr].
     float direction_weight(float direction_density, float light_density) const;
     std::uint32_t shadow_rays_at(std::uint32_t vertex) const;
+    const Sequence& sequence(const Path& path) const { return sequences_[path.index / s_.batch_size]; }
+    /// Returns the index of the path's points in its sequence.
+    std::uint32_t point_index(const Path& path) const {
+        return sequence(path).first + path.index % static_cast<std::uint32_t>(s_.batch_size);
+    }
     /// @param path  Its throughput includes the reflectance at x; also below.
     void connect_to_patch(const V3f& x, const Path& path, const LightSample& sample);
     void connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample);
@@ -195,7 +210,7 @@ class PathWavefront {
     const PathScene& s_;
     // Next vertex; the camera is 0.
     std::uint32_t vertex_ = 1;
-    std::vector<std::uint64_t> keys_;
+    std::vector<Sequence> sequences_;  // of each batch
     std::vector<PathLight> light_;
     std::vector<Path> paths_;  // parallel to rays_
     std::vector<Ray> rays_, shadow_rays_;

@@ -50,7 +50,8 @@ double relative_error(const std::vector<PixelStatistics>& pixels) {
     return std::sqrt(sum / static_cast<double>(pixels.size()));
 }
 
-std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options) {
+std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+                                   double target) {
     const double picture_mean = mean_reflected(pixels);
     std::vector<double> variance(pixels.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -60,7 +61,7 @@ std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, c
     const auto width = static_cast<std::size_t>(options.width), height = static_cast<std::size_t>(options.height);
     variance = mean_along(variance, height, width, width, 1);
     variance = mean_along(variance, width, 1, height, width);
-    for (double& v : variance) v /= options.until * options.until;
+    for (double& v : variance) v /= target * target;
     return variance;
 }
 

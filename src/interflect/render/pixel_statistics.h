@@ -6,25 +6,10 @@
 
 #include "interflect/core.h"
 #include "interflect/render.h"
+#include "interflect/render/part_statistics.h"
 #include "interflect/render/path_wavefront.h"
 
 namespace interflect::detail {
-
-inline double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
-
-/// Statistics over a pixel's batches (Welford 1962).
-struct PartStatistics {
-    RgbD mean{0, 0, 0};
-    double squares = 0;  // squared deviations of mean_channel()
-    std::uint32_t batches = 0;
-
-    void add(const RgbD& value) {
-        const RgbD difference = value - mean;
-        mean += difference / static_cast<double>(++batches);
-        squares += mean_channel(difference) * mean_channel(value - mean);
-    }
-    double squared_error() const { return batches > 1 ? squares / (batches - 1.0) / batches : 0; }
-};
 
 struct PixelStatistics {
     RgbD mean{0, 0, 0}, squares{0, 0, 0};
@@ -61,7 +46,9 @@ struct PixelStatistics {
 /// Returns PathTracing::relative_error.
 double relative_error(const std::vector<PixelStatistics>& pixels);
 
-/// Returns the total per pixel for options.until.
-std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options);
+/// Returns the total per pixel.
+/// @param target  Of the relative standard error.
+std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+                                   double target);
 
 }  // namespace interflect::detail

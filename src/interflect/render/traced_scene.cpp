@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "interflect/base/parallel.h"
+#include "interflect/render/part_statistics.h"
 #include "interflect/render/smooth_surfaces.h"
 
 namespace interflect::detail {
@@ -92,17 +94,51 @@ std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic
     return points;
 }
 
+namespace {
+
+/// Traces the gauges `first`, ... Returns the number of rays.
+std::int64_t trace_gauges(const PathScene& paths, std::size_t first, std::span<Rgb> irradiance) {
+    constexpr std::size_t first_batches = 2;
+    const auto size = static_cast<std::uint32_t>(paths.batch_size);
+    std::vector<PartStatistics> light(irradiance.size());
+    std::vector<BatchOfPaths> batches;
+    std::int64_t rays = 0;
+    const auto trace = [&] {
+        PathWavefront wavefront(paths);
+        wavefront.trace(batches);
+        rays += wavefront.counts().rays;
+        for (const BatchOfPaths& b : batches) light[b.pixel - first].add((b.direct + b.indirect) / size);
+    };
+    const auto add_batches = [&](std::size_t i, std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k)
+            batches.push_back(
+                {.pixel = static_cast<std::uint32_t>(first + i), .first_point = static_cast<std::uint32_t>(k) * size});
+    };
+    for (std::size_t i = 0; i < irradiance.size(); ++i) add_batches(i, 0, first_batches);
+    trace();
+    batches.clear();
+    const std::size_t all_batches = static_cast<std::size_t>(paths.options.samples) / size;
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+        if (std::sqrt(light[i].squared_error()) > hybrid_target * mean_channel(light[i].mean))
+            add_batches(i, first_batches, all_batches);
+    trace();
+    for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i] = Rgb(light[i].mean);
+    return rays;
+}
+
+}  // namespace
+
 std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance& known,
                                    std::span<const Gauge> gauges, const PathOptions& options, const Monitor& monitor) {
     ray_caster.require_made_for(scene);
     const TracedScene traced(scene, ray_caster, &known);
     PathStart start;
     start.gauges = gauges;
-    PathScene paths = traced.paths(start, options, TracedScene::batch_size(options.samples, 1));
+    PathScene paths = traced.paths(start, options, TracedScene::batch_size(options.samples, 8));
     const IndirectField field(paths, first_points(paths, monitor.stop), monitor.stop);
     paths.indirect_field = &field;
     std::vector<Rgb> irradiance(gauges.size());
-    const std::size_t per_tile = std::max<std::size_t>(1, paths_per_tile / paths.batch_size);
+    constexpr std::size_t per_tile = 256;
     constexpr std::size_t tiles_per_report = 256;
     std::int64_t rays = field.rays();
     for (std::size_t first = 0; first < gauges.size(); first += per_tile * tiles_per_report) {
@@ -110,15 +146,8 @@ std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_cast
         std::vector<std::int64_t> rays_of_tile((count + per_tile - 1) / per_tile);
         parallel_for_ranges(count, per_tile, [&](std::size_t begin, std::size_t end) {
             if (monitor.stop && *monitor.stop) return;
-            std::vector<BatchOfPaths> batches;
-            for (std::size_t i = begin; i < end; ++i)
-                batches.push_back({.pixel = static_cast<std::uint32_t>(first + i)});
-            PathWavefront wavefront(paths);
-            wavefront.trace(batches);
-            for (std::size_t i = begin; i < end; ++i)
-                irradiance[first + i] = Rgb((batches[i - begin].direct + batches[i - begin].indirect) /
-                                            static_cast<double>(paths.batch_size));
-            rays_of_tile[begin / per_tile] = wavefront.counts().rays;
+            rays_of_tile[begin / per_tile] =
+                trace_gauges(paths, first + begin, std::span(irradiance).subspan(first + begin, end - begin));
         });
         if (monitor.stop && *monitor.stop)
             throw Stopped(fmt::format("stopped when {} of {} texels of the lightmap had light", first, gauges.size()));

@@ -50,11 +50,14 @@ class TracedScene {
     std::optional<SmoothNormals> smooth_normals_;  // for hybrid shading of scenes with normals
 };
 
+/// Relative standard error in hybrid shading above which a pixel or texel gets more samples.
+constexpr double hybrid_target = 0.06;
+
 /// First vertices: about one per pixel of the camera, or the gauges.
 /// @param stop  If set, some points are missing; may be null.
 std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop);
 
-/// Irradiance of gauges by hybrid shading, without statistics: 1 batch of options.samples paths for each.
+/// Irradiance of gauges by hybrid shading, with up to options.samples paths for each where light varies.
 /// @param known  Irradiance of a solution.
 /// @return       [as H], per gauge; the same bits for any number of threads. @throws Stopped
 std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance& known,

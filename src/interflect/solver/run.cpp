@@ -31,6 +31,8 @@ void Run::dim(std::size_t group, float factor) {
     if (factor > 0) known_dimming[group] = factor;
     solution.dimming[group] = factor;
     for (Rgb& h : solution.groups[group]) h *= change;
+    if (!solution.direct.empty())
+        for (Rgb& h : solution.direct[group]) h *= change;
     solution.irradiance = sum_of(solution.groups, solution.dimming);
     dim_sources();
     state.escaped_power_rays = 0;  // unknown until the next iteration

@@ -14,6 +14,15 @@ namespace interflect::detail {
 
 namespace {
 
+/// Clamps direct light to the range from 0 to all light.
+void limit_direct(const Solution& solution, GroupLight& direct) {
+    for (std::size_t g = 0; g < direct.size(); ++g) {
+        const std::vector<Rgb>& all = solution.groups.empty() ? solution.irradiance : solution.groups[g];
+        for (std::size_t e = 0; e < all.size(); ++e)
+            for (int c = 0; c < 3; ++c) direct[g][e][c] = std::clamp(direct[g][e][c], 0.0f, all[e][c]);
+    }
+}
+
 /// Clamps each group to zero, then rescales the groups to sum to the total.
 void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) {
     for (std::size_t e = 0; e < irradiance.size() && !groups.empty(); ++e)
@@ -40,7 +49,7 @@ void finish_solution(SolverState& state) {
     state.streams.used.resize(forest.size(), 0);
     solution.rays.assign(state.streams.used.begin(), state.streams.used.end());
     std::vector<Rgb> reduced = solution.irradiance;
-    GroupLight reduced_groups = solution.groups;
+    GroupLight reduced_groups = solution.groups, reduced_direct = solution.direct;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const std::uint32_t parent = forest.parent(first);
         const Shrinkage shrinkage = shrinkage_of(state, first);
@@ -65,17 +74,23 @@ void finish_solution(SolverState& state) {
             for (std::uint32_t k = 0; k < 4; ++k)
                 reduced[first + k][c] = std::max(0.0f, mean + factor[c] * difference[k][c]);
         }
-        for (std::size_t g = 0; g < reduced_groups.size(); ++g) {
-            const std::array<Rgb, 4> of_group = differences(solution.groups[g]);
-            for (std::uint32_t k = 0; k < 4; ++k)
-                reduced_groups[g][first + k] = reduced_groups[g][parent] + factor * of_group[k];
-        }
+        const auto reduce = [&](const GroupLight& light, GroupLight& reduced_light) {
+            for (std::size_t g = 0; g < light.size(); ++g) {
+                const std::array<Rgb, 4> of_group = differences(light[g]);
+                for (std::uint32_t k = 0; k < 4; ++k)
+                    reduced_light[g][first + k] = reduced_light[g][parent] + factor * of_group[k];
+            }
+        };
+        reduce(solution.groups, reduced_groups);
+        reduce(solution.direct, reduced_direct);
     });
     solution.irradiance = std::move(reduced);
     for (std::size_t g = 0; g < reduced_groups.size(); ++g)
         if (solution.dimming[g] == 0) reduced_groups[g].assign(forest.size(), Rgb(0));
     share_among_groups(solution.irradiance, reduced_groups);
     solution.groups = std::move(reduced_groups);
+    limit_direct(solution, reduced_direct);
+    solution.direct = std::move(reduced_direct);
 }
 
 }  // namespace interflect::detail

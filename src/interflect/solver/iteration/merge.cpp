@@ -97,8 +97,9 @@ void merge(const SolverState& state, GroupLight& mean, const GroupLight& receive
 }
 void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
                        const IterationPlan& plan) {
+    const std::vector<float>& dimming = state.solution.dimming;  // empty without groups
     for (std::size_t g = 0; g < mean.size(); ++g)
-        if (state.solution.dimming[g] > 0) merge_independent(state, mean[g], received[g], plan);
+        if (dimming.empty() || dimming[g] > 0) merge_independent(state, mean[g], received[g], plan);
 }
 
 void merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan) {

@@ -26,6 +26,8 @@ void dim(Scene& scene, Solution& solution, const std::string& group, float facto
     if (solution.undimmed_light.empty()) solution.undimmed_light = patch_light(scene, solution.irradiance);
     scene = dimmed(scene, groups, factors);
     for (Rgb& h : solution.groups[g]) h *= factor;
+    if (!solution.direct.empty())
+        for (Rgb& h : solution.direct[g]) h *= factor;
     solution.irradiance = sum_of(solution.groups);
 }
 

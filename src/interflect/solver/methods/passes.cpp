@@ -37,6 +37,7 @@ double unshot_weight(const PowerPlan& bounce, double first_power, double first_w
 Estimate darkness(const SolverState& state) {
     Estimate dark{std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f)};
     dark.groups.assign(state.groups.size(), dark.irradiance);
+    dark.direct.assign(std::max<std::size_t>(1, state.groups.size()), dark.irradiance);
     return dark;
 }
 
@@ -46,6 +47,7 @@ void add(Estimate& sum, Received& received) {
     accumulate(sum.groups, received.groups);
     if (sum.irradiance.empty()) {
         sum.irradiance = received.irradiance;
+        sum.direct = received.groups.empty() ? GroupLight{received.irradiance} : received.groups;
         sum.variance = std::move(received.variance);
         return;
     }
@@ -60,6 +62,7 @@ void add(Estimate& sum, Received& received) {
 void set_estimate(SolverState& state, Estimate estimate) {
     state.solution.irradiance = std::move(estimate.irradiance);
     state.solution.groups = std::move(estimate.groups);
+    state.solution.direct = std::move(estimate.direct);
     state.escaped_power = estimate.escaped_power;
 }
 
@@ -101,7 +104,7 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     if (sum.irradiance.empty()) sum = darkness(state);  // no power to shoot
     if (!oracle_refines) {                              // TransportStep::leaves_only: inner elements are still empty
         pull(*state.forest, sum.irradiance), pull_variance(*state.forest, sum.variance);
-        pull(*state.forest, sum.groups);
+        pull(*state.forest, sum.groups), pull(*state.forest, sum.direct);
     }
     return std::move(sum);
 }
@@ -165,15 +168,16 @@ void Passes::grow_pass(const ElementForest& forest, std::uint32_t first, Pass& p
         inherit(forest, first, pass.sum.irradiance);
         inherit(forest, first, pass.sum.variance);
         inherit(forest, first, pass.sum.groups);
+        inherit(forest, first, pass.sum.direct);
     }
     if (!pass.weights.elements.empty()) inherit(forest, first, pass.weights.elements);
 }
 
 void Passes::prepare(SolverState& state) {
+    set_estimate(state, darkness(state));  // an interrupted preparation may have left light
     if (state.options.limits.rays < fewest_rays_with_preparation) return;
     const std::int64_t rays = state.schedule.start_rays();
     bounces_ = 0;
-    set_estimate(state, darkness(state));  // an interrupted preparation may have left light
     if (importance_use(state.solution) == ImportanceUse::full) find_importance(state, rays);
     state.importance_rays += aim_outdoor_light(state);
     if (state.options.method.refines)  // the first pass estimates the light that the oracle needs
@@ -186,6 +190,7 @@ void Passes::prepare(SolverState& state) {
 void Passes::make_first_estimate(SolverState& state) {
     prepare(state);
     set_estimate(state, trace_pass(state, state.schedule.start_rays(), false));
+    state.solution.direct.clear();  // the other method does not keep it apart
     state.schedule.began_with(0, rays_so_far(state));
     report(state, 0);
 }
@@ -227,6 +232,7 @@ void Passes::merge(SolverState& state, const Estimate& estimate, const Iteration
     estimate_noise(state, estimate, plan.rays);
     merge_independent(state, state.solution.irradiance, estimate.irradiance, plan);
     merge_independent(state, state.solution.groups, estimate.groups, plan);
+    merge_independent(state, state.solution.direct, estimate.direct, plan);
     merge_escaped_power(state, estimate.escaped_power, plan);
     update_history(state, plan);
 }

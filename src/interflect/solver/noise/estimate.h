@@ -12,6 +12,7 @@ struct Estimate {
     std::vector<Rgb> irradiance = {};    ///< H by element [lm/m^2 or W/m^2].
     std::vector<float> variance = {};    ///< Variance of its luminance, for independent rays.
     GroupLight groups = {};              ///< `irradiance` by light group.
+    GroupLight direct = {};              ///< As Solution::direct; empty if not known.
     std::vector<float> importance = {};  ///< Empty if not carried.
     RgbD escaped_power{0, 0, 0};
     double shot_power = 0;  ///< Sum of the channels.

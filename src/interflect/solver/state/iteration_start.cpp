@@ -22,7 +22,8 @@ void IterationStart::restore(SolverState& state) const {
     if (state.forest->size() > elements_) {
         while (state.forest->size() > elements_) state.forest->drop_last_siblings();
         solution.irradiance.resize(elements_);
-        for (std::vector<Rgb>& of_group : solution.groups) of_group.resize(elements_);
+        for (GroupLight* light : {&solution.groups, &solution.direct})
+            for (std::vector<Rgb>& of_group : *light) of_group.resize(elements_);
         state.history.resize(elements_);
         state.noise.shrink(elements_);
         state.view.shrink(elements_);

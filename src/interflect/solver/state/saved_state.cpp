@@ -68,7 +68,8 @@ void SolverState::archive(StateArchive& archive) {
     const std::vector<std::uint32_t> parents = archive.by_value("subdivided", forest->subdivided());
     archive("seconds", earlier_seconds);
     archive("irradiance", solution.irradiance);
-    for (std::size_t g = 0; g < groups.size(); ++g) archive("groups/" + std::to_string(g), solution.groups[g]);
+    archive_groups(archive, "groups", solution.groups);
+    archive_groups(archive, "direct", solution.direct);
     archive("indirect_importance", solution.indirect_importance);
     archive("non_finite", solution.non_finite);
     archive("history", history);
@@ -104,8 +105,12 @@ void SolverState::archive(StateArchive& archive) {
     forest->rebuild(parents);
     const std::size_t elements = forest->size();
     require(solution.irradiance.size() == elements, "expected the irradiance of every element");
-    for (const std::vector<Rgb>& of_group : solution.groups)
-        require(of_group.size() == elements, "expected the irradiance of every element by every light group");
+    require(solution.groups.size() == groups.size() &&
+                (solution.direct.empty() || solution.direct.size() == std::max<std::size_t>(1, groups.size())),
+            "expected the irradiance by every light group");
+    for (const GroupLight* light : {&solution.groups, &solution.direct})
+        for (const std::vector<Rgb>& of_group : *light)
+            require(of_group.size() == elements, "expected the irradiance of every element by every light group");
     require(!options.method.is_stochastic || (history.size() == elements && noise.elements() == elements),
             "expected the noise of every element");
     require(streams.used.size() <= elements, "expected points of elements that there are");

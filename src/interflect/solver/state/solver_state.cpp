@@ -129,6 +129,7 @@ float pixel_area(const SolverState& state, std::uint32_t element) {
 void grow_with_forest(SolverState& state, std::uint32_t first) {
     inherit(*state.forest, first, state.solution.irradiance);
     inherit(*state.forest, first, state.solution.groups);
+    inherit(*state.forest, first, state.solution.direct);
     state.noise.grow(*state.forest, first);
     state.materials.grow(*state.forest);
     inherit(*state.forest, first, state.history);

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+
+#include "interflect/core.h"
+
+namespace interflect::detail {
+
+/// Weighted least-squares fit of a linear function to values around the origin of a plane.
+class LocalFit {
+  public:
+    void add(float w, float s, float t, const Rgb& value) {
+        for (int c = 0; c < 3; ++c) {
+            least_[c] = weight_ > 0 ? std::min(least_[c], value[c]) : value[c];
+            most_[c] = weight_ > 0 ? std::max(most_[c], value[c]) : value[c];
+        }
+        weight_ += w, s_ += w * s, t_ += w * t;
+        ss_ += w * s * s, st_ += w * s * t, tt_ += w * t * t;
+        sum_ += w * value, sum_s_ += w * s * value, sum_t_ += w * t * value;
+    }
+    float weight() const { return weight_; }
+
+    /// Coefficients of the values in the fit's value at the origin: w (constant + by_s s + by_t t).
+    struct Coefficients {
+        float constant, by_s, by_t;
+    };
+    Coefficients coefficients() const {
+        // Bounds the slope of few or nearly collinear points.
+        constexpr float relative_ridge = 0.1f;
+        const float ridge = relative_ridge * (ss_ + tt_), a = ss_ + ridge, d = tt_ + ridge;
+        const float determinant = a * d - st_ * st_;
+        const float s = determinant > 0 ? (s_ * d - t_ * st_) / determinant : 0;
+        const float t = determinant > 0 ? (t_ * a - s_ * st_) / determinant : 0;
+        const float own = weight_ - s_ * s - t_ * t;
+        if (!(own > 0)) return {1 / weight_, 0, 0};
+        return {1 / own, -s / own, -t / own};
+    }
+    /// Returns the value at the origin, within the range of the values.
+    Rgb value() const {
+        const Coefficients k = coefficients();
+        Rgb fitted = sum_ * k.constant + sum_s_ * k.by_s + sum_t_ * k.by_t;
+        for (int c = 0; c < 3; ++c) fitted[c] = std::clamp(fitted[c], least_[c], most_[c]);
+        return fitted;
+    }
+
+  private:
+    float weight_ = 0, s_ = 0, t_ = 0, ss_ = 0, st_ = 0, tt_ = 0;  // weighted sums
+    Rgb sum_{0, 0, 0}, sum_s_{0, 0, 0}, sum_t_{0, 0, 0};
+    Rgb least_{0, 0, 0}, most_{0, 0, 0};
+};
+
+}  // namespace interflect::detail
