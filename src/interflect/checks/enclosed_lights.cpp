@@ -21,7 +21,7 @@ constexpr std::uint64_t segments_per_path = 16;
 constexpr std::uint64_t seed_of_reflections = 51, seed_of_faces = 52, seed_of_volume = 53, seed_of_starts = 54,
                         seed_of_choices = 55;
 
-/// Points just before the hit surfaces.
+/// Points just in front of the hit surfaces.
 struct Path {
     std::vector<V3f> points;
     bool stays = true;

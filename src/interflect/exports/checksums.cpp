@@ -49,7 +49,7 @@ std::string_view checked_name(std::string_view name) {
     return is_numbered ? name.substr(0, last) : name;
 }
 
-/// Joins numbered arrays, because the block has limited room. @param ranges  In file order.
+/// Joins numbered arrays, because the block has limited room.
 std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges) {
     std::vector<FileRange> joined;
     for (const FileRange& range : ranges) {

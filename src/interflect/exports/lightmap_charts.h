@@ -19,8 +19,8 @@ struct LightmapChart {
     Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
 };
 
-/// Makes charts from the objects' own layouts (kept_layouts()). Unfolds other smooth surfaces (unfolded()), split at
-/// discontinuities of light and at gaps narrower than two texels.
+/// Makes charts from kept_layouts(). Unfolds other smooth surfaces (unfolded()), split at discontinuities of light and
+/// at gaps narrower than two texels.
 /// @param warnings  As for kept_layouts().
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings = nullptr);

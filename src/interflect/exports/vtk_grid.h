@@ -20,7 +20,6 @@ struct VtkArray {
         numbers;
 };
 
-/// A solved scene with leaves as cells.
 class VtkGrid {
   public:
     using Sink = std::function<void(const VtkArray&)>;
@@ -34,7 +33,7 @@ class VtkGrid {
     /// World coordinates [m]; double if the scene's origin is not 0.
     VtkArray points() const;
     std::vector<std::int64_t> connectivity() const;
-    /// Returns cell_count() + 1 bounds of the cells in connectivity().
+    /// Bounds of each cell in connectivity(), cell_count() + 1 in all.
     std::vector<std::int64_t> offsets() const;
     std::vector<std::uint8_t> types() const;
 
