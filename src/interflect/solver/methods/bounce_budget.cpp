@@ -11,12 +11,11 @@ namespace {
 constexpr double fewest_rays_of_bounce = 2;
 /// They also do if less than this share remains: each bounce takes time for every element.
 constexpr double least_share_left = 0.05;
-/// Minimum number of random walks; fewer make small passes noisy. Rays beyond the plan are not counted.
+/// Fewer make small passes noisy. Rays beyond the plan are not counted.
 constexpr std::int64_t fewest_walks = 32;
 /// Value of bounces() until measured.
 constexpr double assumed_bounces = 2;
-/// Expected ratio of unshot power between bounces: first; after an increase, while light spreads towards the view;
-/// maximum.
+/// Expected ratio of unshot power between bounces: first; after an increase; maximum.
 constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, highest_decay = 0.99;
 
 }  // namespace
@@ -29,7 +28,7 @@ BounceRays BounceBudget::next(double unshot) {
     const double fall = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
     decay_ = fall < 1 ? std::min(highest_decay, fall) : decay_while_it_grows;
     last_unshot_ = unshot;
-    // Unshot power from here on: as in the previous pass, or a geometric series.
+    // From here on: as in the previous pass, or a geometric series.
     const double geometric = unshot / (1 - decay_), planned = is_known_ ? bounces_ - unshot_sum_ : geometric;
     // Later bounces keep a tenth, for light that the previous pass did not find.
     const double to_come = is_known_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;

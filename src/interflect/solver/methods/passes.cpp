@@ -25,8 +25,8 @@ namespace {
 /// Passes::prepare() does nothing in a run with fewer rays.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Returns the unshot power relative to the first bounce. With importance, only the share `beta` is this ratio; the
-/// rest is the same ratio of importance-weighted power.
+/// Relative to the first bounce. With importance, only the share `beta` is this ratio of power; the rest is that of
+/// importance-weighted power.
 double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -86,7 +86,7 @@ struct Passes::Pass {
     Estimate sum = {};
 };
 
-/// @param oracle_refines  Whether the oracle (Eq. 14, 15) refines the mesh during the pass. @throws Interrupted
+/// @param oracle_refines  Whether the oracle refines the mesh during the pass. @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
     state.payloads = {};  // reported for the last pass only
     Pass pass{rays, oracle_refines, BounceBudget(rays, bounces_),
@@ -106,7 +106,6 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     return std::move(sum);
 }
 
-/// Traces one bounce (Eq. 1, Prikryl et al. 2000) and adds it to the pass.
 /// @return  False if no unshot light or no rays are left.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     Solution& solution = state.solution;
@@ -120,7 +119,7 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     if (pass.emits) pass.first_power = bounce.power, pass.first_weighted_power = bounce.weighted_power;
     const double weight =
         unshot_weight(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
-    // If random walks complete the bounce, rays.expected includes the expected rays after their first.
+    // Includes the expected rays of random walks after their first.
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(weight) : BounceRays();
     if (rays.expected == 0) return false;
 

@@ -63,7 +63,7 @@ BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t ray
     return arrived;
 }
 
-/// Returns the importance that guides particles (Eq. 10, or Eq. 9 on request).
+/// By Eq. 10, or Eq. 9 on request.
 std::vector<float> leading_importance(const Solution& so_far) {
     switch (importance_use(so_far)) {
         case ImportanceUse::off:
@@ -76,7 +76,7 @@ std::vector<float> leading_importance(const Solution& so_far) {
     return so_far.options.experimental.total_importance ? total_importance(so_far) : so_far.indirect_importance;
 }
 
-/// Returns beta + (1 - beta) psi, with psi relative to its mean over emitted power.
+/// beta + (1 - beta) psi, with psi relative to its mean over emitted power.
 std::vector<float> particle_density(const Solution& so_far, const std::vector<Rgb>& emitted) {
     std::vector<float> density = leading_importance(so_far);
     double power = 0, important = 0;
@@ -100,7 +100,7 @@ WalkSource light(const SolverState& state) {
     payload.density = particle_density(state.solution, payload.emitted);
     for (std::size_t i = 0; i < state.emission.part_count(); ++i) {
         payload.emitted.emplace_back(state.emission.power(i));
-        payload.density.push_back(1);  // the mean: their importance is unknown
+        payload.density.push_back(1);  // the mean: importance is unknown
     }
     return payload;
 }
