@@ -11,22 +11,21 @@
 
 namespace interflect::detail {
 
-/// The rays of a plan and their receivers.
 struct TransportStep : RayPlan {
     explicit TransportStep(RayPlan plan = {}) : RayPlan(std::move(plan)) {}
 
-    Radiosity known_light;  ///< Radiosity for the oracle; empty: `light`.
+    Radiosity known_light;  ///< For the oracle; empty: `light`.
     const Radiosity& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;
     Oracle oracle;
-    /// Random walks complete the transport of this power (Walks).
+    /// See Walks.
     bool completes_by_walks = false;
     /// Nonzero for leaves that reflect where they receive (StartPoints); may be empty.
     std::span<const std::uint8_t> reflecting_where_received;
     bool reflects_where_received(std::uint32_t leaf) const {
         return !reflecting_where_received.empty() && reflecting_where_received[leaf] != 0;
     }
-    /// Buffer to reuse after tracing, or null.
+    /// To reuse after tracing, or null.
     std::vector<Rgb>* reusable_buffer = nullptr;
     /// Inner elements receive 0. Not with a refining oracle.
     bool leaves_only = false;

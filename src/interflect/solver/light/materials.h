@@ -13,7 +13,7 @@
 namespace interflect::detail {
 
 /// Reflectance, exitance and transmittance by patch and, with textures, by element. Refers to the scene. Covered
-/// emitters keep the exitance of their uncovered share (RayCaster), so no place emits twice.
+/// emitters keep the exitance of their uncovered share (RayCaster).
 class Materials {
   public:
     /// Ignores coincident faces.
@@ -42,7 +42,7 @@ class Materials {
         return channel_sum(surface(patch, element).reflectance) / 3;
     }
     bool has_textures() const { return !elements_.empty(); }
-    /// Adds new elements, which have the mean of their patch until then.
+    /// New elements have the mean of their patch until then.
     void grow(const ElementForest& forest) { elements_.grow(forest); }
 
   private:
@@ -60,10 +60,10 @@ struct CoveredEmission {
     std::int64_t wholly = 0, partly = 0;
     RgbD power{0, 0, 0};  ///< [lm or W]
 };
-/// @throws InputError if the ray caster is of another scene.
+/// @throws InputError for a ray caster of another scene.
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
-/// Returns Radiosity by element. With textures, inner elements have the mean of their children.
+/// With textures, inner elements have the mean of their children.
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
 /// Sum of area times value over the roots, in fixed order.

@@ -6,8 +6,8 @@
 namespace interflect::detail {
 
 /// Splits leaves in which irradiance is expected to vary by more than the children's noise, except those with
-/// negligible errors or of minimum size (ElementFloor). Only later rays measure the new differences, so splits cause no
-/// bias. Call between iterations.
+/// negligible errors or of minimum size (ElementFloor). Only later rays measure the new differences: splits cause no
+/// bias.
 void refine_by_variance(SolverState& state);
 
 /// Marks leaves that reflect where they receive (StartPoints), if refine_by_variance() makes the mesh.

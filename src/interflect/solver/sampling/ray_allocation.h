@@ -36,8 +36,8 @@ class RayAllocation {
 
     std::size_t block_count() const { return blocks_.size(); }
     static std::size_t block_of(std::size_t source) { return source / block_sources; }
-    /// Calls body(s, first, next) for the sources of a block, with rays [first, next), until it returns false. @return
-    /// The last result.
+    /// Calls body(s, first, next) for the sources of a block, with rays [first, next), until it returns false. Returns
+    /// the last result.
     template <class Body>
     bool for_each_in_block(std::size_t block, const Body& body) const {
         const std::size_t begin = block * block_sources, end = std::min(q_.size(), begin + block_sources);

@@ -11,23 +11,23 @@ namespace interflect::detail {
 /// Point of a leaf that received power.
 struct StartPoint {
     std::uint32_t leaf;
-    float power;    ///< Sum of the channels [any unit]; cumulative over the leaf in StartPoints.
+    float power;    ///< Sum of the channels; cumulative over the leaf in StartPoints.
     Parameters at;  ///< On the leaf's patch.
 };
 
-/// Origins of reflected light. Uniform reflection from a partly lit leaf is biased. Leaves with points here start rays
-/// at them, in proportion to received power.
+/// Origins of reflected light, at which leaves start rays in proportion to received power. Uniform reflection from a
+/// partly lit leaf is biased.
 class StartPoints {
   public:
     StartPoints() = default;
-    /// The order is irrelevant. Cost: O(n log n) on all threads, 16 bytes per point.
+    /// In any order. Cost: O(n log n) on all threads.
     explicit StartPoints(std::vector<StartPoint> points);
 
-    /// Returns the points of a leaf; empty: uniform origins. Cost: O(log n).
+    /// Empty: uniform origins. Cost: O(log n).
     std::span<const StartPoint> of(std::uint32_t leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 
-    /// Samples a point by power. @param points  Not empty. @param u  In [0, 1).
+    /// By power. @param points  Not empty. @param u  In [0, 1).
     static Parameters choose(std::span<const StartPoint> points, float u);
 
   private:
