@@ -5,7 +5,7 @@
 namespace interflect::detail {
 
 struct TwoRoomsOptions {
-    float turn = 0;          ///< Turn of the partition about the vertical [degrees], -40 to 40.
+    float turn = 0;          ///< About the vertical [degrees], -40 to 40.
     bool furniture = false;  ///< Two cabinets per side of the partition, paper on one.
 };
 

@@ -4,12 +4,12 @@
 
 namespace interflect::detail {
 
-/// Returns the contrast sensitivity A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
+/// A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
 /// @param cycles_per_degree  f >= 0.
 double contrast_sensitivity(double cycles_per_degree);
 
-/// Computes the first model in Rushmeier et al. 1995 from luminances L and R of image and reference, clamped to >= 0. m
-/// is the mean of R, f the frequency [cycles per degree] for square pixels:
+/// First model of Rushmeier et al. 1995 (docs/metrics.md), from luminances L and R of image and reference, clamped to
+/// >= 0. m is the mean of R, f the frequency [cycles per degree]:
 ///
 ///     d(x, y)  = (L / m)^0.33 - (R / m)^0.33
 ///     D(u, v)  = 1/N sum of d(x, y) exp(-2 pi i (u x / width + v y / height))

@@ -4,8 +4,7 @@
 
 namespace interflect::detail {
 
-/// Position in a full-sphere image: azimuth in turns (1/2 at north, rising towards east) and cosine of the zenith
-/// angle.
+/// In a full-sphere image: azimuth in turns (1/2 at north, rising towards east) and cosine of the zenith angle.
 struct SkyPlace {
     float s, cosine;
 };
