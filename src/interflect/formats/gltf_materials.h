@@ -14,7 +14,7 @@ struct GltfMapping {
     double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;
 
     bool operator==(const GltfMapping&) const = default;
-    /// Returns Scene coordinates, v upwards.
+    /// Scene coordinates, v upwards.
     V2f apply(double u, double v) const {
         return {static_cast<float>(xx * u + xy * v + x), static_cast<float>(1 - (yx * u + yy * v + y))};
     }
@@ -39,8 +39,7 @@ class GltfMaterials {
     GltfMaterials(GltfAsset& asset, GltfImages& images);
 
     std::size_t count() const { return materials_.size(); }
-    /// @param index  In the file; `none`: default material.
-    /// @param textured  If false, uses means of textures.
+    /// @param index  In the file; `none`: default material. @param textured  Else uses means of textures.
     const GltfSurface& surface(std::uint32_t index, bool textured);
 
     /// Call after the last surface().

@@ -39,7 +39,7 @@ V3d colour_matching_at(double wavelength) {
     return row(colour_matching[i]) * (1 - t) + row(colour_matching[i + 1]) * t;
 }
 
-/// Minimum of |Y| and |X + Y + Z|, relative to |X| + |Y| + |Z|.
+/// Of |Y| and |X + Y + Z|, relative to |X| + |Y| + |Z|.
 constexpr double least_share = 1e-6;
 
 Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
@@ -87,7 +87,7 @@ const M33d& rec709_from_xyz() {
 /// Relative excess ignored as rounding.
 constexpr double rounding = 1e-9;
 
-/// Returns the largest saturation (0: neutral) that keeps a channel in [0, limit] at luminance 1.
+/// Largest saturation (0: neutral) that keeps a channel in [0, limit] at luminance 1.
 double saturation_within(double channel, double limit) {
     if (channel < -rounding) return 1 / (1 - channel);
     if (channel > limit * (1 + rounding)) return (limit - 1) / (channel - 1);

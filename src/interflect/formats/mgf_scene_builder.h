@@ -16,7 +16,7 @@
 
 namespace interflect::detail {
 
-/// Builds a Scene from MGF data in world coordinates. Throws std::invalid_argument for invalid requests.
+/// From MGF data in world coordinates. Throws std::invalid_argument for invalid requests.
 class MgfSceneBuilder {
   public:
     MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options, const Imath::V3d& origin);
@@ -34,12 +34,12 @@ class MgfSceneBuilder {
         return weld_.vertex(position(world),
                             {.texture = texture_coordinate, .lightmap = {}, .normal = welded_normal(normal)});
     }
-    /// Returns linear Rec. 709 in the unit of `luminance`.
+    /// Linear Rec. 709, in the unit of `luminance`.
     Rgb emitted(const MgfColour& colour, double luminance, const Location& where);
     /// Also stores the index in `material`.
     std::uint32_t material(MgfMaterial& material, std::string_view name);
     std::uint32_t object(const std::string& name);
-    /// Adds a number to the name: "spot-3".
+    /// Appends a number to the name: "spot-3".
     void add_light(Luminaire luminaire, const std::string& name);
     Warnings& warnings() { return scene_.warnings; }
     void place_face(std::span<const Imath::V3d> outline) { faces_.place(outline); }

@@ -54,8 +54,8 @@ struct Model {
 /// with a warning.
 ///
 /// Meshes with lightmap coordinates share their object's lightmap; other patches have NaN. Ignores these coordinates,
-/// with a warning, if instances with different transforms would share them.
-/// @throws InputError for an invalid model, scenes without faces, and scene_faults(). @throws TooManyPatches
+/// with a warning, if instances with different transforms share them.
+/// @throws InputError for an invalid model, a scene without faces, and scene_faults(). @throws TooManyPatches
 Scene scene_of(Model&& model, const ReadOptions& options);
 
 }  // namespace interflect::detail

@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-/// Radiance's luminous efficacy of white light [lm/W].
+/// [lm/W]
 inline constexpr double rad_efficacy = 179;
 
 /// Pane at normal incidence, with all internal reflections.
@@ -32,12 +32,12 @@ class RadMaterials {
     /// Hides earlier modifiers of the same name. @throws std::invalid_argument
     void define(const RadPrimitive& primitive, const Location& where);
 
-    /// Makes undefined modifiers grey: an ignored command may define them.
+    /// An ignored command may define them; they become grey.
     void allow_missing() { may_miss_ = true; }
 
     /// @return  `none` for "void". @throws std::invalid_argument if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
-    /// @return  Index into Model::materials; `none` if invisible. @throws InputError
+    /// Index into Model::materials; `none` if invisible. @throws InputError
     std::uint32_t material(std::uint32_t modifier);
 
   private:
@@ -70,7 +70,7 @@ class RadMaterials {
 
     Model& model_;
     bool may_miss_ = false;
-    std::deque<std::string> missing_names_;  // referenced by views
+    std::deque<std::string> missing_names_;  // string_views refer to these
     std::vector<Modifier> modifiers_;
     std::unordered_map<std::string_view, std::uint32_t> index_;  // latest of each name
 };

@@ -119,7 +119,7 @@ void RadReader::run(const std::string& command, const OpenFile& file, const Loca
     }
 }
 
-/// Searches the scene's folder, where Radiance usually runs, then the includer's.
+/// In the scene's folder, where Radiance usually runs, then the includer's.
 const SourceFile& RadReader::included_file(const std::string& name, const OpenFile& file) {
     const SourceFile*& known = included_[{&file.source, name}];
     if (!known) {
@@ -189,7 +189,7 @@ void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file,
         model_.warnings.add("void-surface", "surface without a material is invisible, and left out", where.text());
         return;
     }
-    // Spheres have the most faces.
+    // A sphere has the most faces.
     const double d = options_.curve_divisions;
     if (primitive.type == "sphere" || primitive.type == "bubble") require_room(8 * d * d, file.copies.size());
     add_mesh((this->*surface.read)(primitive.numbers), primitive, material, file, where);

@@ -17,12 +17,11 @@ struct RadXform {
     TransformSequence transform;
     std::vector<std::string> files;
 
-    /// Returns "name.0.2", or "a0.2" without a name; `name` without an array.
+    /// "name.0.2", or "a0.2" without a name; `name` without an array.
     std::string prefix(const std::vector<int>& copy) const;
 };
 
-/// @param command  Without `!`.
-/// @return  nullopt for other commands, stdin and shell syntax beyond quotes.
+/// @param command  Without `!`. @return  nullopt for other commands, stdin and shell syntax beyond quotes.
 /// @throws std::invalid_argument if xform would reject it.
 std::optional<RadXform> parse_xform(std::string_view command);
 

@@ -24,11 +24,11 @@ class SceneFaces {
     /// @param scene  With name and origin.
     SceneFaces(Scene& scene, const ReadOptions& options) : scene_(scene), max_patches_(options.max_patches) {}
 
-    /// @throws PatchLimit beyond the limit, including omitted faces.
+    /// Counts omitted faces too. @throws PatchLimit
     void require_room(double patches) const;
     /// @return  Relative to the scene's origin [m].
     V3f position(const Imath::V3d& world) const;
-    /// Sets the unrounded outline of the next face.
+    /// Unrounded outline of the next face.
     void place(std::span<const Imath::V3d> outline);
     /// Omits faces without area; see add_polygon().
     void add(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
