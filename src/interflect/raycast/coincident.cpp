@@ -88,8 +88,7 @@ CoincidentFaces::CoincidentFaces(const Scene& scene, std::span<const float> tole
     measure_uncovered(scene, tolerance);
 }
 
-/// Hides faces whose rays an earlier face with equal corners answers. At most three remain: one per side and one for
-/// both.
+/// At most three of equal faces remain: one per side and one for both.
 void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank) {
     struct KeyedFace {
         std::uint64_t key;

@@ -24,10 +24,10 @@ class Panes {
 
     struct HitBehind {
         std::uint32_t ray;
-        Rgb transmittance;  ///< Product over all panes before the hit.
+        Rgb transmittance;  ///< Of all panes before the hit.
         Hit hit;            ///< Distance from the ray's origin. Includes escaped rays.
     };
-    /// Finds all hits behind panes, sorted by ray, then depth.
+    /// Sorted by ray, then depth.
     void trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vector<HitBehind>& behind) const;
 
     static constexpr int most_in_a_row = 32;

@@ -19,12 +19,12 @@ struct CameraSampling {
     std::uint64_t seed = 1;
 };
 
-/// Offset to the right and down [pixels].
+/// To the right and down [pixels].
 struct PixelOffset {
     float x = 0, y = 0;
 };
 
-/// Rays and hits of one pixel, ordered by sample.
+/// Ordered by sample.
 struct PixelSamples {
     std::size_t pixel = 0;  ///< y * width + x.
     std::span<const Ray> rays;
@@ -48,7 +48,7 @@ inline Parameters parameters_of_hit(const ElementForest& forest, const Ray& ray,
     return forest.geometry(hit.patch).parameters_of(ray.origin + hit.distance * ray.direction);
 }
 
-/// Returns `none` if the ray escaped.
+/// `none` if the ray escaped.
 inline std::uint32_t leaf_of_hit(const ElementForest& forest, const Ray& ray, const Hit& hit) {
     if (hit.patch == none || forest.is_leaf(hit.patch)) return hit.patch;
     return forest.leaf_at(hit.patch, parameters_of_hit(forest, ray, hit));

@@ -46,13 +46,13 @@ struct PathScene {
     Panes panes;
     bool splits;                                    // at panes or mirrors
     const UnoccludedLight& unoccluded;              // at the first vertex, with an indirect field
-    const KnownLight* known = nullptr;              // ends paths; null: only Russian roulette ends them
-    const SmoothNormals* smooth_normals = nullptr;  // of the surfaces that the camera sees; null: flat patches
+    const KnownLight* known = nullptr;              // ends paths; null: only Russian roulette does
+    const SmoothNormals* smooth_normals = nullptr;  // of visible surfaces; null: flat patches
     const IndirectField* indirect_field = nullptr;  // replaces reflected paths at the first vertex
-    bool is_indirect_only = false;                  // without light that is reflected once
+    bool is_indirect_only = false;                  // omits light that is reflected once
     bool finds_points = false;                      // paths end at the first vertex, see PathWavefront::points()
 
-    /// Whether some direct light is not exact, but also found by directions of paths.
+    /// Whether some direct light is not exact.
     bool directions_find_light() const {
         return !unoccluded.has_patches() || skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
     }
@@ -123,27 +123,27 @@ class PathWavefront {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
         FirstHit first{};
     };
-    /// Irradiance by the sources of a kind, without occlusion: exact, and estimated by shadow rays.
+    /// Irradiance by one kind of source.
     struct ExactLight {
         Rgb exact{0, 0, 0};
-        Rgb sampled{0, 0, 0}, visible{0, 0, 0};  // contributions of all shadow rays, and of unoccluded ones
+        Rgb sampled{0, 0, 0}, visible{0, 0, 0};  // contributions of all shadow rays; of unoccluded ones
         Rgb result() const;
     };
-    /// Place that the camera sees in a pixel: light of a patch, which all its paths there share.
+    /// Surface point of a pixel: its light is computed once for all paths to the patch.
     struct SeenPlace {
-        std::uint32_t batch = none, patch = none, index = 0;  // index: in light_, of its first path
+        std::uint32_t batch = none, patch = none, index = 0;  // index: in light_
         V3f normal{0, 0, 0};
         Rgb throughput{0, 0, 0};      // sum over the paths
         std::optional<Rgb> indirect;  // irradiance
         ExactLight patches, luminaires;
     };
-    /// Contribution of a shadow ray that hits `patch` or, without a patch, is unoccluded up to `distance`.
+    /// Counts if the shadow ray hits `patch` or, without a patch, reaches `distance`.
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;              // to the luminaire [m]
-        std::uint32_t bounces;       // reflections of its light
-        std::uint32_t place = none;  // in seen_; then `radiance` only estimates the visible share of exact light
+        float distance;              // [m]
+        std::uint32_t bounces;       // of its light
+        std::uint32_t place = none;  // in seen_; then `radiance` only estimates the visible share
         ExactLight SeenPlace::*kind = nullptr;
     };
 
@@ -151,10 +151,10 @@ class PathWavefront {
     /// Gauges act as white surfaces: paths begin with leave().
     void start_at_gauges(std::span<const BatchOfPaths> batches);
     void advance_paths();
-    /// In pictures of irradiance, the first surface is white, opaque and does not emit.
+    /// If so, the first surface is white, opaque and does not emit.
     bool shows_irradiance() const;
     static V3f start_of(const Ray& ray, const Path& path);
-    /// Adds paths behind panes and in mirrors seen by the camera.
+    /// Behind panes and in mirrors seen by the camera.
     void split_paths();
     void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
     Rgb reflectance_of_hit(const Ray& ray, const Hit& hit) const;
@@ -163,10 +163,10 @@ class PathWavefront {
     /// Connects `ray.origin` to the lights and samples a direction. Returns as interact().
     /// @param middle  Of the pixel's or texel's part of the surface.
     bool leave(Ray& ray, Path& path, const V3f& middle);
-    /// Returns the index in seen_ of the first vertex, added if new; none without indirect light.
+    /// Finds or adds it in seen_; none without indirect light.
     std::uint32_t seen_place(const V3f& x, const Path& path);
     void add_light_of_seen_places();
-    /// Adds the connection to a place, which then estimates the visible share of exact light.
+    /// Connects a place, to estimate the visible share of its exact light.
     void estimate_visible_share(Connection& connection, const Path& path, ExactLight SeenPlace::*kind);
     void add_sky(const Ray& ray, const Path& path);
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
@@ -185,7 +185,7 @@ class PathWavefront {
     static bool is_unoccluded(const Connection& connection, const Hit& hit);
     /// Ends a path with solved light at a far element, if possible.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
-    /// Returns the density of KnownLight::sample() [1/sr].
+    /// Of KnownLight::sample() [1/sr].
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                           float distance2) const;
     void connect_to_known_light(const V3f& x, const Path& path);
