@@ -11,10 +11,10 @@ class SightLines {
   public:
     SightLines(const Scene& scene, const RayCaster& ray_caster);
 
-    /// Returns the first hit that is not a pane, with its distance from the start.
+    /// Not a pane; distance from the start.
     Hit first_surface(const Ray& ray) const;
 
-    /// Whether only panes separate two points, in either direction.
+    /// Only panes separate the points, in either direction.
     bool is_clear(const V3f& a, const V3f& b) const;
 
     struct Outlook {

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Patches in a plane, and their rectangle in a lightmap, with the outermost texel centres on its border.
+/// Patches in a plane, and their rectangle in a lightmap. Its border runs through the outermost texel centres.
 struct LightmapChart {
     FlatPatches patches;  ///< From texel (0, 0) along columns and rows [m].
     Imath::V2d size;      ///< [m]

@@ -14,17 +14,14 @@ struct FacePair {
     std::uint32_t larger, smaller;  ///< By area; at equal areas the later face is larger.
 };
 
-/// Returns the distance within which two faces coincide [m]. The larger face's plane has a rounding of an eighth of its
-/// tolerance.
+/// Distance within which two faces coincide [m]. The larger face's plane has a rounding of an eighth of its tolerance.
 inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pair) {
     return std::max(tolerance[pair.smaller], tolerance[pair.larger] / 8);
 }
 
 /// Finds pairs of faces whose smaller one reaches more than pair_tolerance() into the larger, within that distance of
-/// its plane. Skips one-sided faces with opposite normals, which intercept different rays.
-/// @param ignored    Per patch.
-/// @param tolerance  Per patch [m], > 0.
-/// @return           Sorted by larger face.
+/// its plane. Skips one-sided faces with opposite normals, which intercept different rays. Sorted by larger face.
+/// @param tolerance  Per patch [m], > 0. @param ignored  Per patch.
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance);
 

@@ -7,12 +7,12 @@
 
 namespace interflect::detail {
 
-/// Returns the lowest patch of each patch's flat surface: patches in nearly one plane that share material, object and
-/// whole edges, or have equal Patch::surface.
+/// Lowest patch of each patch's flat surface: patches in nearly one plane that share material, object and whole edges,
+/// or have equal Patch::surface.
 std::vector<std::uint32_t> flat_surfaces(const Scene& scene);
 
-/// Returns a unique rank per patch: by area of the flat surface, counted once for both sides; emitters first at nearly
-/// equal areas; then by index, so fronts directly precede their backs.
+/// Unique rank per patch: by area of the flat surface, counted once for both sides; emitters first at nearly equal
+/// areas; then by index, so fronts directly precede their backs.
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -12,15 +12,14 @@
 namespace interflect::detail {
 
 /// Exact means over triangles of a texture as filtered by texel_at(). Integrates F dy along the border instead of f
-/// over the area (Green's theorem, dF/dx = f). F is cubic between texel lines, so Simpson's rule is exact. 3 bytes per
-/// texel.
+/// over the area (Green's theorem, dF/dx = f). F is cubic between texel lines, so Simpson's rule is exact.
 class TextureIntegral {
   public:
     /// @param texture  Without faults; must outlive this.
     explicit TextureIntegral(const Texture& texture);
 
-    /// Returns the mean over a triangle or line in texture coordinates. O(texels along the border); above a million,
-    /// the mean of the whole texture.
+    /// Over a triangle or line in texture coordinates. O(texels along the border); above a million, the mean of the
+    /// whole texture.
     Rgb mean(const std::array<V2f, 3>& corners) const;
 
   private:

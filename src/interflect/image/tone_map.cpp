@@ -20,7 +20,7 @@ namespace {
 constexpr double key = 0.2;                   // logarithmic mean after exposure; 1 is white
 constexpr double ignored_pixel_share = 0.05;  // of the lit pixels, at each end
 
-/// Averages over finite pixels with `measure` > 0; 0 without such pixels.
+/// Over finite pixels with `measure` > 0; 0 without such pixels.
 double logarithmic_mean(const Image& image, float (*measure)(const Rgb&)) {
     std::vector<float> lit;
     lit.reserve(image.pixels.size());
@@ -41,7 +41,7 @@ float scotopic(const Rgb& colour) { return scotopic_luminance(colour); }
 
 using Operator = std::function<Rgb(const Rgb&)>;
 
-/// Maps radiance >= 0 to displayed values, not clipped.
+/// For radiance >= 0; not clipped.
 Operator absolute_operator(const Image& image, Tonemap curve, float white) {
     const auto adapted = static_cast<float>(logarithmic_mean(image, photopic));
     if (!(adapted > 0)) return [](const Rgb&) { return Rgb(0); };
@@ -88,7 +88,7 @@ Image tone_map(const Image& image, float exposure, Tonemap curve, float display_
     for (Rgb& pixel : shown.pixels) {
         if (!is_finite(pixel)) continue;
         const Rgb mapped = shown_of(Rgb(std::max(0.0f, pixel.x), std::max(0.0f, pixel.y), std::max(0.0f, pixel.z)));
-        // This order turns the NaN of an overflow into white.
+        // Turns the NaN of an overflow into white.
         for (int c = 0; c < 3; ++c) pixel[c] = std::min(1.0f, mapped[c]);
     }
     return shown;
