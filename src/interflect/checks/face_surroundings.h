@@ -20,7 +20,7 @@ class FaceSurroundings {
   public:
     FaceSurroundings(const Scene& scene, const RayCaster& ray_caster);
 
-    /// Of 64 rays and their reversed rays.
+    /// Traces 64 rays and their reversed rays.
     Surroundings look(std::uint32_t patch, Side side) const;
     /// Whether light stays close for eight reflections: within a tenth of the scene and the larger of five lamp sizes
     /// and 0.5 m. Traces 64 paths through glass, regardless of reflectance.

@@ -22,7 +22,7 @@ class LocalLights {
     V3f position(std::size_t i) const;
     /// Returns a point just before the surface that contains the luminaire.
     V3f before(std::size_t i) const;
-    /// In groups of equal power; those of measured light start in its opening.
+    /// Returns rays in groups of equal power; those of measured light start in its opening.
     std::span<const Ray> rays(std::size_t i) const { return {rays_.data() + i * rays_per_light, rays_per_light}; }
 
   private:

@@ -46,7 +46,7 @@ void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const S
     findings.push_back(std::move(found.front()));
 }
 
-/// The format specifies neither unit nor up axis.
+/// Whether the format specifies neither unit nor up axis.
 bool is_bare_mesh(const Scene& scene) {
     const std::string extension = std::filesystem::path(scene.name).extension().string();
     constexpr std::string_view bare[] = {".obj", ".ply", ".stl", ".OBJ", ".PLY", ".STL"};

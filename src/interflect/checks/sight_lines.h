@@ -11,10 +11,10 @@ class SightLines {
   public:
     SightLines(const Scene& scene, const RayCaster& ray_caster);
 
-    /// Not a pane; distance from the start.
+    /// Returns the first hit that is not a pane, with its distance from the start.
     Hit first_surface(const Ray& ray) const;
 
-    /// Only panes separate the points, in either direction.
+    /// Whether only panes separate two points, in either direction.
     bool is_clear(const V3f& a, const V3f& b) const;
 
     struct Outlook {

@@ -11,11 +11,11 @@ struct UpAxis {
     const char* evidence;  ///< "views": nearly certain; "light": a guess.
 };
 
-/// Up axis of the views, or opposite to most emitted light, since most lamps hang.
+/// Returns the common up axis of the views, or opposite to most emitted light, since most lamps hang.
 std::optional<UpAxis> find_up_axis(const Scene& scene);
 
-/// Probable up axis other than z by two of three criteria: light, objects on one floor, low extent. Null if unknown or
-/// if the views agree.
+/// Returns a probable up axis other than z by two of three criteria: light, objects on one floor, low extent. Null if
+/// unknown or if the views agree.
 const char* find_other_up_axis(const Scene& scene);
 
 }  // namespace interflect::detail

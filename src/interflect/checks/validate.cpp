@@ -96,7 +96,8 @@ class Validator {
         return result;
     }
 
-    /// Faces with the void in front and the lit scene behind, except bottoms of solids and outer faces of thick walls.
+    /// Finds faces with the void in front and the lit scene behind, except bottoms of solids and outer faces of thick
+    /// walls.
     void add_inverted_faces() {
         Finder inverted = finder("inverted-face", "one-sided faces have the scene behind them and nothing before them",
                                  "turn them round: reverse the order of their vertices");

@@ -39,7 +39,7 @@ class ElementForest {
     std::uint32_t parent(std::uint32_t e) const { return is_root(e) ? none : block_of(e).parent; }
     float area(std::uint32_t e) const { return nodes_[e].area; }  ///< [m^2]
     int level(std::uint32_t e) const;
-    /// From the root: 1, then two bits per level, the index of the child.
+    /// Returns the path from the root: 1, then two bits per level, the index of the child.
     std::uint32_t path(std::uint32_t e) const {
         return is_root(e) ? 1 : block_of(e).parent_path << 2 | number_in_block(e);
     }
@@ -73,7 +73,7 @@ class ElementForest {
     /// @return  Old index of each element first + i.
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
-    /// Parents in order of division, for rebuild().
+    /// Returns parents in order of division, for rebuild().
     std::vector<std::uint32_t> subdivided() const;
     /// Divides `parents` in this order, in a forest of roots.
     /// @throws InputError if an element cannot be subdivided.

@@ -27,10 +27,10 @@ struct FlatPatch {
 
 using FlatPatches = std::vector<FlatPatch>;
 
-/// Coplanar patches in their plane [m], counter-clockwise seen from the lit side.
+/// Projects coplanar patches to their plane [m], counter-clockwise seen from the lit side.
 FlatPatches projected(const Scene& scene, std::span<const std::uint32_t> patches);
 
-/// Lower bound of the distance between convex outlines; negative if they overlap.
+/// Returns a lower bound of the distance between convex outlines; negative if they overlap.
 double separation(const FlatPatch& a, const FlatPatch& b);
 
 }  // namespace interflect::detail

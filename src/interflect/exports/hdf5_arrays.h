@@ -46,7 +46,7 @@ class Hdf5Reader {
     explicit Hdf5Reader(const std::filesystem::path& path);
 
     bool has(const std::string& name) const;
-    /// Two-dimensional unless `columns` is 1.
+    /// Reads a two-dimensional array unless `columns` is 1.
     template <class T>
     std::vector<T> read(const std::string& name, std::size_t columns = 1) const;
 

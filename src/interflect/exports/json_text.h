@@ -15,7 +15,7 @@ std::string json_text(Json json, int indent = -1);
 /// Inverse of json_text(). @throws Json::exception
 Json parse_json_text(std::string_view text);
 
-/// The double with the fewest digits that identify `value`.
+/// Returns the double with the fewest digits that identify `value`.
 double shortest_number(float value);
 
 template <class Vector>

@@ -38,7 +38,7 @@ LitPolygons lit_polygons(const Scene& scene, const Solution& solution);
 /// Returns radiance times 2^exposure, within_display_range(), as 8-bit sRGB. @param radiosity  [lm/m^2 or W/m^2]
 std::array<std::uint8_t, 3> display_colour(const Rgb& radiosity, float exposure);
 
-/// World coordinates [m] with the fewest identifying digits.
+/// Formats world coordinates [m] with the fewest identifying digits.
 std::string position_text(const Scene& scene, const V3f& point);
 
 template <class Number>

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// With names of the command line. Unset limits are null. Omits seed, method and max_elements.
+/// Uses the names of the command line. Unset limits are null. Omits seed, method and max_elements.
 Json json_of(const SolveOptions& options);
 
 /// Inverse of json_of(). @throws Json::exception, InputError for missing or unknown values.

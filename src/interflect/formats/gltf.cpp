@@ -155,7 +155,7 @@ class SceneReader {
         return places;
     }
 
-    /// Mesh to world.
+    /// Returns mesh-to-world matrices.
     const std::vector<M44d>& joints_of(std::uint32_t index) {
         const auto [entry, is_new] = joints_.try_emplace(index);
         std::vector<M44d>& result = entry->second;

@@ -14,7 +14,7 @@ struct GltfMapping {
     double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;
 
     bool operator==(const GltfMapping&) const = default;
-    /// Scene coordinates, v upwards.
+    /// Returns Scene coordinates, v upwards.
     V2f apply(double u, double v) const {
         return {static_cast<float>(xx * u + xy * v + x), static_cast<float>(1 - (yx * u + yy * v + y))};
     }

@@ -25,7 +25,7 @@ class GltfMeshes {
     GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& accessors, GltfMaterials& materials);
 
     std::size_t count() const { return meshes_.size(); }
-    /// Indices into Model::meshes, one per primitive with faces.
+    /// Returns indices into Model::meshes, one per primitive with faces.
     const std::vector<std::uint32_t>& meshes(std::uint32_t index, const GltfPose& pose);
 
   private:

@@ -76,7 +76,7 @@ class GltfValue {
     std::string place_;
 };
 
-/// "nodes[3] 'chair'"; truncates long names.
+/// Returns "nodes[3] 'chair'"; truncates long names.
 std::string gltf_place(const std::string& list, std::size_t index, const std::string& name);
 
 }  // namespace interflect::detail

@@ -21,7 +21,7 @@ class LineReader {
     bool next();
 
     std::span<const std::string_view> words() const { return words_; }  ///< Valid until next().
-    /// From the second word on.
+    /// Returns the text from the second word on.
     std::string_view rest() const {
         if (words_.size() < 2) return {};
         return {words_[1].data(), words_.back().data() + words_.back().size()};

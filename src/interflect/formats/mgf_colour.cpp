@@ -87,7 +87,7 @@ const M33d& rec709_from_xyz() {
 /// Relative excess ignored as rounding.
 constexpr double rounding = 1e-9;
 
-/// Largest saturation (0: neutral) that keeps a channel in [0, limit] at luminance 1.
+/// Returns the largest saturation (0: neutral) that keeps a channel in [0, limit] at luminance 1.
 double saturation_within(double channel, double limit) {
     if (channel < -rounding) return 1 / (1 - channel);
     if (channel > limit * (1 + rounding)) return (limit - 1) / (channel - 1);

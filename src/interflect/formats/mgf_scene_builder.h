@@ -34,7 +34,7 @@ class MgfSceneBuilder {
         return weld_.vertex(position(world),
                             {.texture = texture_coordinate, .lightmap = {}, .normal = welded_normal(normal)});
     }
-    /// Linear Rec. 709, in the unit of `luminance`.
+    /// Returns linear Rec. 709 in the unit of `luminance`.
     Rgb emitted(const MgfColour& colour, double luminance, const Location& where);
     /// Also stores the index in `material`.
     std::uint32_t material(MgfMaterial& material, std::string_view name);

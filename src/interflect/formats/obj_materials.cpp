@@ -49,7 +49,7 @@ bool has_transparency(const StoredImage& image) {
     return false;
 }
 
-/// Maximum argument count. -o, -s and -t take numbers.
+/// Returns the maximum argument count. -o, -s and -t take numbers.
 std::size_t option_words(std::string_view option) {
     if (option == "-mm") return 2;
     return option == "-o" || option == "-s" || option == "-t" ? 3 : 1;

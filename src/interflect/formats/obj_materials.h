@@ -22,7 +22,7 @@ class ObjMaterials {
     /// @throws InputError, std::invalid_argument
     void read(const std::filesystem::path& path, const Location& where);
     void read_text(std::string_view text, const std::filesystem::path& path);
-    /// Index into Model::materials; 0, with a warning, if unknown.
+    /// Returns an index into Model::materials; 0, with a warning, if unknown.
     std::uint32_t find(const std::string& name, const Location& where);
 
   private:

@@ -22,7 +22,7 @@ class PhotometricPlanes {
 
     const std::vector<float>& angles() const { return angles_; }
     const std::vector<float>& intensities() const { return intensities_; }
-    /// By polar angle, then azimuth.
+    /// Returns the intensities by polar angle, then azimuth.
     std::vector<float> transposed() const;
 
   private:

@@ -21,14 +21,14 @@ class PhotometricText {
     PhotometricText(std::string_view text, const std::filesystem::path& path, std::string_view separators)
         : text_(text), path_(path), separators_(separators) {}
 
-    /// Trimmed; nullopt at the end.
+    /// Returns the next line, trimmed; nullopt at the end.
     std::optional<std::string_view> line();
-    /// On any line.
+    /// Returns the next word on any line.
     std::optional<std::string_view> word();
 
     /// @param what  For messages.
     double number(const std::string& what);
-    /// In [least, most].
+    /// Reads an integer in [least, most].
     std::size_t count(const std::string& what, std::size_t least, std::size_t most);
     std::vector<double> numbers(std::size_t count, const std::string& what);
     bool had_decimal_comma() const { return had_decimal_comma_; }

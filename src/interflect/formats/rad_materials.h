@@ -32,12 +32,12 @@ class RadMaterials {
     /// Hides earlier modifiers of the same name. @throws std::invalid_argument
     void define(const RadPrimitive& primitive, const Location& where);
 
-    /// An ignored command may define them; they become grey.
+    /// Makes undefined modifiers grey: an ignored command may define them.
     void allow_missing() { may_miss_ = true; }
 
     /// @return  `none` for "void". @throws std::invalid_argument if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
-    /// Index into Model::materials; `none` if invisible. @throws InputError
+    /// Returns an index into Model::materials; `none` if invisible. @throws InputError
     std::uint32_t material(std::uint32_t modifier);
 
   private:

@@ -119,7 +119,7 @@ void RadReader::run(const std::string& command, const OpenFile& file, const Loca
     }
 }
 
-/// In the scene's folder, where Radiance usually runs, then the includer's.
+/// Searches the scene's folder, where Radiance usually runs, then the includer's.
 const SourceFile& RadReader::included_file(const std::string& name, const OpenFile& file) {
     const SourceFile*& known = included_[{&file.source, name}];
     if (!known) {

@@ -17,7 +17,7 @@ struct RadXform {
     TransformSequence transform;
     std::vector<std::string> files;
 
-    /// "name.0.2", or "a0.2" without a name; `name` without an array.
+    /// Returns "name.0.2", or "a0.2" without a name; `name` without an array.
     std::string prefix(const std::vector<int>& copy) const;
 };
 

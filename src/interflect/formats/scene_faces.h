@@ -28,7 +28,7 @@ class SceneFaces {
     void require_room(double patches) const;
     /// @return  Relative to the scene's origin [m].
     V3f position(const Imath::V3d& world) const;
-    /// Unrounded outline of the next face.
+    /// Sets the unrounded outline of the next face.
     void place(std::span<const Imath::V3d> outline);
     /// Omits faces without area; see add_polygon().
     void add(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,

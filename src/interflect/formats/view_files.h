@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// /a/office.views.json for /a/office.mgf.
+/// Returns /a/office.views.json for /a/office.mgf.
 std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
 
 /// Reads {"views": [{"name": "desk", "eye": [x, y, z], "look_at": [x, y, z], "up": [x, y, z], "fov": 45}]}, in metres

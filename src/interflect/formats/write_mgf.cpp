@@ -142,7 +142,7 @@ class MgfWriter {
         for (; open_objects_.size() > depth; open_objects_.pop_back()) put("o\n");
     }
 
-    /// Again if the name was reused, or if the material is unnamed and was left.
+    /// Defines a material again if its name was reused, or if it is unnamed and was left.
     void enter_material(std::uint32_t material, int sides) {
         const std::string& name = names_[material];
         Definition& definition = definitions_[name];

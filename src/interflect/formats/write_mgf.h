@@ -24,16 +24,16 @@ void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::strin
 void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures = {},
                std::span<const std::string> webs = {}, std::span<const std::string> maps = {});
 
-/// "room.texture-0.png" or .exr.
+/// Returns "room.texture-0.png" or .exr.
 std::vector<std::string> texture_files(const Scene& scene, const std::filesystem::path& path);
 
-/// Each once, in luminaire order.
+/// Returns each web once, in luminaire order.
 std::vector<std::shared_ptr<const PhotometricWeb>> photometric_webs(const Scene& scene);
 
-/// "room.web-0.ies"
+/// Returns "room.web-0.ies".
 std::vector<std::string> web_files(const Scene& scene, const std::filesystem::path& path);
 
-/// "room.map-0.exr"
+/// Returns "room.map-0.exr".
 std::vector<std::string> map_files(const Scene& scene, const std::filesystem::path& path);
 
 }  // namespace interflect::detail

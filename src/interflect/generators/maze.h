@@ -22,7 +22,7 @@ struct MazeOptions {
 /// @throws InputError if an option is out of range.
 Scene make_maze(const MazeOptions& options);
 
-/// For about `patches` patches; ignores options.rooms. @throws InputError above most_rooms.
+/// Returns the number for about `patches` patches; ignores options.rooms. @throws InputError above most_rooms.
 std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options);
 
 }  // namespace interflect::detail

@@ -16,7 +16,7 @@ struct Boxed {
     std::uint32_t index = 0;
 };
 
-/// Bounding volume hierarchy in place: the middle element is the root, between its subtrees.
+/// Arranges a bounding volume hierarchy in place: the middle element is the root, between its subtrees.
 inline void arrange_box_tree(std::span<Boxed> elements) {
     if (elements.empty()) return;
     Imath::Box3f all, centres;  // centres are doubled
@@ -42,7 +42,7 @@ inline void arrange_box_tree(std::span<Boxed> elements) {
     elements[middle].box = all;
 }
 
-/// Calls visit(index) if reaches(box) holds for the boxes of all subtrees around an element; its own box may not.
+/// Calls visit(index) for each element whose subtree boxes all satisfy reaches(box); its own box may not.
 template <class Reaches, class Visit>
 void visit_box_tree(std::span<const Boxed> tree, const Reaches& reaches, const Visit& visit) {
     if (tree.empty()) return;

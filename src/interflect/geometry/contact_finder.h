@@ -27,7 +27,7 @@ class ContactFinder {
     const PlanarPolygon& polygon() const { return polygon_; }
     const PlaneFrame& frame() const { return frame_; }
 
-    /// Of a touching facet [m].
+    /// Maximum distance of a touching facet [m].
     float reach() const;
     bool plane_meets(const Imath::Box3f& box) const;
     void add_contacts_with(const Facet& other);
@@ -37,7 +37,7 @@ class ContactFinder {
   private:
     /// Removes duplicates and shared borders of coplanar faces.
     std::vector<PlanarSegment> distinct_segments();
-    /// Lowest index of each segment's component. Common ends connect segments.
+    /// Returns the lowest index of each segment's component. Common ends connect segments.
     std::vector<std::uint32_t> connected(const std::vector<PlanarSegment>& segments) const;
 
     bool is_two_sided(const Facet& f) const { return scene_.patches[f.face].other_side != none; }

@@ -40,8 +40,8 @@ struct CutFacet {
     bool reached_limit = false;
 };
 
-/// Length above which a sliver is cut across [m]. Quartering preserves aspect ratios, so long patches yield long
-/// elements. Facets with at least a quarter of their flat surface's area have no limit.
+/// Returns the length above which a sliver is cut across [m]. Quartering preserves aspect ratios, so long patches yield
+/// long elements. Facets with at least a quarter of their flat surface's area have no limit.
 double longest_sliver(const Facet& facet, double surface_area) {
     const double width = surface_area / facet.diameter;
     const bool is_small_part = surface_area > 4 * facet.area();
@@ -65,7 +65,7 @@ CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_are
     return result;
 }
 
-/// [m^2], by facet.
+/// Returns areas by facet [m^2].
 std::vector<double> areas_of_surfaces(const Scene& scene, const std::vector<Facet>& facets) {
     const std::vector<std::uint32_t> surfaces = flat_surfaces(scene);
     std::vector<double> area(scene.patches.size(), 0.0), result;
@@ -178,7 +178,7 @@ std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<F
     return faces;
 }
 
-/// Patch::surface of each patch: `none` unless its flat surface contains a cut face or has a number.
+/// Returns Patch::surface of each patch: `none` unless its flat surface contains a cut face or has a number.
 std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
                                                    const std::vector<FacetRange>& faces) {
     std::vector<std::uint32_t> surface = flat_surfaces(scene);

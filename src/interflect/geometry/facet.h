@@ -27,7 +27,7 @@ struct Facet {
 
     double area() const { return area_; }  ///< [m^2]
 
-    /// Signed distance from the plane [m].
+    /// Returns the signed distance from the plane [m].
     double height(const Imath::V3d& x) const { return normal.dot(x - corners[0]); }
     /// Length below which features are ignored [m].
     double detail() const;

@@ -7,12 +7,12 @@
 
 namespace interflect::detail {
 
-/// Lowest patch of each patch's flat surface: patches in nearly one plane that share material, object and whole edges,
-/// or have equal Patch::surface.
+/// Returns the lowest patch of each patch's flat surface: patches in nearly one plane that share material, object and
+/// whole edges, or have equal Patch::surface.
 std::vector<std::uint32_t> flat_surfaces(const Scene& scene);
 
-/// Unique rank per patch: by area of the flat surface, counted once for both sides; emitters first at nearly equal
-/// areas; then by index, so fronts directly precede their backs.
+/// Returns a unique rank per patch: by area of the flat surface, counted once for both sides; emitters first at nearly
+/// equal areas; then by index, so fronts directly precede their backs.
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -10,7 +10,7 @@ namespace {
 /// Relative twist.
 constexpr float parallelogram_tolerance = 1e-5f;
 
-/// Inverse cumulative distribution of the density (a + b x) / (a + b / 2) on [0, 1]; a, a + b >= 0.
+/// Inverts the cumulative distribution of the density (a + b x) / (a + b / 2) on [0, 1]; a, a + b >= 0.
 float warp_linear(float a, float b, float uniform) {
     // Avoids cancellation for small b.
     const float target = uniform * (a + 0.5f * b);

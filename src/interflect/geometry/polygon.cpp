@@ -121,7 +121,7 @@ class Triangulation {
     Triangulation(Scene& scene, const OutlinePlane& frame, std::uint32_t origin)
         : scene_(scene), frame_(frame), origin_(position(scene, origin)) {}
 
-    /// Three corners per triangle; empty if the tessellator failed.
+    /// Returns three corners per triangle; empty if the tessellator failed.
     std::vector<std::uint32_t> operator()(std::span<const Loop> loops);
 
   private:

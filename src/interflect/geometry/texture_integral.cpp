@@ -60,7 +60,7 @@ inline std::size_t TextureIntegral::wrapped_row(std::int64_t row) const {
     return static_cast<std::size_t>(wrapped(row, texture_.height));
 }
 
-/// From texel 0 to `column`.
+/// Integrates from texel 0 to `column`.
 RgbD TextureIntegral::row_integral(std::int64_t column, std::size_t row) const {
     const std::int64_t width = texture_.width, within = wrapped(column, width);
     const RgbD* sums = &sums_[row * sums_per_row_];
@@ -82,7 +82,7 @@ RgbD TextureIntegral::value_at(const V2d& x) const {
     return in_row(row) * (1 - t) + in_row(row + 1) * t;
 }
 
-/// Integral of F dy within a cell of texel centres.
+/// Integrates F dy within a cell of texel centres.
 /// @param origin  Column at which F is 0.
 RgbD TextureIntegral::integral_within_cell(const V2d& a, const V2d& b, std::int64_t origin) const {
     const V2d middle = (a + b) * 0.5;

@@ -18,8 +18,8 @@ class TextureIntegral {
     /// @param texture  Without faults; must outlive this.
     explicit TextureIntegral(const Texture& texture);
 
-    /// Over a triangle or line in texture coordinates. O(texels along the border); above a million, the mean of the
-    /// whole texture.
+    /// Returns the mean over a triangle or line in texture coordinates. O(texels along the border); above a million,
+    /// the mean of the whole texture.
     Rgb mean(const std::array<V2f, 3>& corners) const;
 
   private:

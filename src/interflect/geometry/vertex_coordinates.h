@@ -21,7 +21,7 @@ struct VertexCoordinates {
 
 VertexCoordinates coordinates_of(const Scene& scene, std::uint32_t vertex);
 
-/// Lightmap coordinate and normal are missing if any vertex lacks them.
+/// Leaves lightmap coordinate and normal missing if any vertex lacks them.
 /// @param weights  One per vertex; sum 1.
 VertexCoordinates interpolated(const Scene& scene, std::span<const std::uint32_t> vertices,
                                std::span<const float> weights);
@@ -29,7 +29,7 @@ VertexCoordinates interpolated(const Scene& scene, std::span<const std::uint32_t
 /// Normalises and rounds, to weld nearly equal normals. Returns zero for zero and non-finite vectors.
 V3f welded_normal(const Imath::V3d& normal);
 
-/// Once a vertex has an attribute, all vertices store it.
+/// Returns the index. Once a vertex has an attribute, all vertices store it.
 std::uint32_t add_vertex(Scene& scene, const V3f& position, const VertexCoordinates& coordinates);
 
 }  // namespace interflect::detail

@@ -7,7 +7,8 @@
 
 namespace interflect::detail {
 
-/// Violet, teal and yellow with about equal perceived steps, also in grey. Linear Rec. 709; NaN for NaN.
+/// Maps positions to violet, teal and yellow with about equal perceived steps, also in grey. Returns linear Rec. 709;
+/// NaN for NaN.
 /// @param position  Clamped to [0, 1].
 Rgb false_colour(float position);
 
@@ -20,7 +21,7 @@ struct ColourScale {
     float low = 0, high = 1;  ///< low < high; low > 0 if logarithmic
     Spacing spacing = Spacing::linear;
 
-    /// 0 at `low`, 1 at `high`; clamped.
+    /// Returns 0 at `low` and 1 at `high`; clamped.
     float position(float value) const;
 };
 
@@ -28,10 +29,10 @@ struct ColourScale {
 /// decades of positive values, without 0.5% at each end. Without values, `high` is 1.
 ColourScale fit_scale(std::vector<float> values, Spacing spacing);
 
-/// From 0 to a round number that at most 2% of the positive, finite values exceed.
+/// Fits a linear scale from 0 to a round number that at most 2% of the positive, finite values exceed.
 ColourScale fit_round_scale(std::vector<float> values);
 
-/// Of the first channel. 0 becomes black; pixels that are not finite stay unchanged.
+/// Converts the first channel. 0 becomes black; pixels that are not finite stay unchanged.
 Image false_colours(const Image& values, const ColourScale& scale);
 
 }  // namespace interflect::detail

@@ -20,7 +20,7 @@ int legend_height(int width);
 /// Whether an unclipped legend takes at most half of the picture. @throws InputError for an invalid title.
 bool legend_fits(int width, int height, const std::string& title);
 
-/// At most `most` values, ascending: 1, 2, 5 times powers of ten, or multiples of such a number.
+/// Returns at most `most` values, ascending: 1, 2, 5 times powers of ten, or multiples of such a number.
 /// @throws InputError if `most` < 3 or the scale is invalid.
 std::vector<float> round_values(const ColourScale& scale, int most);
 

@@ -113,7 +113,7 @@ struct Size {
     int width, height;
 };
 
-/// Other lines may be content of arbitrary files, not to be quoted.
+/// Quotes resolutions only: other lines may be content of arbitrary files.
 std::string shown(std::string_view resolution) {
     const bool is_one = resolution.find_first_not_of("+-XY 0123456789") == resolution.npos;
     return is_one ? fmt::format("'{}'", resolution) : "none";

@@ -22,7 +22,7 @@ constexpr float pivot_in = stops_below / (stops_below + stops_above), pivot_out 
                 shoulder_power = 3.25f;
 constexpr float display_power = 2.2f;
 
-/// Half of a sigmoid: from 0 with slope `contrast` to `height` at `width`.
+/// Returns half of a sigmoid: from 0 with slope `contrast` to `height` at `width`.
 float bend(float x, float width, float height, float power) {
     const float straight = contrast * width;
     const float limit = straight / std::pow(std::pow(straight / height, power) - 1, 1 / power);

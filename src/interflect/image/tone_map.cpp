@@ -20,7 +20,7 @@ namespace {
 constexpr double key = 0.2;                   // logarithmic mean after exposure; 1 is white
 constexpr double ignored_pixel_share = 0.05;  // of the lit pixels, at each end
 
-/// Over finite pixels with `measure` > 0; 0 without such pixels.
+/// Averages over finite pixels with `measure` > 0; 0 without such pixels.
 double logarithmic_mean(const Image& image, float (*measure)(const Rgb&)) {
     std::vector<float> lit;
     lit.reserve(image.pixels.size());
@@ -41,7 +41,7 @@ float scotopic(const Rgb& colour) { return scotopic_luminance(colour); }
 
 using Operator = std::function<Rgb(const Rgb&)>;
 
-/// For radiance >= 0; not clipped.
+/// Maps radiance >= 0 to displayed values, not clipped.
 Operator absolute_operator(const Image& image, Tonemap curve, float white) {
     const auto adapted = static_cast<float>(logarithmic_mean(image, photopic));
     if (!(adapted > 0)) return [](const Rgb&) { return Rgb(0); };

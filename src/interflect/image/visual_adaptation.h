@@ -8,7 +8,7 @@ namespace interflect::detail {
 // `adapted` > 0 is the scene's adaptation L_wa, `white` > 0 the display's white L_dmax. Results are relative to white
 // and not clipped.
 
-/// Factor from luminance to [0, 1] (Ward 1994, Graphics Gems IV).
+/// Returns the factor from luminance to [0, 1] (Ward 1994, Graphics Gems IV).
 float ward_factor(float adapted, float white);
 
 /// Tumblin and Rushmeier 1993, with the constants of Tumblin, Hodgins and Guenter 1999.

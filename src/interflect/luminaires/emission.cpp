@@ -17,7 +17,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Enlarged: rays that start on the box start outside the scene.
+/// Returns the scene's box, enlarged: rays that start on it start outside the scene.
 Imath::Box3f box_around(const Scene& scene) {
     constexpr float margin = 1e-3f;  // relative to the diagonal
     Imath::Box3f box;
@@ -29,7 +29,8 @@ Imath::Box3f box_around(const Scene& scene) {
     return box;
 }
 
-/// Cosine to a beam's axis, v in (0, 1]. Intensity is constant within `inner`, then proportional to (cosine - outer)^2.
+/// Samples the cosine to a beam's axis, v in (0, 1]. Intensity is constant within `inner`, then proportional to (cosine
+/// - outer)^2.
 float sample_cosine(float v, float inner, float outer, float inner_share) {
     if (v <= inner_share) return 1 - (1 - inner) * (v / inner_share);
     return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));

@@ -38,20 +38,20 @@ class Emission {
     explicit Emission(const Scene& scene, std::span<const Imath::Box3f> targets = {});
 
     std::size_t part_count() const { return emitters_.size() * parts_per_emitter; }
-    /// [lm or W]; of outside light, the power sent through the part's box.
+    /// Returns the power [lm or W]; of outside light, the power sent through the part's box.
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
     /// Excludes targets.
     RgbD total_power() const { return power_of_boxes(0, 1); }
-    /// Power of the targets [lm or W].
+    /// Returns the power of the targets [lm or W].
     RgbD repeated_power() const { return power_of_boxes(1, boxes_.size()); }
-    /// Index into Scene::luminaires.
+    /// Returns an index into Scene::luminaires.
     std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }
     /// An emitter's parts are the cells of a grid over its (u, v), numbered row by row.
     static constexpr std::size_t cells_per_side = 8, parts_per_emitter = cells_per_side * cells_per_side;
 
     bool has_sky() const;
     std::size_t sun_count() const { return suns_.size(); }
-    /// Direction in which the sun's light travels. @param c, d  Uniform in (0, 1).
+    /// Samples the direction in which the sun's light travels. @param c, d  Uniform in (0, 1).
     V3f sun_direction(std::size_t sun, float c, float d) const;
     const Imath::Box3f& scene_box() const { return boxes_.front(); }
     /// Box 0 is the scene's; targets follow.

@@ -32,7 +32,7 @@ Illumination light_at(const SpotLight& light, const V3f& x, float, float) {
     return i;
 }
 
-/// Uniform in the disc's solid angle, 2 pi (1 - cos r). Its radiance is E / (pi sin^2 r).
+/// Samples the disc's solid angle, 2 pi (1 - cos r), uniformly. Its radiance is E / (pi sin^2 r).
 Illumination light_at(const DirectionalLight& light, const V3f&, float u, float v) {
     const V3f axis = -light.direction.normalized();
     constexpr float everywhere = std::numeric_limits<float>::infinity();

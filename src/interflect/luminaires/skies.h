@@ -12,7 +12,7 @@ class Skies {
   public:
     explicit Skies(const Scene& scene);
 
-    /// [cd/m^2 or W/(m^2 sr)], without suns. @param direction  Unit length.
+    /// Returns the radiance without suns [cd/m^2 or W/(m^2 sr)]. @param direction  Unit length.
     Rgb radiance(const V3f& direction) const;
     /// Includes the discs of suns.
     Rgb seen(const V3f& direction) const;

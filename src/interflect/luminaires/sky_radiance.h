@@ -23,7 +23,7 @@ class SkyRadiance {
 
     /// Integrates exactly for a map, by four points per cell for a dome.
     std::vector<Rgb> cell_integrals(const SkyGrid& grid) const;
-    /// The map's texels, or cells of 1.4 degrees.
+    /// Returns the map's texel grid, or cells of 1.4 degrees.
     SkyGrid grid() const;
 
   private:

@@ -51,7 +51,7 @@ void transform_rows(std::vector<Complex>& values, std::size_t width) {
     }
 }
 
-/// Sum of A^2 |D|^2. @param rows  Transformed rows.
+/// Returns the sum of A^2 |D|^2. @param rows  Transformed rows.
 double weighted_power(const std::vector<Complex>& rows, std::size_t width, double pixels_per_degree) {
     const std::size_t height = rows.size() / width;
     const kissfft<double> fourier(height, false);

@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
+/// Returns A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
 /// @param cycles_per_degree  f >= 0.
 double contrast_sensitivity(double cycles_per_degree);
 

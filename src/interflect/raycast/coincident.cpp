@@ -88,7 +88,8 @@ CoincidentFaces::CoincidentFaces(const Scene& scene, std::span<const float> tole
     measure_uncovered(scene, tolerance);
 }
 
-/// At most three of equal faces remain: one per side and one for both.
+/// Hides faces whose rays an earlier face with equal corners answers. At most three remain: one per side and one for
+/// both.
 void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank) {
     struct KeyedFace {
         std::uint64_t key;

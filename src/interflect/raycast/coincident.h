@@ -31,11 +31,11 @@ class CoincidentFaces {
     /// Whether a face of higher priority covers a part; hits require answering_patch().
     bool is_overlapped(std::uint32_t face) const { return overlapped_[face]; }
 
-    /// For a first hit at x on the overlapped `face`; `none` for `face` itself.
+    /// Returns the patch that answers a first hit at x on the overlapped `face`, or `none` for `face` itself.
     /// @param x_error  Maximum distance of x from the face [m].
     std::uint32_t answering_patch(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
 
-    /// Fraction of a patch's area that answers rays; the rest must not emit. Slivers count as covered.
+    /// Returns the fraction of a patch's area that answers rays; the rest must not emit. Slivers count as covered.
     float uncovered_share(std::uint32_t patch) const {
         return covered_[patch] ? uncovered_share_[covered_.rank(patch)] : 1.0f;
     }

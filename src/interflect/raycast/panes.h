@@ -27,7 +27,7 @@ class Panes {
         Rgb transmittance;  ///< Of all panes before the hit.
         Hit hit;            ///< Distance from the ray's origin. Includes escaped rays.
     };
-    /// Sorted by ray, then depth.
+    /// Finds all hits behind panes, sorted by ray, then depth.
     void trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vector<HitBehind>& behind) const;
 
     static constexpr int most_in_a_row = 32;

@@ -78,10 +78,10 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
 using Fields = std::array<Field, 2>;
 std::size_t noisy_kinds(const PictureLayers& layers) { return layers.is_indirect_interpolated ? 1 : 2; }
 
-/// At least 1.
+/// Distance between pixels, at least 1.
 float distance_of(int dx, int dy) { return std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy))); }
 
-/// Weight of pixel k for pixel i: 1 in its tangent plane with equal normals, 0 without a surface.
+/// Returns the weight of pixel k for pixel i: 1 in its tangent plane with equal normals, 0 without a surface.
 /// @param steps  distance_of() the two.
 float shape_weight(const PictureLayers& layers, std::size_t i, std::size_t k, float steps) {
     const Rgb turn = layers.normal.pixels[i] - layers.normal.pixels[k];

@@ -35,7 +35,8 @@ class ElementVertices {
     ElementVertices(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options = {});
 
     std::uint32_t count() const { return count_; }
-    /// The vertices at (0,0) (1,0) (1,1) (0,1) of an element's Cell; on triangles (0,0) (1,0) (0,1), then `none`.
+    /// Returns the vertices at (0,0) (1,0) (1,1) (0,1) of an element's Cell; on triangles (0,0) (1,0) (0,1), then
+    /// `none`.
     const std::array<std::uint32_t, 4>& corners(std::uint32_t e) const { return corners_[e]; }
     /// The ends of an edge precede the vertices that hang on it.
     const std::vector<Hanging>& hanging() const { return hanging_; }
@@ -51,8 +52,8 @@ class ElementVertices {
     std::uint32_t count_ = 0;
 };
 
-/// From leaves to vertices, after SmoothNormals. A vertex averages its leaves by angle, independent of tessellation
-/// (Thuermer and Wuethrich 1998).
+/// Converts irradiance from leaves to vertices, after SmoothNormals. A vertex averages its leaves by angle, independent
+/// of tessellation (Thuermer and Wuethrich 1998).
 std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
                                std::span<const Rgb> irradiance);
 

@@ -140,7 +140,7 @@ struct LightTree::Bin {
         power += other.power;
         normals += other.normals;
     }
-    /// Approximate surface area orientation heuristic: power x area x solid angle.
+    /// Approximates the surface area orientation heuristic: power x area x solid angle.
     float cost() const {
         if (power <= 0) return 0;
         return (box.high - box.low).length2() * (4 * power - 3 * normals.length());

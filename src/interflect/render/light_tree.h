@@ -38,10 +38,10 @@ class LightTree {
     /// @param index_count  Greater than every index.
     LightTree(std::vector<Light> lights, std::size_t index_count);
 
-    /// For point x on a surface with normal n. @param uniform  In (0, 1).
+    /// Samples a light for point x on a surface with normal n. @param uniform  In (0, 1).
     Choice choose(const V3f& x, const V3f& n, double uniform) const;
 
-    /// Of choose(); 0 for an index without light.
+    /// Returns the probability of choose(); 0 for an index without light.
     float probability(std::uint32_t index, const V3f& x, const V3f& n) const;
 
     std::size_t light_count() const { return (nodes_.size() + 1) / 2; }
@@ -73,7 +73,8 @@ class LightTree {
 std::vector<LightTree::Light> patch_lights(const Scene& scene, std::span<const PatchGeometry> geometry,
                                            std::span<const float> power);
 
-/// Sum of channels [W or lm], plus 1% of a texture's largest texel, which keeps it positive.
+/// Returns the power per patch, sum of channels [W or lm], plus 1% of a texture's largest texel, which keeps it
+/// positive.
 std::vector<float> emitted_powers(const Scene& scene, std::span<const PatchGeometry> geometry);
 
 }  // namespace interflect::detail

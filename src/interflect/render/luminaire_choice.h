@@ -17,7 +17,7 @@ class LuminaireChoice {
     /// @param scene  Must outlive this object.
     explicit LuminaireChoice(const Scene& scene);
 
-    /// One luminaire's light at x on a surface with normal n, divided by its probability. Excludes skies.
+    /// Returns one luminaire's light at x on a surface with normal n, divided by its probability. Excludes skies.
     Illumination choose(const V3f& x, const V3f& n, const LightSample& sample) const;
 
   private:

@@ -19,7 +19,7 @@ using namespace detail;
 
 namespace {
 
-/// For the farthest vertex [m]: the point may lie on any surface.
+/// Offset at the farthest vertex [m], because the point may lie on any surface.
 float offset_for(const Scene& scene, const V3f& position) {
     constexpr float relative_offset = 0x1p-17f;
     float reach = 0;

@@ -31,7 +31,7 @@ struct SkySample {
     float u, v;
 };
 
-/// Sobol' points at a path's first vertices, then pseudo-random numbers.
+/// Returns Sobol' points at a path's first vertices, then pseudo-random numbers.
 /// @param vertex  1 is the first vertex after the camera. @param index  Of the path in its batch.
 VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 /// @param index  Of the shadow ray in its batch at this vertex, also below.
@@ -39,7 +39,7 @@ LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uin
 PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 
-/// Of a point on a patch that is sampled with `probability` [1/sr].
+/// Returns the density of a point on a patch that is sampled with `probability` [1/sr].
 /// @param distance2  Squared distance [m^2].
 float density_per_solid_angle(const PatchGeometry& patch, float probability, const V3f& direction, float distance2);
 

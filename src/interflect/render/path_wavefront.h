@@ -151,10 +151,10 @@ class PathWavefront {
     /// Gauges act as white surfaces: paths begin with leave().
     void start_at_gauges(std::span<const BatchOfPaths> batches);
     void advance_paths();
-    /// If so, the first surface is white, opaque and does not emit.
+    /// In pictures of irradiance, the first surface is white, opaque and does not emit.
     bool shows_irradiance() const;
     static V3f start_of(const Ray& ray, const Path& path);
-    /// Behind panes and in mirrors seen by the camera.
+    /// Adds paths behind panes and in mirrors seen by the camera.
     void split_paths();
     void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
     Rgb reflectance_of_hit(const Ray& ray, const Hit& hit) const;
@@ -163,7 +163,7 @@ class PathWavefront {
     /// Connects `ray.origin` to the lights and samples a direction. Returns as interact().
     /// @param middle  Of the pixel's or texel's part of the surface.
     bool leave(Ray& ray, Path& path, const V3f& middle);
-    /// Finds or adds it in seen_; none without indirect light.
+    /// Returns the index in seen_, added if new; none without indirect light.
     std::uint32_t seen_place(const V3f& x, const Path& path);
     void add_light_of_seen_places();
     /// Connects a place, to estimate the visible share of its exact light.
@@ -185,7 +185,7 @@ class PathWavefront {
     static bool is_unoccluded(const Connection& connection, const Hit& hit);
     /// Ends a path with solved light at a far element, if possible.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
-    /// Of KnownLight::sample() [1/sr].
+    /// Returns the density of KnownLight::sample() [1/sr].
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                           float distance2) const;
     void connect_to_known_light(const V3f& x, const Path& path);

@@ -133,7 +133,7 @@ class LightAround {
         return Rgb(0);
     }
 
-    /// That cross a one-sided face from behind.
+    /// Share of rays that cross a one-sided face from behind.
     float share_of_backs(const std::vector<Ray>& rays, const std::vector<Hit>& hits) const {
         std::vector<Ray> back;
         std::vector<float> lengths;

@@ -28,7 +28,7 @@ class SmoothNormals {
     /// @param irradiance  Per element; only leaves change.
     void apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const;
 
-    /// Unit length; the patch's own normal without normals at all corners.
+    /// Returns the unit normal at a point; the patch's own normal unless all corners have normals.
     /// @param geometry  Of the patch.
     V3f at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const;
 

@@ -25,7 +25,7 @@ struct SmoothSurfaces {
     std::vector<Seam> seams;
 };
 
-/// Unit length, towards the lit sides.
+/// Returns unit normals towards the lit sides.
 std::vector<V3f> patch_normals(const Scene& scene);
 
 /// Joins patches of equal material and orientation across shared edges without a crease: equal scene normals or,

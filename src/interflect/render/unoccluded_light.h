@@ -20,10 +20,10 @@ class UnoccludedLight {
     bool has_patches() const { return has_patches_; }
     bool has_luminaires() const { return has_luminaires_; }
 
-    /// [as H], at x on a surface with normal n, by Lambert's formula for polygons.
+    /// Returns the irradiance [as H] at x on a surface with normal n, by Lambert's formula for polygons.
     /// @param own  The patch below x, which does not count; may be `none`.
     Rgb by_patches(const V3f& x, const V3f& n, std::uint32_t own) const;
-    /// For measured luminaires, the mean over 16 points of the opening.
+    /// Measured luminaires: the mean over 16 points of the opening.
     Rgb by_luminaires(const V3f& x, const V3f& n) const;
 
   private:
@@ -33,8 +33,8 @@ class UnoccludedLight {
     bool has_patches_ = false, has_luminaires_ = false;
 };
 
-/// Irradiance at x on a surface with normal n by the part above it of a convex polygon of unit radiance. The vertices
-/// may be in either order.
+/// Returns the irradiance at x on a surface with normal n by the part above it of a convex polygon of unit radiance.
+/// The vertices may be in either order.
 float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f& n);
 
 }  // namespace interflect::detail

@@ -23,7 +23,7 @@ inline constexpr float weakest_exitance = 1e-9f, strongest_exitance = 1e10f;
 
 bool is_within_reach(const Imath::V3d& point);
 
-/// Diagonal of all patches' bounding box [m]; 0 without patches. Ignores invalid vertices.
+/// Returns the diagonal of all patches' bounding box [m]; 0 without patches. Ignores invalid vertices.
 double scene_width(const Scene& scene);
 
 // Functions *_fault() return a predicate ("is 2e9 m wide, ..."); empty if valid.
@@ -35,7 +35,7 @@ std::string exitance_fault(const Rgb& exitance);
 /// @param strongest  brightest_source(scene).
 std::string brightness_fault(float strongest);
 
-/// Maximum of each texture and channel.
+/// Returns the maximum of each texture and channel.
 std::vector<Rgb> largest_texels(const Scene& scene);
 
 /// @param largest  largest_texels().
@@ -43,11 +43,13 @@ inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<
     return texture == none ? factor : factor * largest[texture];
 }
 
-/// Maximum sum of reflectance, specular reflectance and transmittance; an upper bound if textures differ in size.
+/// Returns the maximum sum of reflectance, specular reflectance and transmittance; an upper bound if textures differ in
+/// size.
 /// @param largest  largest_texels() of `textures`.
 Rgb largest_sum(const Material& material, const std::vector<Texture>& textures, const std::vector<Rgb>& largest);
 
-/// Largest channel of textured exitances and luminaire ratings; 0 without sources. Requires valid texture indices.
+/// Returns the largest channel of textured exitances and luminaire ratings; 0 without sources. Requires valid texture
+/// indices.
 float brightest_source(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Twice the area [m^2] times the unit normal.
+/// Returns twice the area [m^2] times the unit normal.
 /// @param corners  Of a triangle or a convex, nearly planar quadrilateral, counter-clockwise from the normal's side.
 template <class T>
 Imath::Vec3<T> doubled_area_vector(std::span<const Imath::Vec3<T>> corners) {

@@ -6,17 +6,17 @@
 
 namespace interflect::detail {
 
-/// "" if valid. Eye and look-at must be within farthest_coordinate and define a direction; `up` must not be 0 or along
-/// it; fov in (0, 180); extent in [0, farthest_coordinate].
+/// Describes a fault; "" if valid. Eye and look-at must be within farthest_coordinate and define a direction; `up` must
+/// not be 0 or along it; fov in (0, 180); extent in [0, farthest_coordinate].
 std::string view_fault(const View& view);
 
 /// @throws InputError listing the available views.
 const View& find_view(const Scene& scene, const std::string& name);
 
-/// Default view, from inside an upper corner of core_bounds() to its middle.
+/// Returns the default view from inside an upper corner of core_bounds() to its middle.
 View overview(const Scene& scene);
 
-/// Orthographic view of core_bounds() beyond a plane, with a margin. `up` is z, or y for a view along z.
+/// Returns an orthographic view of core_bounds() beyond a plane, with a margin. `up` is z, or y for a view along z.
 /// @param point  On the plane, in world coordinates [m].
 /// @param direction  Normal to the plane; not 0.
 /// @param aspect  Width over height.

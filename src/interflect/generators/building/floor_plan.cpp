@@ -39,7 +39,7 @@ class Connected {
     std::vector<std::uint32_t> parent_;
 };
 
-/// Separated by walls, centred at 0.
+/// Returns intervals that are separated by walls and centred at 0.
 std::vector<Interval> draw_intervals(std::uint32_t count, const Interval& length, RandomSequence& random) {
     std::vector<Interval> intervals;
     float end = -wall_thickness;
@@ -62,7 +62,7 @@ std::vector<SharedWall> shared_walls(std::uint32_t rooms, std::uint32_t columns)
     return walls;
 }
 
-/// Random spanning tree (Kruskal) and a random part of the other walls.
+/// Chooses a random spanning tree (Kruskal) and a random part of the other walls.
 std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanOptions& options,
                                RandomSequence& random) {
     std::vector<std::uint32_t> order(walls.size());

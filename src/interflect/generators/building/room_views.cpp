@@ -46,7 +46,7 @@ V2f middle_of_doorway(const FloorPlan& plan, const Room& room, Side side) {
     return along_x(side) ? V2f(along, room.wall(side)) : V2f(room.wall(side), along);
 }
 
-/// Cosine between the view direction and the nearest doorway; -1 without doorways.
+/// Returns the cosine between the view direction and the nearest doorway; -1 without doorways.
 float doorway_in_sight(const FloorPlan& plan, const Room& room, const Corner& corner) {
     const V2f eye = eye_in(room, corner), direction = (opposite_corner(room, corner) - eye).normalized();
     float best = -1;

@@ -12,8 +12,8 @@ struct LookOut {
     Imath::Box2f standing_room;  ///< Around the camera, to keep free.
 };
 
-/// The view from the corner that shows a doorway closest to the centre, 0.45 m from walls and from objects outside
-/// `standing_room`.
+/// Returns the view from the corner that shows a doorway closest to the centre, 0.45 m from walls and from objects
+/// outside `standing_room`.
 LookOut look_out(const FloorPlan& plan, std::uint32_t index);
 
 /// Returns "overview" from above and south, through the backs of the ceilings.

@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Mean of y z over siblings (docs/method.md, Errors).
+/// Returns the mean of y z over siblings (docs/method.md, Errors).
 double measured_signal(const SolverState& state, const Estimate& fresh, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t parent = forest.parent(first);

@@ -30,7 +30,7 @@ struct SiblingVariation {
     float risk() const;
 };
 
-/// For the siblings `first` ... `first` + 3.
+/// Returns the variation among the siblings `first` ... `first` + 3.
 SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first);
 
 bool uses_shrinkage(const SolverState& state);

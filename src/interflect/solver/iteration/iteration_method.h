@@ -18,7 +18,7 @@ class IterationMethod {
     /// Runs the steps before the first iteration. @throws Interrupted
     virtual void prepare(SolverState&) {}
     virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
-    /// 0 rays: the run is over.
+    /// Returns 0 rays if the run is over.
     virtual IterationPlan plan(SolverState& state);
     /// Traces and merges rays that carry importance alone (Eq. 7, 8). @throws Interrupted
     virtual void update_importance(SolverState&, IterationPlan&) {}

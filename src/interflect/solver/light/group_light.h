@@ -34,7 +34,7 @@ struct GroupRadiosity {
     bool emits = true;
 
     std::size_t size() const { return groups ? groups->size() : 0; }
-    /// B of a leaf by one group [lm/m^2 or W/m^2].
+    /// Returns B of a leaf by one group [lm/m^2 or W/m^2].
     Rgb of(const Materials& materials, const ElementForest& forest, std::uint32_t leaf, std::size_t group) const {
         if ((*dimming)[group] == 0) return Rgb(0);
         const MeanSurface surface = materials.surface(forest.patch(leaf), leaf);

@@ -42,7 +42,7 @@ class Materials {
         return channel_sum(surface(patch, element).reflectance) / 3;
     }
     bool has_textures() const { return !elements_.empty(); }
-    /// New elements have the mean of their patch until then.
+    /// Adds new elements, which have the mean of their patch until then.
     void grow(const ElementForest& forest) { elements_.grow(forest); }
 
   private:
@@ -63,7 +63,7 @@ struct CoveredEmission {
 /// @throws InputError for a ray caster of another scene.
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
-/// With textures, inner elements have the mean of their children.
+/// Returns Radiosity by element. With textures, inner elements have the mean of their children.
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
 /// Sum of area times value over the roots, in fixed order.

@@ -20,7 +20,7 @@ class BounceBudget {
     /// @param unshot  Relative to the first bounce.
     BounceRays next(double unshot);
     bool has_ended() const { return is_last_ || left_ == 0; }
-    /// Unshot power summed over the bounces, relative to the first; the rest is a geometric series.
+    /// Returns unshot power summed over the bounces, relative to the first; the rest is a geometric series.
     double bounces() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
 
   private:

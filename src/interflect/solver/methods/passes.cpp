@@ -25,8 +25,8 @@ namespace {
 /// Passes::prepare() does nothing in a run with fewer rays.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Relative to the first bounce. With importance, only the share `beta` is this ratio of power; the rest is that of
-/// importance-weighted power.
+/// Returns the unshot power relative to the first bounce. With importance, only the share `beta` is this ratio; the
+/// rest is the same ratio of importance-weighted power.
 double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);

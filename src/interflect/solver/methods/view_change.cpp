@@ -27,7 +27,8 @@ std::vector<float> patch_importance(const SolverState& state) {
     return values;
 }
 
-/// Ratio of the new to the old variance per ray, weighted by importance. Payloads are proportional to power over q.
+/// Returns the ratio of the new to the old variance per ray, weighted by importance. Payloads are proportional to power
+/// over q.
 /// @param importance  By patch.
 float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
                   const std::vector<float>& new_q) {

@@ -15,7 +15,7 @@ class ViewChange {
     /// Call before the views change.
     void record(const SolverState& state);
     void clear() { old_q_.clear(), old_importance_.clear(); }
-    /// By patch.
+    /// Returns a factor per patch.
     std::vector<float> history_factor(const SolverState& state) const;
 
     void archive(StateArchive& archive);

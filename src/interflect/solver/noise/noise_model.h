@@ -21,14 +21,15 @@ class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
-    /// Luminance variance of a mean over `rays` rays: of a root, or of another element's difference from its parent.
+    /// Returns the luminance variance of a mean over `rays` rays: of a root, or of another element's difference from
+    /// its parent.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
     bool is_known() const { return iterations_ > 1; }
 
-    /// Noise variance of the siblings `first` ... `first` + 3 relative to its mean. With few rays, a sibling may be
-    /// dark by chance, so the shares tend to 1.
+    /// Returns the noise variance of the siblings `first` ... `first` + 3 relative to its mean. With few rays, a
+    /// sibling may be dark by chance, so the shares tend to 1.
     std::array<float, 4> shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
                                 float rays) const;
 

@@ -23,7 +23,7 @@ struct RiskCheck {
     RiskCheck& operator+=(const RiskCheck& o) { return add(1, o, 1); }
     /// @param share  In [0, 1]; less for short iterations.
     void add(const RiskCheck& fresh, double share) { add(1 - share / 2, fresh, share); }
-    /// 1 without data.
+    /// Returns 1 without data.
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }
 
   private:

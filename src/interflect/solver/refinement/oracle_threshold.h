@@ -11,11 +11,11 @@ namespace interflect::detail {
 /// Makes the oracle of Eq. 14 or 15. @param rays  Averaged rays after this step, > 0.
 Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area);
 
-/// Reference of the threshold [lm or W]: the power that visible patches receive at the mean irradiance of the picture.
-/// If unknown or 0: all emitted power.
+/// Returns the reference of the threshold [lm or W]: the power that visible patches receive at the mean irradiance of
+/// the picture. If unknown or 0: all emitted power.
 double reference_power(const Solution& so_far);
 
-/// psi_max of Eq. 15 [1/m^2]: area-weighted mean over visible patches.
+/// Returns psi_max of Eq. 15 [1/m^2]: area-weighted mean over visible patches.
 double reference_importance(const Solution& so_far, const std::vector<float>& psi);
 
 }  // namespace interflect::detail

@@ -45,7 +45,7 @@ struct PowerPlan {
 PowerPlan plan_power(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);
 
-/// For rays that carry importance alone (Eq. 8). Refers to `importance`.
+/// Plans rays that carry importance alone (Eq. 8). Refers to `importance`.
 RayPlan plan_importance(const Materials& materials, const Solution& so_far, const Importance& importance,
                         std::int64_t rays);
 

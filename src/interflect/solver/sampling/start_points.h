@@ -20,14 +20,14 @@ struct StartPoint {
 class StartPoints {
   public:
     StartPoints() = default;
-    /// In any order. Cost: O(n log n) on all threads.
+    /// Accepts any order. Cost: O(n log n) on all threads.
     explicit StartPoints(std::vector<StartPoint> points);
 
-    /// Empty: uniform origins. Cost: O(log n).
+    /// Returns the points of a leaf; empty: uniform origins. Cost: O(log n).
     std::span<const StartPoint> of(std::uint32_t leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 
-    /// By power. @param points  Not empty. @param u  In [0, 1).
+    /// Samples a point by power. @param points  Not empty. @param u  In [0, 1).
     static Parameters choose(std::span<const StartPoint> points, float u);
 
   private:

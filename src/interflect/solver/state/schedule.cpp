@@ -37,7 +37,7 @@ void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
     averaged_rays_ = power_rays;
 }
 
-/// At the current speed; 0 if too few to be useful.
+/// Returns the rays for the remaining time at the current speed; 0 if too few to be useful.
 std::int64_t Schedule::affordable_rays(double seconds) {
     constexpr double share_of_time = 0.85;    // of the remaining time; speed varies
     constexpr double least_share = 1.0 / 32;  // of the rays averaged before

@@ -26,11 +26,11 @@ class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Of each pass before the first iteration: at most an eighth of all.
+    /// Returns the rays of each pass before the first iteration: at most an eighth of all.
     std::int64_t start_rays() const;
     /// Records these passes. Power rays are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// Ends within the time limit. @param seconds  Since the run began.
+    /// Plans an iteration that ends within the time limit. @param seconds  Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);
@@ -38,7 +38,7 @@ class Schedule {
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
-    /// The size of the first iterations does not change.
+    /// Keeps the size of the first iterations.
     void set_limits(const Limits& limits);
     void archive(StateArchive& archive);
 

@@ -92,12 +92,12 @@ void compute_view_importance(SolverState& state);
 /// Refers to its arguments.
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
 
-/// [lm or W], surfaces and luminaires.
+/// Returns the power of surfaces and luminaires [lm or W].
 RgbD radiated_power(const SolverState& state);
 
 bool refines_by_variance(const SolveOptions& options);
 
-/// Of ElementFloor [m^2].
+/// Evaluates ElementFloor [m^2].
 float min_area(const SolverState& state, std::uint32_t element);
 float pixel_area(const SolverState& state, std::uint32_t element);
 

@@ -42,7 +42,7 @@ Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_s
 
 Received nothing_received(const TransportStep& step, std::size_t elements);
 
-/// Of area-weighted means of independent elements.
+/// Computes the variance of area-weighted means of independent elements.
 inline void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {
         double sum = 0, area = 0;  // squared areas exceed the range of a float

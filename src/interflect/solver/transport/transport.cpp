@@ -48,8 +48,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// The `visits` of ContributionUnits: their expected number, at most 1 / (1 - rho), times 2^12 for chance and panes.
-/// The expected sum of power then still has 2^49 of the 2^61 units of FixedPoint.
+/// Returns the `visits` of ContributionUnits: their expected number, at most 1 / (1 - rho), times 2^12 for chance and
+/// panes. The expected sum of power then still has 2^49 of the 2^61 units of FixedPoint.
 double most_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
@@ -90,7 +90,7 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Null if the step carries no importance, or if it deposits importance at patches and no luminaire shoots.
+/// Returns nullopt if the step carries no importance, or if it deposits importance at patches and no luminaire shoots.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};

@@ -27,7 +27,7 @@ namespace interflect::detail {
 /// results.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, ContributionSums& sums, const StopRequest& stop);
-/// With its own sums, without a stop request.
+/// Uses its own sums, without a stop request.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 

@@ -122,7 +122,7 @@ struct LinesOfSight {
     std::uint64_t seed;
     std::int64_t& rays;
 
-    /// Visibility is weighted by unoccluded light.
+    /// Samples visibility, weighted by unoccluded light.
     void sample(std::uint32_t small, std::uint32_t large, const Quadrature& points, Exchange& exchange) {
         const PatchGeometry& geometry = forest.geometry(forest.patch(large));
         const V3f normal_x = forest.geometry(forest.patch(small)).normal(), normal_y = geometry.normal();
@@ -156,7 +156,7 @@ struct LinesOfSight {
         exchange.variation = all > 0 ? largest_channel(most - least) : 0;
     }
 
-    /// Transmittance of panes; 0 if another surface blocks the ray.
+    /// Returns the transmittance of panes; 0 if another surface blocks the ray.
     Rgb transmittance(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
         const V3f origin = from + normal * ray_caster.ray_offset(forest.patch(source));
         const Ray ray{origin, (to - origin).normalized()};

@@ -143,7 +143,7 @@ class LineSums {
         add_concurrently(started_[segment.back], 1);
         carry(segment.back, segment.front, Rgb(1));
     }
-    /// In one direction, because a pane may be one-sided.
+    /// Deposits light in one direction, because a pane may be one-sided.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
         carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
     }

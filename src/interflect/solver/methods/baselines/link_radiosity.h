@@ -20,7 +20,7 @@ struct Link {
 
     /// Exchange with occlusion, A_a F_ab = A_b F_ba [m^2].
     RgbD area() const { return RgbD(exchange.transmittance) * static_cast<double>(exchange.area); }
-    /// For importance.
+    /// Mean over the channels, for importance.
     double mean_area() const { return channel_sum(area()) / 3; }
 };
 

@@ -65,7 +65,7 @@ struct PathSums {
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
 
-    /// Emitted power / (1 - rho).
+    /// Returns emitted power / (1 - rho).
     static double most_expected(const WalkSource& payload) {
         double power = 0, rho = 0;
         for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
@@ -194,8 +194,8 @@ class PathBatch {
         add_concurrently(sums_.escaped_rays, escaped_rays);
     }
 
-    /// Russian roulette and splitting: reflected power continues as n copies on average. Below the limit of n, a copy
-    /// carries the power of a particle emitted there.
+    /// Applies Russian roulette and splitting: reflected power continues as n copies on average. Below the limit of n,
+    /// a copy carries the power of a particle emitted there.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;

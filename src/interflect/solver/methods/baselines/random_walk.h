@@ -29,7 +29,7 @@ class RandomWalks : public IterationMethod {
 
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
-    /// Weighted by planned rays (Eq. 6). Traced rays would cause a bias, because long paths also deposit more.
+    /// Merges by Eq. 6, weighted by planned rays. Traced rays would cause a bias, because long paths also deposit more.
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
     void discard() override { current_ = before_; }
     void change_views(SolverState& state) override;
