@@ -9,8 +9,7 @@
 
 namespace interflect::detail {
 
-/// Reads EULUMDAT (Stockmar 1990). Multiplies intensities per 1000 lm by the conversion factor and the flux of the
-/// first lamp set. @throws InputError
+/// Reads EULUMDAT (Stockmar 1990; docs/luminaires.md). @throws InputError
 PhotometricWeb read_ldt(const std::filesystem::path& path, const ReadOptions& options, Warnings& warnings);
 
 PhotometricWeb read_ldt_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options,

@@ -8,17 +8,11 @@ namespace interflect::detail {
 /// @param cycles_per_degree  f >= 0.
 double contrast_sensitivity(double cycles_per_degree);
 
-/// First model of Rushmeier et al. 1995 (docs/metrics.md), from luminances L and R of image and reference, clamped to
-/// >= 0. m is the mean of R, f the frequency [cycles per degree]:
-///
-///     d(x, y)  = (L / m)^0.33 - (R / m)^0.33
-///     D(u, v)  = 1/N sum of d(x, y) exp(-2 pi i (u x / width + v y / height))
-///     distance = sqrt(sum over u, v of A(f(u, v))^2 |D(u, v)|^2)
-///
-/// A black reference gives 0 for a black image, otherwise infinity.
+/// Computes the first model of Rushmeier et al. 1995 (formulas in docs/metrics.md) from luminances, clamped to >= 0. A
+/// black reference gives 0 for a black image, otherwise infinity.
 /// @param field_of_view  Full vertical angle [degrees], in (0, 180).
 /// @throws InputError for different sizes, no pixels, or a field of view out of range. Pixels must be finite.
-/// O(N log N) for sides with small prime factors, at worst O(N (width + height)); 16 bytes per pixel.
+/// O(N log N) for sides with small prime factors, at worst O(N (width + height)).
 double perceptual_distance(const Image& image, const Image& reference, double field_of_view);
 
 }  // namespace interflect::detail

@@ -13,12 +13,8 @@
 
 namespace interflect::detail {
 
-/// Shading of curved surfaces by Scene::normals. To first order, their irradiance is
-///
-///     H(x) = H_solved(x) + G (n(x) - n_mean)
-///
-/// with n(x) interpolated from corner normals and n_mean its mean. G, the gradient of irradiance by normal, is a
-/// least-squares fit to the steps of irradiance across edges. The correction is clamped to the largest step.
+/// Shading of curved surfaces by Scene::normals: H(x) = H_solved(x) + G (n(x) - n_mean) (docs/method.md, Curved
+/// surfaces). The correction is clamped to the largest step of irradiance across edges.
 class SmoothNormals {
   public:
     SmoothNormals() = default;

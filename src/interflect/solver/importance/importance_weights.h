@@ -34,8 +34,8 @@ struct ImportanceWeights {
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
-/// Smooths importance for sampling (docs/method.md, One step of transport): mixes in the share `from_parent` of the
-/// parent's result, then applies the exponent. The paper uses 0 and 1.
+/// Smooths importance for sampling (docs/method.md, One step of transport). The paper uses `from_parent` 0 and
+/// `exponent` 1.
 std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
                                      double exponent);
 

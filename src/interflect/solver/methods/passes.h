@@ -9,8 +9,8 @@
 
 namespace interflect::detail {
 
-/// Iterations that are passes: each shoots emitted power, then received power, bounce by bounce ('incremental
-/// shooting', Neumann et al. 1995). A pass is an unbiased estimate on the current mesh, independent of earlier passes.
+/// Iterations that are passes ('incremental shooting', Neumann et al. 1995; docs/method.md, A run): unbiased estimates
+/// on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
     /// Estimates importance, then makes the initial mesh by two small passes (Eq. 14, 15), which are not averaged.

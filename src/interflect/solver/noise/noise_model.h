@@ -15,8 +15,7 @@
 namespace interflect::detail {
 
 /// Noise of the mean irradiance: the variance for independent rays, times a factor measured from differences between
-/// iterations (docs/method.md, Errors). Elements with similar numbers of rays share a factor: a ray with a large weight
-/// does not affect elements with many rays.
+/// iterations (docs/method.md, Errors). Elements with similar numbers of rays share a factor.
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }

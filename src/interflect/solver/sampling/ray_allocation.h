@@ -9,7 +9,7 @@
 namespace interflect::detail {
 
 /// Systematic allocation of N rays to sources, in order: N q_s / sum q for source s, rounded up or down, exact in the
-/// mean over `offset`. Stores 16 bytes per 256 sources and recomputes the rest.
+/// mean over `offset`.
 class RayAllocation {
   public:
     /// @param q       Weights >= 0, not normalised; must outlive this.

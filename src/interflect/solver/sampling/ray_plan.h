@@ -38,9 +38,8 @@ struct PowerPlan {
     std::int64_t non_finite_leaves = 0;  ///< Not shot.
 };
 
-/// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000). The method selects q: by
-/// power (Eq. 3), direct importance, or total or indirect importance (Eq. 9, 10). Further shares are sampled by power
-/// alone (beta) and by neighbourhood importance. The plan refers to `so_far`, `emission` and `light`.
+/// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000; docs/method.md, One step of
+/// transport). The plan refers to `so_far`, `emission` and `light`.
 /// @param emission  Shot if `light` emits.
 PowerPlan plan_power(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);

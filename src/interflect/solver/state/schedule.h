@@ -21,7 +21,7 @@ struct IterationPlan {
 };
 
 /// Ray counts of the iterations, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000. By default,
-/// iterations grow with the rays averaged before, so early ones on coarse meshes soon have little weight.
+/// iterations grow with the rays averaged before.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);

@@ -41,7 +41,6 @@ struct RefinementCandidate;
 /// The run ends when light has settled and no link needs refinement. It stays within limits.rays (except for the first
 /// links), max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
 /// escaped_power is the error of the form factors. Cost: O(patches^2 + links).
-/// escaped_power is the error of the form factors. Cost: O(patches^2 + links).
 class LinkedElements : public IterationMethod {
   public:
     /// The state must outlive this.
