@@ -21,7 +21,6 @@ struct LightmapChart {
 
 /// Makes charts from kept_layouts(). Unfolds other smooth surfaces (unfolded()), split at discontinuities of light and
 /// at gaps narrower than two texels.
-/// @param warnings  As for kept_layouts().
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings = nullptr);
 

@@ -19,7 +19,6 @@ using Joints = std::vector<SmoothSurfaces::Seam>;
 /// Unfolds smooth surfaces by joining flat pieces at common edges, with deformations up to most_stretch and most_shear.
 /// A piece starts another layout if it would deform more, overlap, or come closer than `gap` [m] to a piece further
 /// away in space.
-/// @param corners  From find_smooth_surfaces().
 std::vector<FlatPatches> unfolded(const Scene& scene, const SmoothSurfaces::Groups& corners, const Joints& joints,
                                   const ChartConflicts& conflicts, std::vector<FlatPatches> pieces, double gap);
 

@@ -21,7 +21,6 @@ namespace interflect::detail {
 /// @throws InputError for invalid input. Errors in a colour or material count only if a face uses it.
 Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  For messages and references.
 Scene read_mgf_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

@@ -23,10 +23,8 @@ class PhotometricText {
 
     /// Returns the next line, trimmed; nullopt at the end.
     std::optional<std::string_view> line();
-    /// Returns the next word on any line.
     std::optional<std::string_view> word();
 
-    /// @param what  For messages.
     double number(const std::string& what);
     /// Reads an integer in [least, most].
     std::size_t count(const std::string& what, std::size_t least, std::size_t most);

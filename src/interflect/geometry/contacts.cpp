@@ -48,7 +48,6 @@ double longest_sliver(const Facet& facet, double surface_area) {
     return is_small_part ? longest_sliver_share * width : std::numeric_limits<double>::infinity();
 }
 
-/// @param surface_area  Of the flat surface [m^2].
 CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_area, const ContactOptions& options) {
     CutFacet result;
     std::vector<PlanarSegment> segments = finder.segments(static_cast<double>(options.least_extent));

@@ -36,7 +36,7 @@ float sample_cosine(float v, float inner, float outer, float inner_share) {
     return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));
 }
 
-/// @param cosine, sine  Of the angle from `axis`. @param turn  Azimuth from s towards t, in full turns.
+/// @param turn  Azimuth from s towards t, in full turns.
 V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float sine, float turn) {
     const float angle = 2 * pi * turn;
     return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;

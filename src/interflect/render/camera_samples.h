@@ -54,7 +54,7 @@ inline std::uint32_t leaf_of_hit(const ElementForest& forest, const Ray& ray, co
     return forest.leaf_at(hit.patch, parameters_of_hit(forest, ray, hit));
 }
 
-/// @throws InputError with the name of the values unless each element has one.
+/// @throws InputError naming `what` unless each element has a value.
 void require_values_of_elements(const ElementForest& forest, std::size_t value_count, const char* what);
 
 }  // namespace interflect::detail

@@ -82,7 +82,6 @@ std::size_t noisy_kinds(const PictureLayers& layers) { return layers.is_indirect
 float distance_of(int dx, int dy) { return std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy))); }
 
 /// Returns the weight of pixel k for pixel i: 1 in its tangent plane with equal normals, 0 without a surface.
-/// @param steps  distance_of() the two.
 float shape_weight(const PictureLayers& layers, std::size_t i, std::size_t k, float steps) {
     const Rgb turn = layers.normal.pixels[i] - layers.normal.pixels[k];
     const Rgb step = layers.position.pixels[k] - layers.position.pixels[i];

@@ -35,7 +35,6 @@ std::string exitance_fault(const Rgb& exitance);
 /// @param strongest  brightest_source(scene).
 std::string brightness_fault(float strongest);
 
-/// Returns the maximum of each texture and channel.
 std::vector<Rgb> largest_texels(const Scene& scene);
 
 /// @param largest  largest_texels().

@@ -65,7 +65,7 @@ AddedError added_error(const SolverState& state, std::uint32_t first) {
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }
 
-/// Computes the Wiener filter with each sibling's own noise (docs/method.md, Shrinkage).
+/// Applies a Wiener filter (docs/method.md, Shrinkage).
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const SiblingVariation variation = sibling_variation(state, first);

@@ -30,7 +30,6 @@ struct SiblingVariation {
     float risk() const;
 };
 
-/// Returns the variation among the siblings `first` ... `first` + 3.
 SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first);
 
 bool uses_shrinkage(const SolverState& state);

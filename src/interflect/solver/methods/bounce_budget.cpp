@@ -9,7 +9,7 @@ namespace {
 
 /// Random walks replace the remaining bounces if the next one would get fewer rays.
 constexpr double fewest_rays_of_bounce = 2;
-/// They also do if less than this share remains: each bounce takes time for every element.
+/// Random walks also replace bounces below this share of a pass: each bounce takes time for every element.
 constexpr double least_share_left = 0.05;
 /// Fewer make small passes noisy. Rays beyond the plan are not counted.
 constexpr std::int64_t fewest_walks = 32;

@@ -40,7 +40,7 @@ Estimate darkness(const SolverState& state) {
     return dark;
 }
 
-/// Adds a bounce to the sum. May move its variance, but not its irradiance, which the next bounce reflects.
+/// May move the variance of `received`, but not its irradiance, which the next bounce reflects.
 void add(Estimate& sum, Received& received) {
     sum.escaped_power += received.escaped_power;
     accumulate(sum.groups, received.groups);
@@ -86,7 +86,7 @@ struct Passes::Pass {
     Estimate sum = {};
 };
 
-/// @param oracle_refines  Whether the oracle refines the mesh during the pass. @throws Interrupted
+/// @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
     state.payloads = {};  // reported for the last pass only
     Pass pass{rays, oracle_refines, BounceBudget(rays, bounces_),

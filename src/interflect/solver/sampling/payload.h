@@ -79,7 +79,6 @@ class PayloadHistogram {
     std::int64_t count_ = 0;
 };
 
-/// Sums over all rays of a step.
 struct PayloadTotals {
     RgbD power{0, 0, 0};  ///< [lm or W]
     double square = 0;    ///< Squared luminance of power.

@@ -34,7 +34,6 @@ struct Received {
 
 /// Converts the contributions of a step to received values and zeroes them. Sorts new elements and drops those beyond
 /// the oracle's limit, whose parents receive the contributions. Reuses buffers of the step.
-/// @param old_size    Size of the forest before the step.
 /// @param importance  Found by the rays, or null.
 Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_size, const RayAllocation& allocation,
                  const PayloadTotals& payload, const ContributionUnits& units, const FoundImportance* importance,

@@ -53,7 +53,7 @@ struct LineSegment {
     bool is_mutual;  ///< Whether `back` also sees `front`: false through the back of a one-sided face.
 };
 
-/// Active lines of a task; one object per thread.
+/// One object per thread.
 struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, looking_back;

@@ -51,7 +51,6 @@ struct WalkSource {
     bool is_grey = false;          ///< Panes transmit the mean of their channels.
 };
 
-/// Integer sums, independent of the order of deposits.
 struct PathSums {
     FixedPoint unit;
     std::vector<FixedPoint::Value> received;
