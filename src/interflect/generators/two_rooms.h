@@ -6,7 +6,7 @@ namespace interflect::detail {
 
 struct TwoRoomsOptions {
     float turn = 0;          ///< About the vertical [degrees], -40 to 40.
-    bool furniture = false;  ///< Two cabinets per side of the partition, paper on one.
+    bool furniture = false;  ///< Two cabinets per side, paper on one.
 };
 
 /// Creates two sealed rooms of 4 x 4 x 3 m with common floor, ceiling and outer wall polygons. A rotated partition

@@ -34,7 +34,7 @@ class TextureIntegral {
 
     const Texture& texture_;
     std::size_t sums_per_row_;
-    std::vector<RgbD> sums_;  // per row: sums before every eighth texel, then of the whole row
+    std::vector<RgbD> sums_;  // per row: before every eighth texel, then of the whole row
     Rgb largest_;
     RgbD mean_{0, 0, 0};
 };

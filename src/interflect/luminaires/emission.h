@@ -76,7 +76,7 @@ class Emission {
     /// Point source that stands for a part in the oracle. At the end of a ray, both cause about the same irradiance.
     struct Proxy {
         V3f position{0, 0, 0};  ///< [m]
-        V3f normal{0, 0, 0};    ///< Emission is proportional to the cosine to it; zero: isotropic.
+        V3f normal{0, 0, 0};    ///< Emission is proportional to the cosine; zero: isotropic.
         /// Along the normal; irradiance at distance d is intensity / d^2 [lm/sr or W/sr].
         Rgb intensity{0, 0, 0};
     };

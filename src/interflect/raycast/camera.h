@@ -23,7 +23,7 @@ class Camera {
     bool is_orthographic_;
     V3f eye_;                       // relative to the scene's origin [m]
     V3f forward_;                   // unit length
-    V3f corner_;                    // from the eye to the top left corner, at distance 1, or 0 if orthographic
+    V3f corner_;                    // from the eye to the top left corner, at distance 1 (orthographic: 0)
     V3f pixel_right_, pixel_down_;  // one pixel on that plane
 };
 

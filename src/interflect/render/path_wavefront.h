@@ -50,7 +50,7 @@ struct PathScene {
     const SmoothNormals* smooth_normals = nullptr;  // of visible surfaces; null: flat patches
     const IndirectField* indirect_field = nullptr;  // replaces reflected paths at the first vertex
     bool is_indirect_only = false;                  // omits light that is reflected once
-    bool finds_points = false;                      // paths end at the first vertex, see PathWavefront::points()
+    bool finds_points = false;                      // paths end at the first vertex
 
     /// Whether some direct light is not exact.
     bool directions_find_light() const {
@@ -115,9 +115,9 @@ class PathWavefront {
         std::uint32_t index;         // in light_
         V3f normal;                  // of the surface that the ray left
         std::uint32_t patch = none;  // that surface
-        float travelled = 0;  // from that surface or the camera to the ray's origin, behind panes or in mirrors [m]
+        float travelled = 0;         // from that surface or the camera to the ray's origin [m]
         bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
-        std::uint32_t place = none;  // in seen_: ends at the next vertex, because its indirect light is known
+        std::uint32_t place = none;  // in seen_: ends at the next vertex
     };
     struct PathLight {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
@@ -126,7 +126,7 @@ class PathWavefront {
     /// Irradiance by one kind of source.
     struct ExactLight {
         Rgb exact{0, 0, 0};
-        Rgb sampled{0, 0, 0}, visible{0, 0, 0};  // contributions of all shadow rays; of unoccluded ones
+        Rgb sampled{0, 0, 0}, visible{0, 0, 0};  // contributions of all and of unoccluded shadow rays
         Rgb result() const;
     };
     /// Surface point of a pixel: its light is computed once for all paths to the patch.

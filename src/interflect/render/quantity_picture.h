@@ -22,7 +22,7 @@ struct Quantity {
 };
 
 struct QuantityPicture {
-    Image values;  ///< Means over visible surfaces, in all channels; 0 without surfaces.
+    Image values;  ///< Means over visible surfaces; 0 without surfaces.
     Image shown;   ///< False colours; escaped rays are black.
     ColourScale scale;
     std::int64_t non_finite_pixels = 0;  ///< In either image.

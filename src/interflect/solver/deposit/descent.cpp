@@ -11,7 +11,7 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution, st
     const std::uint32_t payload = buffer_.add_source(contribution, of_groups);
     sources_in_task_.push_back({source, 0, transmitted});
     const auto source_in_task = static_cast<std::uint32_t>(sources_in_task_.size() - 1);
-    bool needs_path = refines_;  // one path serves all rays of a leaf
+    bool needs_path = refines_;  // one path per leaf
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
             count_escaped(contribution);

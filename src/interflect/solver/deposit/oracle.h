@@ -41,7 +41,7 @@ struct Oracle {
     bool refines = false;
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
-    float min_area = 0;  ///< Elements below four times this area are not divided [m^2].
+    float min_area = 0;  ///< Minimum area of children [m^2].
     /// At the end of a step; collect() drops the excess.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 

@@ -30,7 +30,7 @@ struct alignas(64) RayPairs {
     Vectors normal;
     Floats area, importance;  // psi_i
     // Shooter: the current element around the origin.
-    Numbers shooter, lowest_shooter;  // in SourcePaths; lowest: the ray's leaf or a new element
+    Numbers shooter, lowest_shooter;  // in SourcePaths; lowest: leaf or new element
     Vectors shooter_centre, shooter_normal;
     Floats shooter_area, shooter_least_cosine;
     Floats reflected;   // largest channel of rho_i B_j

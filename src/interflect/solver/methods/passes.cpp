@@ -78,11 +78,11 @@ struct Passes::Pass {
     ImportanceWeights weights;
     /// See leaves_reflecting_where_received(). Empty while the oracle refines.
     std::vector<std::uint8_t> reflecting_where_received = {};
-    bool emits = true;             ///< Whether the next bounce shoots the emitted power: only the first does.
+    bool emits = true;             ///< Whether the next bounce shoots emitted power.
     std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
     StartPoints start_points = {};
-    double first_power = 0, first_weighted_power = 0;  ///< PowerPlan::power and weighted_power of the first bounce.
+    double first_power = 0, first_weighted_power = 0;  ///< Of the first bounce.
     Estimate sum = {};
 };
 

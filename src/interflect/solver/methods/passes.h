@@ -40,7 +40,7 @@ class Passes : public IterationMethod {
 
     /// BounceBudget::bounces() of the last pass; 0: unknown.
     double bounces_ = 0;
-    bool needs_importance_ = false;  // the views have changed: the next iteration starts with find_importance()
+    bool needs_importance_ = false;  // the next iteration starts with find_importance()
     ViewChange view_change_;
 };
 

@@ -168,7 +168,7 @@ Estimate RandomWalks::trace(SolverState& state, IterationPlan& plan) {
 
 void RandomWalks::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
     if (estimate.irradiance.empty()) return;
-    const bool shows_error = plan.rays >= state.schedule.start_rays();  // a remainder of the rays is too small
+    const bool shows_error = plan.rays >= state.schedule.start_rays();  // a remainder is too small
     if (shows_error) estimate_noise(state, estimate, plan.rays);
     const double before = state.history[0], now = before + static_cast<double>(plan.rays);
     const double tau = plan.warms_up ? 1 : static_cast<double>(plan.rays) / now;  // Eq. 6
