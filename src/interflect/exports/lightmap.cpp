@@ -36,7 +36,6 @@ struct TexelPlace {
     bool is_inside = false;
 };
 
-/// In the parameters of a patch.
 std::array<Parameters, 2> texel_sides(const FlatPatch& flat, const Imath::V2d& spacing) {
     const Imath::V2d u = flat.corners[1] - flat.corners[0],
                      v = flat.corners[static_cast<std::size_t>(flat.count) - 1] - flat.corners[0];

@@ -24,7 +24,7 @@ struct GltfCoverage {
 
 struct GltfTexels {
     std::uint32_t colour = none;    ///< sRGB; white if absent.
-    std::uint32_t metallic = none;  ///< With metallic in blue.
+    std::uint32_t metallic = none;  ///< Image with metallic in blue.
     float metallic_factor = 0;      ///< Scales by 1 - metallic_factor * metallic.
     Rgb factor{1, 1, 1};            ///< Scales colours before clamping to 1.
     GltfCoverage coverage{};        ///< Blends the colour with `open`.

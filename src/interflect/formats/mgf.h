@@ -15,7 +15,6 @@ namespace interflect::detail {
 /// * Colours become linear Rec. 709; MGF's neutral is R = G = B.
 /// * `rd` is limited to 0.99; `ts` ignores roughness. `rs` is a mirror for the camera if its roughness is at most 0.02.
 /// * `o` and array copies ("a0", "a1") name objects, joined by dots.
-/// * The end of a file closes everything open, with a warning.
 ///
 /// Time is linear in the text with arrays expanded.
 /// @throws InputError for invalid input. Errors in a colour or material count only if a face uses it.

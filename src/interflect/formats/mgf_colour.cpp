@@ -39,7 +39,7 @@ V3d colour_matching_at(double wavelength) {
     return row(colour_matching[i]) * (1 - t) + row(colour_matching[i + 1]) * t;
 }
 
-/// Of |Y| and |X + Y + Z|, relative to |X| + |Y| + |Z|.
+/// Minimum of |Y| and |X + Y + Z|, relative to |X| + |Y| + |Z|.
 constexpr double least_share = 1e-6;
 
 Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {

@@ -73,7 +73,7 @@ class RadReader {
     Model model_;
     RadMaterials materials_;
     RepeatedWork repeated_;
-    double patches_ = 0;  // so far
+    double patches_ = 0;  // requested so far
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };
 

@@ -41,7 +41,7 @@ struct CutFacet {
 };
 
 /// Returns the length above which a sliver is cut across [m]. Quartering preserves aspect ratios, so long patches yield
-/// long elements. Facets with at least a quarter of their flat surface's area have no limit.
+/// long elements.
 double longest_sliver(const Facet& facet, double surface_area) {
     const double width = surface_area / facet.diameter;
     const bool is_small_part = surface_area > 4 * facet.area();

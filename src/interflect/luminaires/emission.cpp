@@ -220,7 +220,7 @@ void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyG
 
 void Emission::add_rectangle(Rectangle rectangle, const Rgb& exitance, std::size_t box) {
     const float part_area = rectangle.edge_u.length() * rectangle.edge_v.length() / float{parts_per_emitter};
-    const std::size_t outer = emitters_.size() - box * (rectangle.is_sky() ? 6 : 1);  // of the scene's box
+    const std::size_t outer = emitters_.size() - box * (rectangle.is_sky() ? 6 : 1);  // same side of the scene's box
     rectangle.part_area = box == 0 ? part_area : std::get<Rectangle>(emitters_[outer].shape).part_area;
     emitters_.push_back({rectangle, exitance, RgbD(exitance) * double{part_area}, box});
 }

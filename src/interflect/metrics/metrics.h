@@ -17,7 +17,7 @@ struct BlockDifference {
 
 /// Image a minus reference b. Means include pixels and, except for luminance, channels.
 struct ImageDifference {
-    double ratio_of_means = 1;  ///< Of luminance.
+    double ratio_of_means = 1;  ///< Mean luminance: image / reference.
     double rmse = 0;            ///< sqrt(mean of (a - b)^2) [unit of the images].
     /// Mean of (a - b)^2 / (b^2 + (0.01 m)^2), m the mean luminance of b.
     double relative_mse = 0;

@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 enum class RayInterface { single, packet8, packet16, stream };
 
-/// In Embree's layout, without conversion: upper bound of the solver's ray rate.
+/// Rays in Embree's layout, without conversion: upper bound of the solver's ray rate.
 class PreparedRays {
   public:
     PreparedRays(std::span<const Ray> rays, RayInterface interface);

@@ -19,12 +19,12 @@ struct CameraSampling {
     std::uint64_t seed = 1;
 };
 
-/// To the right and down [pixels].
+/// Offset to the right and down [pixels].
 struct PixelOffset {
     float x = 0, y = 0;
 };
 
-/// Ordered by sample.
+/// Rays and hits of a pixel, ordered by sample.
 struct PixelSamples {
     std::size_t pixel = 0;  ///< y * width + x.
     std::span<const Ray> rays;

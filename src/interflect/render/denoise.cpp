@@ -199,7 +199,7 @@ class Band {
     std::array<std::array<Sums, 2>, 2> sums_;  // [half][kind of light]
 };
 
-/// Mean of both halves.
+/// Light before filtering: mean of both halves.
 struct NoisyLight {
     Image irradiance;             // over pi
     std::vector<float> variance;  // of its mean channel

@@ -123,7 +123,7 @@ class PathWavefront {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
         FirstHit first{};
     };
-    /// Irradiance by one kind of source.
+    /// Irradiance by the sources of a kind: exact without occlusion, and sampled by shadow rays.
     struct ExactLight {
         Rgb exact{0, 0, 0};
         Rgb sampled{0, 0, 0}, visible{0, 0, 0};  // contributions of all and of unoccluded shadow rays
@@ -142,7 +142,7 @@ class PathWavefront {
         std::uint32_t patch, index;
         Rgb radiance;
         float distance;              // [m]
-        std::uint32_t bounces;       // of its light
+        std::uint32_t bounces;       // reflections of its light
         std::uint32_t place = none;  // in seen_; then `radiance` only estimates the visible share
         ExactLight SeenPlace::*kind = nullptr;
     };

@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 struct SmoothSurfaces {
     struct Groups {
-        /// By corner, or by the edge that starts there, [4 patch + corner]; in [0, count).
+        /// Group in [0, count) of a corner, or of the edge that starts there, [4 patch + corner].
         std::vector<std::uint32_t> group;
         std::uint32_t count = 0;
     };

@@ -4,7 +4,8 @@
 
 namespace interflect::detail {
 
-/// In a full-sphere image: azimuth in turns (1/2 at north, rising towards east) and cosine of the zenith angle.
+/// Position in a full-sphere image: azimuth in turns (1/2 at north, rising towards east) and cosine of the zenith
+/// angle.
 struct SkyPlace {
     float s, cosine;
 };

@@ -42,7 +42,7 @@ struct Oracle {
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
     float min_area = 0;  ///< Minimum area of children [m^2].
-    /// At the end of a step; collect() drops the excess.
+    /// Limit at the end of a step; collect() drops the excess.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 
     /// psi before the step; empty unless by_importance.

@@ -14,7 +14,7 @@ namespace interflect::detail {
 struct TransportStep : RayPlan {
     explicit TransportStep(RayPlan plan = {}) : RayPlan(std::move(plan)) {}
 
-    Radiosity known_light;  ///< For the oracle; empty: `light`.
+    Radiosity known_light;  ///< Radiosity for the oracle; empty: `light`.
     const Radiosity& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;
     Oracle oracle;
@@ -25,7 +25,7 @@ struct TransportStep : RayPlan {
     bool reflects_where_received(std::uint32_t leaf) const {
         return !reflecting_where_received.empty() && reflecting_where_received[leaf] != 0;
     }
-    /// To reuse after tracing, or null.
+    /// Buffer to reuse after tracing, or null.
     std::vector<Rgb>* reusable_buffer = nullptr;
     /// Inner elements receive 0. Not with a refining oracle.
     bool leaves_only = false;

@@ -24,7 +24,7 @@ struct PartImportance {
     double rays = 0;
 };
 
-/// For sampling rays of power; empty if the method does not use it.
+/// Importance for sampling rays of power; empty if the method does not use it.
 struct ImportanceWeights {
     std::vector<float> elements;
     std::vector<float> nearby;               ///< By patch; may be empty.

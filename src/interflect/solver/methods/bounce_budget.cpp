@@ -28,7 +28,7 @@ BounceRays BounceBudget::next(double unshot) {
     const double fall = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
     decay_ = fall < 1 ? std::min(highest_decay, fall) : decay_while_it_grows;
     last_unshot_ = unshot;
-    // From here on: as in the previous pass, or a geometric series.
+    // Unshot power from here on: as in the previous pass, or a geometric series.
     const double geometric = unshot / (1 - decay_), planned = is_known_ ? bounces_ - unshot_sum_ : geometric;
     // Later bounces keep a tenth, for light that the previous pass did not find.
     const double to_come = is_known_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;

@@ -82,7 +82,7 @@ struct Passes::Pass {
     std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
     StartPoints start_points = {};
-    double first_power = 0, first_weighted_power = 0;  ///< Of the first bounce.
+    double first_power = 0, first_weighted_power = 0;  ///< First bounce.
     Estimate sum = {};
 };
 

@@ -15,7 +15,7 @@
 namespace interflect::detail {
 
 /// Noise of the mean irradiance: the variance for independent rays, times a factor measured from differences between
-/// iterations (docs/method.md, Errors). Elements with similar numbers of rays share a factor.
+/// iterations (docs/method.md, Errors).
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }

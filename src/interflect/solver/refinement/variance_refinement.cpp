@@ -87,7 +87,7 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    /// [lm or W, times importance]
+    /// Returns [lm or W, times importance].
     double misplaced_power(std::uint32_t leaf, float signal) const {
         const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);

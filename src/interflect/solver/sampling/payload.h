@@ -54,7 +54,7 @@ class Payload {
     double q_sum_over_rays_;
 };
 
-/// In bins of a quarter of an octave.
+/// Histogram of ray power, in bins of a quarter of an octave.
 class PayloadHistogram {
   public:
     /// @param power  Sum of the channels [lm or W].

@@ -31,7 +31,7 @@ struct RayPlan {
     bool carries_importance() const { return !importance.empty(); }
 };
 
-/// With the sums over leaves of P_s (Eq. 3) and P_s psi_s (Eq. 9, 10; 0 if not used).
+/// A plan for power, with the sums over leaves of P_s (Eq. 3) and P_s psi_s (Eq. 9, 10; 0 if not used).
 struct PowerPlan {
     RayPlan plan;
     double power = 0, weighted_power = 0;

@@ -20,8 +20,7 @@ struct IterationPlan {
     std::vector<float> history_factor = {};
 };
 
-/// Ray counts of the iterations, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000. By default,
-/// iterations grow with the rays averaged before.
+/// Ray counts of the iterations, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);

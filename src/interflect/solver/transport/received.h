@@ -19,7 +19,7 @@ namespace interflect::detail {
 /// Results of a step by element. Inner elements have the mean of their children.
 struct Received {
     std::vector<Rgb> irradiance;  ///< [lm/m^2 or W/m^2]
-    /// Of its luminance, for independent rays (Poisson).
+    /// Variance of its luminance, for independent rays (Poisson).
     std::vector<float> variance;
     GroupLight groups;              ///< `irradiance` by light group.
     std::vector<float> importance;  ///< Per area; empty if not carried.

@@ -33,7 +33,7 @@ struct Exchange {
     float spread_over_a = 0, spread_over_b = 0;
     /// Transmitted share of `area`, a mean over lines of sight.
     Rgb transmittance{0, 0, 0};
-    /// Its range.
+    /// Range of the transmittance over lines of sight.
     float variation = 0;
 };
 

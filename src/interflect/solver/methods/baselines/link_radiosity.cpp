@@ -216,7 +216,7 @@ struct RadiosityRange {
     }
 };
 
-/// [m^2], including partial occlusion.
+/// Returns [m^2], including partial occlusion.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
     if (transmittance == 0) return exchange.area * bound_if_blocked;

@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// 4.5 GiB.
+/// 4.5 GiB of links.
 inline constexpr std::size_t most_links = std::size_t{1} << 27;
 
 struct Link {
@@ -50,7 +50,7 @@ class LinkedElements : public IterationMethod {
     void prepare(SolverState& state) override;
     bool is_fulfilled(const SolverState& state) const override;
     IterationPlan plan(SolverState& state) override;
-    /// Refines links if light has settled, then gathers one bounce. @throws InputError for too many links.
+    /// Refines links if light has settled, then gathers one bounce. @throws InputError as prepare().
     Estimate trace(SolverState& state, IterationPlan& plan) override;
     void merge(SolverState&, const Estimate&, const IterationPlan&) override {}  // a sweep replaces the light
     void finish(SolverState& state) const override;
