@@ -196,7 +196,7 @@ struct Rectangle {
     Imath::V2d size;
 };
 
-/// Shares a side with an edge (Freeman and Shapira 1975).
+/// The smallest rectangle shares a side with an edge (Freeman and Shapira 1975).
 Rectangle smallest_rectangle(const Points& hull) {
     Rectangle best;
     double least = std::numeric_limits<double>::max();

@@ -119,7 +119,7 @@ GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, 
     return accessors_.elements(attributes.required_index(key, accessors_.count()), types, attributes);
 }
 
-/// "" for untextured materials.
+/// Returns "" for untextured materials.
 std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
     const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), /*textured=*/true);
     return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";

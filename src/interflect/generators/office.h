@@ -16,7 +16,7 @@ struct OfficeOptions {
 };
 
 /// Creates a floor of equal rooms with rows of desks, a grid of luminaires and furniture along the walls; otherwise as
-/// make_maze(). A desk has about 230 patches.
+/// make_maze().
 /// @throws InputError if an option is out of range.
 Scene make_office(const OfficeOptions& options);
 

@@ -59,7 +59,7 @@ class VertexBuilder {
         : forest_(forest),
           surfaces_(find_smooth_surfaces(scene, options)),
           corners_(forest.size()),
-          middles_(forest.size() - forest.patch_count()) {  // at most four midpoints, and four children
+          middles_(forest.size() - forest.patch_count()) {  // a parent has at most four midpoints, and four children
         edges_of_.assign(surfaces_.corners.count, no_edge);
         for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
             for (std::uint32_t c = 0; c < 4; ++c) corners_[p][c] = surfaces_.corners.group[4 * p + c];
@@ -134,7 +134,7 @@ class VertexBuilder {
                (edges_of_[later_end][0] == end || edges_of_[later_end][1] == end);
     }
 
-    /// On an edge of its patch.
+    /// Leaf edge on an edge of its patch.
     struct LeafEdge {
         std::array<std::uint32_t, 2> vertices;
         std::array<float, 2> at;  // along the patch edge, ascending
@@ -142,7 +142,7 @@ class VertexBuilder {
         float size() const { return at[1] - at[0]; }
     };
 
-    /// Collects those that overlap [from, to] of the patch's edge. `e` covers [low, high] of it.
+    /// Collects leaf edges that overlap [from, to] of the patch's edge. `e` covers [low, high] of it.
     void collect_leaf_edges(std::uint32_t e, std::uint32_t c, float low, float high, float from, float to,
                             std::vector<LeafEdge>& found) const {
         if (high <= from || low >= to) return;
@@ -240,7 +240,7 @@ class VertexBuilder {
     const ElementForest& forest_;
     const SmoothSurfaces surfaces_;
     std::vector<Corners> corners_;
-    std::vector<Ends> edges_of_;  // of the halved edge, by vertex
+    std::vector<Ends> edges_of_;  // [vertex] ends of the halved edge, or no_edge
     KeyTable middles_;
 };
 

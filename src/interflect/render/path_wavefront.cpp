@@ -448,7 +448,7 @@ void PathWavefront::pass_panes() {
 }
 
 bool PathWavefront::is_unoccluded(const Connection& connection, const Hit& hit) {
-    // Luminaires and skies have no patch, as escaped rays.
+    // Escaped rays match luminaires and skies: neither has a patch.
     return hit.patch == connection.patch || (connection.patch == none && hit.distance > connection.distance);
 }
 

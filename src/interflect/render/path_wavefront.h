@@ -137,7 +137,7 @@ class PathWavefront {
         std::optional<Rgb> indirect;  // irradiance
         ExactLight patches, luminaires;
     };
-    /// Counts if the shadow ray hits `patch` or, without a patch, reaches `distance`.
+    /// Contribution of a shadow ray that hits `patch` or, without a patch, is unoccluded up to `distance`.
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;

@@ -14,6 +14,7 @@ namespace interflect::detail {
 /// linear in the number of sources, hence only for few.
 class UnoccludedLight {
   public:
+    /// Arguments must outlive this object.
     UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry);
 
     /// Whether all emitting patches, or all luminaires but skies, are few and have a closed form.

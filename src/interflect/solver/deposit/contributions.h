@@ -17,7 +17,7 @@ using Contribution = std::array<std::int64_t, 5>;
 inline constexpr std::size_t power_terms = 4, importance_term = 4;
 
 /// Integer sums of the contributions to each element in a step, independent of their order. Threads bin contributions
-/// by region of the forest and flush full bins under its lock.
+/// by region of the forest and flush full bins under the region's lock.
 class ContributionSums {
   public:
     /// Address space [bytes].

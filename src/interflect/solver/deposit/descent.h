@@ -35,7 +35,8 @@ struct Escaped {
 /// together, to vectorise and to hide memory latency.
 class Descent {
   public:
-    /// @param old_size  Size of the forest before the step. @param importance  May be null.
+    /// @param old_size  Size of the forest before the step. @param importance  May be null. Arguments must outlive
+    /// this.
     Descent(const Materials& materials, ElementForest& forest, const TransportStep& step, std::uint32_t old_size,
             ContributionSums& sums, FoundImportance* importance)
         : materials_(materials),

@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Grows all element data with the forest. @throws Interrupted
+/// Traces a step and grows all element data with the forest. @throws Interrupted
 Received run_step(SolverState& state, TransportStep step);
 
 }  // namespace interflect::detail

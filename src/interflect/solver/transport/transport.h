@@ -23,7 +23,7 @@ namespace interflect::detail {
 /// @param sums     Zero before and after; has the capacity of the forest.
 /// @param streams  Advanced. The same streams give the same bits for any number of threads.
 /// @throws Interrupted if `stop` is due before the last ray; forest, streams and sums are then unchanged.
-/// Cost: O(N (log(patches) + levels)) time; `sums` has 40 bytes per element.
+/// Cost: O(N (log(patches) + levels)).
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, ContributionSums& sums, const StopRequest& stop);
 /// Uses its own sums, without a stop request.

@@ -185,8 +185,7 @@ class LineSums {
     std::vector<std::int64_t> squares_, started_, escaped_rays_;
 };
 
-/// Passes with global lines (Sbert 1993, 1997; docs/method.md). Cost: O(N h log(patches)) for N lines in a sphere of
-/// radius R, with h = sum A / (4 pi R^2).
+/// Passes with global lines (Sbert 1993, 1997; docs/method.md).
 class GlobalLines final : public Passes {
   public:
     explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {
