@@ -323,7 +323,7 @@ bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Pat
     if (!s_.known->is_far(place, distance2)) return false;
     const float light_density = density_towards(place, start_of(ray, path), path.normal, ray.direction, distance2);
     const float weight = balance(path.normal.dot(ray.direction) / pi, light_density);
-    // Reflected once more than the place's emission.
+    // Reflected once more than the place's own emission.
     add(path.index, vertex_, path.throughput * s_.known->reflected_radiance(place) * weight);
     return true;
 }
