@@ -9,8 +9,8 @@
 
 namespace interflect::detail {
 
-/// Non-negative colours as integers in units of total / 2^61, for sums independent of order. 2^61 terms stay below 2^63
-/// even if rounded up; 10^12 equal terms have 2^21 units each.
+/// Non-negative colours as integers in units of total / 2^61, for sums independent of order. Even 2^61 terms, each
+/// rounded up, stay below 2^63.
 class FixedPoint {
   public:
     using Value = std::array<std::int64_t, 3>;

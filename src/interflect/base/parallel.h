@@ -30,8 +30,7 @@ namespace interflect::detail {
 template <class T>
 using PerThread = tbb::enumerable_thread_specific<T, std::allocator<T>>;
 
-/// Calls body(begin, end) for ranges of at most `grain` indices in [0, count), which do not depend on the number of
-/// threads.
+/// Calls body(begin, end) for ranges of at most `grain` indices in [0, count), independent of the number of threads.
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body) {
     const std::size_t ranges = (count + grain - 1) / grain;

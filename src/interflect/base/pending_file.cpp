@@ -38,7 +38,6 @@ fs::path target_of(fs::path path) {
 
 bool is_standard_output(const fs::path& path) { return path == "-"; }
 
-/// @throws std::runtime_error
 void copy_into(const fs::path& from, const fs::path& device) {
     const auto fail = [&] {
         throw std::runtime_error("cannot write '" + device.string() + "': " + std::strerror(errno));
@@ -100,7 +99,7 @@ void remove_stale_files(const fs::path& folder) {
         if (is_stale(entry->path().filename().string(), prefix)) ::unlink(entry->path().c_str());
 }
 
-/// For a signal handler; null if the slot is free.
+/// Paths of live files, for a signal handler; null: free.
 constexpr std::size_t slot_count = 16;
 std::array<std::atomic<const char*>, slot_count> listed_paths{};
 static_assert(std::atomic<const char*>::is_always_lock_free);

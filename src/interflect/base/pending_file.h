@@ -4,10 +4,9 @@
 
 namespace interflect::detail {
 
-/// Output file that appears under its name only when complete, by renaming a temporary file. Construction reports an
-/// unwritable path before long work. Replaces the target of a symbolic link; copies into devices, pipes and standard
-/// output ('-'). A killed process leaves .interflect-HOST-PID-N.part.EXTENSION until the next PendingFile in that
-/// folder on that host.
+/// Output file that appears under its name only when complete, by renaming a temporary file. Replaces the target of a
+/// symbolic link; copies into devices, pipes and standard output ('-'). A killed process leaves
+/// .interflect-HOST-PID-N.part.EXTENSION until the next PendingFile in that folder on that host.
 class PendingFile {
   public:
     /// @throws InputError if `final_path` is a folder, its folder is missing, or it cannot be written.
@@ -20,13 +19,13 @@ class PendingFile {
 
     const std::filesystem::path& final_path() const { return final_path_; }
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
-    /// @throws std::runtime_error if the file cannot be replaced, or the device cannot be written.
+    /// @throws std::runtime_error if the file or device cannot be written.
     void commit();
 
   private:
     std::filesystem::path final_path_, temporary_path_;
     std::filesystem::path replaced_path_;  // empty for devices, pipes and standard output
-    std::size_t slot_;                     // in the list of live files; its size if not listed
+    std::size_t slot_;                     // in the list of live files
 };
 
 /// Removes the files of up to 16 live PendingFiles. Async-signal-safe if the process then ends.

@@ -25,7 +25,7 @@ class StableArray {
             ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (memory == MAP_FAILED) throw AddressSpaceError(bytes());
         data_ = static_cast<T*>(memory);
-        ::madvise(memory, bytes(), MADV_HUGEPAGE);  // fewer TLB misses for random access; may fail
+        ::madvise(memory, bytes(), MADV_HUGEPAGE);  // fewer TLB misses; may fail
     }
     ~StableArray() {
         if (data_) ::munmap(data_, bytes());

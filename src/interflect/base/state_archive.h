@@ -13,8 +13,7 @@
 
 namespace interflect::detail {
 
-/// State of a run as named byte arrays in native layout, for the same version only. Each class's archive() both writes
-/// and reads.
+/// State of a run as named byte arrays in native layout, for the same version only. archive() both writes and reads.
 class StateArchive {
   public:
     /// For writing. Values must not change until written.

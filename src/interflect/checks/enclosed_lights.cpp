@@ -21,7 +21,6 @@ constexpr std::uint64_t segments_per_path = 16;
 constexpr std::uint64_t seed_of_reflections = 51, seed_of_faces = 52, seed_of_volume = 53, seed_of_starts = 54,
                         seed_of_choices = 55;
 
-/// Points just before the hit surfaces.
 struct Path {
     std::vector<V3f> points;
     bool stays = true;
@@ -113,7 +112,6 @@ std::vector<V3f> points_lit_by_surfaces(const Scene& scene, const RayCaster& ray
     return points;
 }
 
-/// Whether a space is too narrow for a room, unlike the scene.
 bool is_narrow(const Imath::Box3f& space, const V3f& scene) {
     constexpr float narrow = 0.5f, least_room = 2;  // [m]
     const V3f size = space.size();

@@ -9,9 +9,7 @@
 
 namespace interflect::detail {
 
-/// Finds "enclosed-luminaire": light that stays in a space without views. The space is too narrow for a room, or all
-/// views inside the scene are dark. Without such views, seven eighths of the enclosed volume are dark. Traces at most
-/// 2^18 rays.
+/// Finds "enclosed-luminaire" (docs/formats.md). Traces at most 2^18 rays.
 std::vector<Finding> find_enclosed_lights(const Scene& scene, const RayCaster& ray_caster, const LocalLights& lights,
                                           const SightLines& lines, std::size_t places);
 

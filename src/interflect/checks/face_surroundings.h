@@ -13,7 +13,7 @@ enum class Side { front, back };
 struct Surroundings {
     float blocked = 0;  ///< Hit within a tenth of the face's size.
     float escaped = 0;  ///< Left the scene.
-    float one_way = 0;  ///< Hit an object from which no light returns (is_one_way()).
+    float one_way = 0;  ///< Hit an object that returns no light (is_one_way()).
 };
 
 class FaceSurroundings {

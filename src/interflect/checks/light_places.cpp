@@ -40,7 +40,6 @@ Outcome outcome_of(const Scene& scene, std::span<const Ray> rays, const SightLin
     return result;
 }
 
-/// Whether more than a twentieth of the light starts outside a closed scene.
 bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const SightLines& lines) {
     constexpr std::size_t step = 4;
     std::size_t outside = 0;
@@ -51,7 +50,6 @@ bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const S
     return 20 * step * outside > rays.size();
 }
 
-/// Whether C0 and C90 differ by more than a tenth of the peak.
 bool depends_on_planes(const PhotometricWeb& web) {
     constexpr int steps = 36;  // of 5 degrees
     const float peak = web.peak();

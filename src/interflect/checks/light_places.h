@@ -10,8 +10,7 @@
 
 namespace interflect::detail {
 
-/// Finds "close-luminaire", "outside-luminaire", "wide-opening", "mixed-photometry". Traces at most 320 rays per
-/// luminaire, and 64 x 66 for its opening.
+/// Finds "close-luminaire", "outside-luminaire", "wide-opening", "mixed-photometry" (docs/formats.md).
 std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights& lights, const SightLines& lines,
                                            const Shell& shell, std::size_t places);
 

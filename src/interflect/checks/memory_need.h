@@ -14,10 +14,9 @@ struct MemoryNeed {
     std::size_t patches = 0;     ///< Without elements.
     std::size_t rest = 0;        ///< Program, threads, hits of camera rays.
 
-    /// Bytes: tree 11, H 12, importance 8, history and noise 8, consumed points 8, pass result 16, unshot radiosity and
-    /// importance 16, contributions 40 or received values 16. Measured: 98 to 109 from 0.7 to 2 or 3 million elements.
+    /// Arrays of the solver [bytes]. Measured: 98 to 109 for 0.7 to 3 million elements.
     std::size_t per_element = 128;
-    /// Bytes of three colours, and of an index per four siblings.
+    /// Three colours, and an index per four siblings [bytes].
     static constexpr std::size_t per_textured_element = 37;
     /// Bytes: H, unshot light and pass result, 12 each; contributions 24 or received light 12.
     static constexpr std::size_t per_element_and_group = 60;

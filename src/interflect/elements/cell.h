@@ -12,8 +12,8 @@ struct Cell {
     Parameters at(float s, float t) const { return {u + size * s, v + size * t}; }
     Parameters centre(bool triangle) const { return triangle ? at(1.0f / 3, 1.0f / 3) : at(0.5f, 0.5f); }
 
-    /// Returns child k. Square: k = 2 (upper half in v) + (upper half in u). Triangle: child 3 is central; child k < 3
-    /// contains corner k.
+    /// Square: k = 2 (upper half in v) + (upper half in u). Triangle: child 3 is central; child k < 3 contains corner
+    /// k.
     Cell child(unsigned k, bool triangle) const {
         const float half = 0.5f * size;
         const bool central = triangle & (k == 3);

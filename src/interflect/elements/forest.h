@@ -15,9 +15,8 @@ namespace interflect::detail {
 
 inline constexpr std::size_t elements_at_once = 1 << 13;
 
-/// Quadtrees over a scene's patches; 11 bytes per element. Element i < patch_count() is the root of patch i; blocks of
-/// four siblings follow. Threads may subdivide while others traverse; put_in_order() then makes indices independent of
-/// threads.
+/// Quadtrees over a scene's patches. Element i < patch_count() is the root of patch i; blocks of four siblings follow.
+/// Threads may subdivide while others traverse; put_in_order() then makes indices independent of threads.
 class ElementForest {
   public:
     static constexpr int deepest_level = 15;
@@ -74,10 +73,10 @@ class ElementForest {
     /// @return  Old index of each element first + i.
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
-    /// Input of rebuild().
+    /// Returns parents in order of division, for rebuild().
     std::vector<std::uint32_t> subdivided() const;
-    /// Recreates the elements of another forest of the same scene in a forest of roots.
-    /// @throws InputError if an element cannot be subdivided in this order.
+    /// Divides `parents` in this order, in a forest of roots.
+    /// @throws InputError if an element cannot be subdivided.
     void rebuild(std::span<const std::uint32_t> parents);
 
     /// Removes the last four siblings (leaves) of an ordered forest; returns their parent. Not thread-safe.
@@ -113,7 +112,7 @@ class ElementForest {
     std::uint64_t scene_fingerprint_;
     std::vector<PatchGeometry> geometry_;
     std::uint32_t patch_count_;
-    /// First element of each generation, then the end; parents are in earlier ones.
+    /// First element of each generation, then the end.
     std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;

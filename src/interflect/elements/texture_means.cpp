@@ -29,7 +29,7 @@ bool is_linear(const Scene& scene, const Patch& patch) {
     return is_parallelogram(corners) && is_parallelogram(coordinates);
 }
 
-/// Returns [m^2], accurate below the rounding of positions.
+/// [m^2], accurate below the rounding of positions.
 double doubled_area(const PatchGeometry::Shape& shape, const std::array<Parameters, 3>& p) {
     const auto edge = [&](const Parameters& a, const Parameters& b) {
         const double au = a.u, av = a.v, bu = b.u, bv = b.v;

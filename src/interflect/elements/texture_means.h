@@ -9,8 +9,7 @@
 
 namespace interflect::detail {
 
-/// Area-weighted means over cells, exact for linear texture coordinates. Other quadrilaterals use 32 triangles per
-/// cell.
+/// Area-weighted means over cells, exact for linear texture coordinates, else by 32 triangles per cell.
 class TextureMeans {
   public:
     /// @param scene  Valid; must outlive this.

@@ -49,7 +49,7 @@ std::string_view checked_name(std::string_view name) {
     return is_numbered ? name.substr(0, last) : name;
 }
 
-/// Joins numbered arrays, because the block has limited room. @param ranges  In file order.
+/// Joins numbered arrays, because the block has limited room.
 std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges) {
     std::vector<FileRange> joined;
     for (const FileRange& range : ranges) {
@@ -62,7 +62,6 @@ std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges
     return joined;
 }
 
-/// Covers [checksum_block_size, size) in file order.
 std::vector<FileRange> partition(std::vector<FileRange> ranges, std::uint64_t size) {
     std::sort(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
     ranges = with_numbered_joined(ranges);

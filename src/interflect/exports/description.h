@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Returns a solution file's content except long arrays, as JSON (docs/solution-file.md).
+/// Returns a solution file's content except long arrays, as JSON.
 /// @throws std::runtime_error if a number is not finite.
 std::string describe(const Scene& scene, const Solution& solution, int format_version);
 

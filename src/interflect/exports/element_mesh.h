@@ -31,7 +31,7 @@ class ElementMesh {
 
     /// Relative to Scene::origin [m]; triangulate() appends the centres of fans.
     const std::vector<V3f>& points() const { return points_; }
-    /// Returns fewer than three vertices without area.
+    /// Returns fewer than three vertices for a leaf without area.
     std::vector<MeshCorner> outline(std::uint32_t leaf) const;
     void triangulate(std::uint32_t leaf, std::vector<MeshTriangle>& triangles);
 

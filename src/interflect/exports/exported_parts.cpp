@@ -49,7 +49,7 @@ std::vector<std::string> plain_names(const std::vector<std::string>& names, cons
 }
 
 std::vector<std::string> material_names(const Scene& scene) {
-    constexpr std::size_t most = 64;  // file systems limit names to 255 bytes, stem included
+    constexpr std::size_t most = 64;  // file systems limit names to 255 bytes
     std::vector<std::string> names;
     for (const Material& material : scene.materials) names.push_back(material.name);
     return plain_names(names, "material", most);

@@ -46,14 +46,14 @@ struct ForeignScene {
 
     /// Adds a file "STEM-name"; returns its escaped name.
     std::string add_file(const std::string& name, std::string bytes);
-    /// Add a linear image and return its escaped name; radiance is M / pi.
+    /// Add a linear image; return its escaped name. Radiance is M / pi.
     std::string add_reflectance_image(std::uint32_t material);
     std::string add_radiance_image(std::uint32_t material);
     std::string add_transmittance_image(std::uint32_t material);
     /// See opacity.h.
     std::string add_opacity_image(std::uint32_t material);
     std::string add_opaque_reflectance_image(std::uint32_t material);
-    /// Adds a radiance image of all skies. @return  Its escaped name; empty without skies.
+    /// Adds a radiance image of all skies; returns "" without skies.
     /// @param direction  Maps image coordinates in [0, 1], y downwards.
     std::string add_sky_image(int width, int height, const std::function<V3f(float x, float y)>& direction);
 
@@ -62,7 +62,7 @@ struct ForeignScene {
     Rgb radiance(const ForeignMesh& mesh) const;
     void leave_out(const std::string& what) { warnings.add("left-out", "left out: " + what); }
 
-    /// @param has_glass, has_holes  Support of panes and one-sided faces; of transmittance textures.
+    /// @param has_glass  Support of panes and one-sided faces. @param has_holes  Of transmittance textures.
     void warn_of_materials(bool has_glass, bool has_holes);
 };
 

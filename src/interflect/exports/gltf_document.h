@@ -19,18 +19,18 @@ class GltfDocument {
     /// Excludes the buffer.
     Json json;
 
-    /// Appends to an array such as "materials". @return  Its index.
+    /// Appends to an array such as "materials"; returns the index.
     int add(const char* array, Json object);
     void use_extension(const char* name);
 
-    /// Add an accessor. @return  Its index.
+    /// Add an accessor; return its index.
     int add_positions(std::span<const V3f> values);  ///< Adds bounds, which glTF requires.
     int add_attribute(std::span<const Rgb> values);
     int add_attribute(std::span<const V2f> values);
     int add_indices(std::span<const std::uint32_t> values);
 
-    /// Adds a texture as 8-bit sRGB PNG, clamped to [0, 1]. @return  Its index.
-    /// @param opacity  Alpha in [0, 1]; no alpha channel if empty.
+    /// Adds a texture as 8-bit sRGB PNG, clamped to [0, 1]; returns its index.
+    /// @param opacity  Alpha in [0, 1]; empty: no alpha channel.
     /// @param repeats  With mipmaps; otherwise extends edge texels.
     int add_texture(const Image& image, const std::string& name, bool repeats, std::span<const float> opacity = {});
 

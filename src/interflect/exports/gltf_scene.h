@@ -15,13 +15,12 @@ using GltfPrimitives = std::map<std::uint32_t, std::vector<Json>>;
 /// Adds objects and views to a root node, which rotates `up` to +y and restores Scene::origin.
 void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives& primitives, const V3f& up);
 
-/// Adds each texture once.
 class GltfTextures {
   public:
     GltfTextures(GltfDocument& document, const Scene& scene) : document_(document), scene_(scene) {}
 
     Json diffuse(const Material& material);
-    /// Adds a texture of reflectance and opacity. @param material  Has a transmittance texture.
+    /// Adds reflectance and opacity of a material with a transmittance texture.
     /// @param peak  Divisor of the reflectance.
     void cut_out(Json& json, const Material& material, const Rgb& peak = Rgb(1));
     Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));

@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// If true, vertices store the texture's factor.
+/// Whether vertices store the texture's factor.
 bool keeps_texture(const Material& material) {
     return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
 }

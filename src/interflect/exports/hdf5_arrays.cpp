@@ -68,7 +68,7 @@ hid_t native_type<std::byte>() {
 /// Chunks of 1 MB limit the memory of compression.
 void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
     constexpr hsize_t most_rows = hsize_t{1} << 16;
-    constexpr unsigned deflate_level = 4;  // 9 takes seven times as long for 2% less
+    constexpr unsigned deflate_level = 4;  // 9 takes seven times the time for 2% less
     std::vector<hsize_t> chunk(size.begin(), size.end());
     chunk[0] = std::min(chunk[0], most_rows);
     require(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "cannot divide an array");
@@ -148,7 +148,7 @@ std::vector<T> Hdf5Reader::read(const std::string& name, std::size_t columns) co
     const Hdf5Handle set(H5Dopen2(file_, name.c_str(), links_), H5Dclose, "an array is missing");
     require_stored_here(set, name);
     const Hdf5Handle space(H5Dget_space(set), H5Sclose, "an array has no size");
-    // HDF5 allocates numbers of the size that the file claims.
+    // HDF5 allocates the size that the file claims.
     const Hdf5Handle type(H5Dget_type(set), H5Tclose, "an array has no type");
     if (H5Tget_size(type) != sizeof(T)) throw std::runtime_error("array '" + name + "' has the wrong type");
     std::array<hsize_t, 2> size{0, 1};

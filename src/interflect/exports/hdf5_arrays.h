@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 class Hdf5Handle {
   public:
-    /// @throws std::runtime_error with `what` for an invalid `id`.
+    /// @throws std::runtime_error with text `what` for an invalid `id`.
     Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const char* what);
     ~Hdf5Handle() { close_(id_); }
     Hdf5Handle(const Hdf5Handle&) = delete;
@@ -46,7 +46,7 @@ class Hdf5Reader {
     explicit Hdf5Reader(const std::filesystem::path& path);
 
     bool has(const std::string& name) const;
-    /// Arrays are one-dimensional if `columns` is 1, else two-dimensional.
+    /// Reads a two-dimensional array unless `columns` is 1.
     template <class T>
     std::vector<T> read(const std::string& name, std::size_t columns = 1) const;
 
@@ -72,9 +72,8 @@ class Hdf5Writer {
     void write_attribute(const std::string& group, const char* name, std::span<const std::int64_t> numbers);
     void write_attribute(const std::string& group, const char* name, std::string_view text);
     FileRange write_joined(const std::string& name, const std::vector<std::span<const std::byte>>& parts);
-    /// Must be the last call.
+    /// Must be the last call; so must image().
     void flush();
-    /// Must be the last call.
     std::string image();
 
   private:

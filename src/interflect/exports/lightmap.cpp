@@ -36,7 +36,6 @@ struct TexelPlace {
     bool is_inside = false;
 };
 
-/// The sides of a texel in the parameters of a patch.
 std::array<Parameters, 2> texel_sides(const FlatPatch& flat, const Imath::V2d& spacing) {
     const Imath::V2d u = flat.corners[1] - flat.corners[0],
                      v = flat.corners[static_cast<std::size_t>(flat.count) - 1] - flat.corners[0];
@@ -160,8 +159,8 @@ class IrradianceSource {
         return values;
     }
 
-    /// Least distance of ray starts from the border of a patch [texels]: at the foot of a wall, they would start in its
-    /// plane.
+    /// Least distance of ray starts from the border of a patch [texels]. At the foot of a wall, they would otherwise
+    /// start in its plane.
     static constexpr float inset = 0.05f;
 
     PathOptions path_options() const {
@@ -289,7 +288,6 @@ void add(const std::vector<Image>& images, std::vector<Image>& sum) {
         for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
 }
 
-/// Keeps a reference to `whole`.
 Monitor part_of(const Monitor& whole, std::size_t part, std::size_t count) {
     Monitor monitor = whole;
     if (whole.on_progress)

@@ -22,7 +22,7 @@ struct Lightmap {
     int page(std::uint32_t patch) const { return charts[chart_of_patch[patch]].page; }
 };
 
-/// Evaluates the light at texel centres or, outside the patches, at the nearest point of a patch.
+/// Evaluates light at texel centres or, outside the patches, at the nearest point of a patch.
 /// @param options  Must include a lightmap.
 Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options);
 

@@ -8,9 +8,8 @@
 
 namespace interflect::detail {
 
-/// Packs charts into images; may rotate them.
+/// Packs charts into images; may rotate them. Returns the sizes of the images, multiples of 4.
 /// @param max_size  Largest side, a multiple of 4; must hold each chart with gutters.
-/// @return          Sizes of the images, multiples of 4.
 std::vector<Imath::V2i> pack_charts(std::vector<LightmapChart>& charts, int gutter, int max_size);
 
 }  // namespace interflect::detail

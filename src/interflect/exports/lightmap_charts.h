@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Patches in a plane, and their rectangle in a lightmap, with the outermost texel centres on its border.
+/// Patches in a plane, and their rectangle in a lightmap. Its border runs through the outermost texel centres.
 struct LightmapChart {
     FlatPatches patches;  ///< From texel (0, 0) along columns and rows [m].
     Imath::V2d size;      ///< [m]
@@ -19,9 +19,8 @@ struct LightmapChart {
     Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
 };
 
-/// Makes charts from the objects' own layouts (kept_layouts()). Unfolds other smooth surfaces (unfolded()), split at
-/// discontinuities of light and at gaps narrower than two texels.
-/// @param warnings  As for kept_layouts().
+/// Makes charts from kept_layouts(). Unfolds other smooth surfaces (unfolded()), split at discontinuities of light and
+/// at gaps narrower than two texels.
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings = nullptr);
 

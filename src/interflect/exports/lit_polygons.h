@@ -25,7 +25,7 @@ struct LitPolygons {
     std::vector<Vertex> vertices;
     std::vector<std::uint32_t> leaves;
     std::vector<std::uint32_t> ends;     ///< End of each polygon in `corners`.
-    std::vector<std::uint32_t> corners;  ///< Indices into `vertices`, counter-clockwise seen from the lit side.
+    std::vector<std::uint32_t> corners;  ///< Into `vertices`, counter-clockwise seen from the lit side.
     std::vector<Parameters> parameters;
 
     std::size_t size() const { return leaves.size(); }

@@ -23,7 +23,7 @@ std::vector<std::shared_ptr<const PhotometricWeb>> webs_of(const Json& json);
 /// Images in the order of environment_maps().
 using MapImages = std::vector<std::shared_ptr<const Texture>>;
 
-/// @param webs  Receives the luminaire's web. @param maps  Must contain its image.
+/// @param webs  Receives the luminaire's web. @param maps  Contains its image.
 Json json_of(const Luminaire& luminaire, WebTable& webs, const MapImages& maps = {});
 /// Inverse of json_of(). @throws Json::exception, std::runtime_error
 Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs,

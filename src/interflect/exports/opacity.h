@@ -10,7 +10,6 @@ namespace interflect::detail {
 Texture opacity_of(const Scene& scene, const Material& material);
 
 /// Divides the reflectance texture by the opacity: black for opacity 0, white without texture.
-/// @param opacity  From opacity_of().
 Texture opaque_reflectance(const Scene& scene, const Material& material, const Texture& opacity);
 
 /// Whether all texels are fully opaque or transparent, to 8 bits.

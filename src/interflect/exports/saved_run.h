@@ -12,7 +12,7 @@ struct SavedRun {
     StateArchive state;
 };
 
-/// @throws InputError as read_solution(), and if the state is missing or from another version.
+/// @throws InputError as read_solution(), or for a state that is missing or of another version.
 SavedRun read_saved_run(const std::filesystem::path& path);
 
 /// Omits a null state. @throws as the public write_solution().

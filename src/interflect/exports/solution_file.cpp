@@ -108,7 +108,7 @@ constexpr std::array<ElementNumbers, 5> element_numbers = {
      {"/solution/view_importance", "view importance", &Solution::view_importance, true, 2},
      {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true, 2}}};
 
-/// Returns the fault, or an empty string.
+/// Returns "" if valid.
 std::string fault_of(std::span<const float> numbers, std::size_t per_element, const ElementForest& forest,
                      const char* what) {
     if (numbers.size() != per_element * forest.size()) return fmt::format("{} and elements differ in number", what);

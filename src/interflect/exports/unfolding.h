@@ -10,16 +10,15 @@
 
 namespace interflect::detail {
 
-/// For each patch, patches that must be in other charts.
+/// Patches that must be in other charts, per patch.
 using ChartConflicts = std::vector<std::vector<std::uint32_t>>;
 
-/// Edges, or parts of edges, between patches of a smooth surface.
+/// Edges, or parts of them, between patches of a smooth surface.
 using Joints = std::vector<SmoothSurfaces::Seam>;
 
 /// Unfolds smooth surfaces by joining flat pieces at common edges, with deformations up to most_stretch and most_shear.
-/// A piece that would deform more, overlap, or come closer than `gap` [m] to a piece further away in space starts
-/// another layout.
-/// @param corners  From find_smooth_surfaces().
+/// A piece starts another layout if it would deform more, overlap, or come closer than `gap` [m] to a piece further
+/// away in space.
 std::vector<FlatPatches> unfolded(const Scene& scene, const SmoothSurfaces::Groups& corners, const Joints& joints,
                                   const ChartConflicts& conflicts, std::vector<FlatPatches> pieces, double gap);
 

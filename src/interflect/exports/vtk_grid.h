@@ -20,7 +20,6 @@ struct VtkArray {
         numbers;
 };
 
-/// A solved scene with leaves as cells.
 class VtkGrid {
   public:
     using Sink = std::function<void(const VtkArray&)>;

@@ -101,7 +101,7 @@ void append_faces(std::string& text, const Scene& scene, const ElementForest& fo
 
 std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options) {
-    require_nameable(path, "#\\");  // '#' begins a comment; '\' separates folders in some readers
+    require_nameable(path, "#\\");  // '#' begins a comment; '\' separates folders
     if (path.stem().string().starts_with(' '))
         throw InputError(
             path, 0,

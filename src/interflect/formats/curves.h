@@ -13,11 +13,11 @@ struct PolygonMesh {
     std::vector<std::vector<std::uint32_t>> faces;  ///< Counter-clockwise seen from the front.
 };
 
-// MGF surfaces with `divisions` >= 1 steps per quarter circle; with 4, the circumference is 0.6% too short. Faces are
-// planar, with the front outside, or inside for negative radii.
+// MGF surfaces with `divisions` >= 1 steps per quarter circle. Faces are planar, with the front outside, or inside for
+// negative radii.
 // @throws std::invalid_argument for other arguments.
 
-/// Poles lie along z. @param radius  Not 0.
+/// @param radius  Not 0.
 PolygonMesh make_sphere(const Imath::V3d& centre, double radius, int divisions);
 
 /// The ends are open. @param radius1, radius2  Not both 0, not of opposite sign.
@@ -31,7 +31,6 @@ PolygonMesh make_ring(const Imath::V3d& centre, const Imath::V3d& normal, double
 PolygonMesh make_torus(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
 
 /// Closed. Extends by `length` behind the outline; a negative length extends to the front, with inward faces.
-/// @param outline  Encloses an area.
 PolygonMesh make_prism(std::span<const Imath::V3d> outline, double length);
 
 }  // namespace interflect::detail

@@ -5,7 +5,6 @@
 
 namespace interflect::detail {
 
-/// Independent of the locale.
 inline std::string lower_case_extension(const std::filesystem::path& path) {
     std::string text = path.extension().string();
     for (char& c : text)

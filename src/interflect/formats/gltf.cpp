@@ -121,7 +121,6 @@ class SceneReader {
                             node.place(), copies, faces, asset_.options().max_patches));
     }
 
-    /// @param faces  Per instance.
     std::vector<M44d> places_of(const GltfNode& node, std::uint64_t faces) {
         const GltfValue extension = node.value->extension("EXT_mesh_gpu_instancing");
         if (!extension.exists()) {

@@ -11,7 +11,6 @@ namespace interflect::detail {
 /// Reads glTF 2.0, .gltf or .glb (docs/gltf.md). @throws InputError; see also scene_of().
 Scene read_gltf(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  For messages and references.
 Scene read_gltf_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace interflect::detail

@@ -18,7 +18,7 @@ struct GltfElements {
     int components = 1;
     bool normalized = false;  ///< Integers are fractions of their largest value.
 
-    /// Applies `normalized`; arguments must be in range.
+    /// Applies `normalized`.
     double number(std::uint64_t element, int component) const;
     /// Requires an unsigned type.
     std::uint32_t whole_number(std::uint64_t element) const;
@@ -30,8 +30,7 @@ class GltfAccessors {
     GltfAccessors(GltfAsset& asset, GltfBuffers& buffers);
 
     std::size_t count() const { return accessors_.size(); }
-    /// @param types  Accepted, such as "VEC3 VEC4". @param user  For messages.
-    /// @return  Valid while this object lives. @throws GltfFault
+    /// @param types  Accepted, such as "VEC3 VEC4". @return  Valid while this object lives. @throws GltfFault
     GltfElements elements(std::uint32_t index, const std::string& types, const GltfValue& user);
     /// Requires unsigned scalars.
     GltfElements indices(std::uint32_t index, const GltfValue& user);

@@ -20,8 +20,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Checks the counts that determine the decoder's memory. Only Edgebreaker stores the vertex count first (Draco 2.2
-/// bitstream specification, section 2).
+/// Bounds the decoder's memory. Only Edgebreaker stores the vertex count first (Draco 2.2 bitstream specification,
+/// section 2).
 bool claims_at_most(draco::DecoderBuffer buffer, std::uint64_t most_triangles, std::uint64_t most_vertices) {
     constexpr int metadata_flag = 0x8000;
     draco::DracoHeader header{};

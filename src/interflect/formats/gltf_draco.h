@@ -21,7 +21,7 @@ struct DracoMesh {
 };
 
 /// @param attributes  Unique identifiers, in the order of the result.
-/// @param most_triangles, most_vertices  Limits, checked before allocation. @throws GltfFault
+/// @throws GltfFault, also beyond most_triangles or most_vertices, before allocation.
 DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>& attributes,
                        std::uint64_t most_triangles, std::uint64_t most_vertices, const GltfValue& extension);
 

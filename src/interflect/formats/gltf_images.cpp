@@ -107,7 +107,7 @@ StoredImage GltfImages::decode(std::uint32_t image) {
 
 Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
     StoredImage colour, metallic, coverage;
-    const StoredImage* shape = nullptr;  // determines the texture's size
+    const StoredImage* shape = nullptr;  // determines the size
     std::string name;
     const auto load = [&](std::uint32_t index, StoredImage& image) {
         if (index == none) return;

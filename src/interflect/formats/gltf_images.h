@@ -22,7 +22,6 @@ struct GltfCoverage {
     float at(float alpha) const { return cutoff > 0 ? (factor * alpha >= cutoff ? 1.0f : 0.0f) : factor * alpha; }
 };
 
-/// Inputs of a texture.
 struct GltfTexels {
     std::uint32_t colour = none;    ///< sRGB; white if absent.
     std::uint32_t metallic = none;  ///< Image with metallic in blue.
@@ -53,9 +52,9 @@ class GltfImages {
     std::size_t texture_count() const { return textures_.size(); }
     bool repeats(std::uint32_t texture) const;
 
-    /// @return  Index into Model::textures; whether a texel was clamped.
+    /// Returns an index into Model::textures; whether a texel was clamped.
     std::pair<std::uint32_t, bool> texture(const GltfTexels& texels);
-    /// Downsamples large textures. Call after all textures of a material, to keep their sizes equal.
+    /// Call after all textures of a material, to keep their sizes equal.
     void limit_textures();
     const GltfImageMeans& means(std::uint32_t image);
 

@@ -23,7 +23,7 @@ constexpr std::size_t most_lights = 1 << 16;
 
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
-/// glTF lights and cameras face along -z.
+/// Lights and cameras face along -z.
 V3d axis_of(const GltfNode& node, int axis) {
     const double* row = node.to_world[axis];
     const V3d direction(row[0], row[1], row[2]);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto most_reflected = static_cast<float>(largest_reflectance);
 
-/// glTF's default material does not reflect diffusely.
+/// The default material of glTF does not reflect diffusely.
 constexpr float default_reflectance = 0.5f;
 
 GltfMapping mapping_of(const GltfValue& use) {
@@ -45,7 +45,7 @@ struct GltfMaterials::Parts {
     GltfTextureUse emissive_texture;
     float transmission = 0;  ///< mean over its texture
     GltfTextureUse coverage_texture;
-    float coverage = 1;  ///< opaque fraction, or factor of the texture's alpha
+    float coverage = 1;  ///< opaque fraction, or factor of alpha
     float cutoff = 0;
     std::optional<GltfMapping> mapping;
 

@@ -39,8 +39,7 @@ class GltfMaterials {
     GltfMaterials(GltfAsset& asset, GltfImages& images);
 
     std::size_t count() const { return materials_.size(); }
-    /// @param index  In the file; `none`: default material.
-    /// @param textured  If false, uses means of textures.
+    /// @param index  In the file; `none`: default material. @param textured  Else uses means of textures.
     const GltfSurface& surface(std::uint32_t index, bool textured);
 
     /// Call after the last surface().

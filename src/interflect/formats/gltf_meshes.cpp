@@ -48,7 +48,7 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corner
     return result;
 }
 
-/// Drops unused vertices, if corners are fewer than vertices, and renumbers `indices`. @return  Kept vertices,
+/// Drops unused vertices, if corners are fewer than vertices, and renumbers `indices`. Returns the kept vertices,
 /// ascending.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uint64_t vertex_count) {
     std::vector<std::uint32_t> used;
@@ -142,7 +142,7 @@ void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extensi
         accessors_.elements(primitive.required_index("indices", accessors_.count()), "SCALAR", primitive);
     const GltfElements positions = attribute(primitive, "POSITION", "VEC3");
     add_triangles(indices.count / 3, primitive);
-    // Limits the decoder's memory; max_patches limits only the corners.
+    // Limits the decoder's memory.
     if (positions.count > indices.count) extension.fail("it has more vertices than corners");
     vertices.draco = decode_draco(view.bytes, wanted, indices.count / 3, positions.count, extension);
     const auto decoded = [&](std::size_t i) {
@@ -253,7 +253,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     const std::vector<std::uint32_t> used = compact(mesh.indices, vertices.positions.count);
     mesh.positions.reserve(used.size());
     for (const std::uint32_t v : used) mesh.positions.push_back(vertices.position(v, primitive));
-    if (vertices.normals && vertices.targets.empty() && vertices.joints.empty())  // normals are not deformed
+    if (vertices.normals && vertices.targets.empty() && vertices.joints.empty())  // not deformed
         for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
     if (surface.mapping) {

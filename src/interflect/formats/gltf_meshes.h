@@ -14,7 +14,7 @@
 namespace interflect::detail {
 
 struct GltfPose {
-    std::vector<double> weights;          ///< Morph weights; empty: the mesh's own.
+    std::vector<double> weights;          ///< Of morph targets; empty: the mesh's own.
     std::uint32_t skin = none;            ///< Cache key.
     std::span<const Imath::M44d> joints;  ///< Mesh to world.
 };
@@ -25,7 +25,7 @@ class GltfMeshes {
     GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& accessors, GltfMaterials& materials);
 
     std::size_t count() const { return meshes_.size(); }
-    /// @return  Indices into Model::meshes, one per primitive with faces.
+    /// Returns indices into Model::meshes, one per primitive with faces.
     const std::vector<std::uint32_t>& meshes(std::uint32_t index, const GltfPose& pose);
 
   private:

@@ -99,7 +99,7 @@ class IesReader {
     Warnings& warnings_;
     PhotometricText text_;
     int year_ = first_year;
-    double factor_ = 1;  // scales intensities
+    double factor_ = 1;
     PhotometricWeb web_;
 };
 
@@ -239,7 +239,7 @@ void IesReader::read_opening(double metres) {
     if (!is_known) warn("ies-opening", "the luminous opening has no shape of IES LM-63; it is read as a box");
 }
 
-/// Snaps to multiples of 90 degrees for exact symmetry tests.
+/// Snaps to multiples of 90 degrees, for exact symmetry tests.
 std::vector<float> IesReader::angles(std::size_t count, const char* kind, float low, float high) {
     constexpr float tolerance = 0.01f;  // [degrees]
     std::vector<float> result;

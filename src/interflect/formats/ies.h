@@ -9,17 +9,14 @@
 
 namespace interflect::detail {
 
-/// Reads IES LM-63 (1986 to 2019), types A, B and C. Intensities include the multiplier, the ballast factor, the TILT
-/// factor at the measurement position and, until LM-63-1995, the ballast-lamp factor. `outside_files` applies to the
-/// TILT file, which messages do not quote.
-/// @throws InputError for invalid input.
+/// Reads IES LM-63 (1986 to 2019), types A, B and C (docs/luminaires.md). `outside_files` applies to the TILT file.
+/// @throws InputError
 PhotometricWeb read_ies(const std::filesystem::path& path, const ReadOptions& options, Warnings& warnings);
 
-/// @param path  For messages and references.
 PhotometricWeb read_ies_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options,
                              Warnings& warnings);
 
-/// @param name  For messages. @param folder  Of the TILT file.
+/// @param folder  Of the TILT file.
 PhotometricWeb read_enclosed_ies(std::string_view text, const std::filesystem::path& name,
                                  const std::filesystem::path& folder, const ReadOptions& options, Warnings& warnings);
 

@@ -123,7 +123,7 @@ void LdtReader::read_opening() {
                     millimetres * static_cast<float>(metres), 2};
 }
 
-/// Number, type, flux, colour, colour rendering, power. A negative number means absolute photometry.
+/// Reads number, type, flux, colour, colour rendering, power. Negative numbers mean absolute photometry.
 void LdtReader::read_lamps() {
     constexpr std::size_t most_sets = 20;
     const std::size_t sets = count_line("the number of sets of lamps", 1, most_sets);

@@ -9,12 +9,9 @@
 
 namespace interflect::detail {
 
-/// Reads EULUMDAT (Stockmar 1990). Multiplies intensities per 1000 lm by the conversion factor and the flux of the
-/// first lamp set.
-/// @throws InputError for invalid input.
+/// Reads EULUMDAT (Stockmar 1990; docs/luminaires.md). @throws InputError
 PhotometricWeb read_ldt(const std::filesystem::path& path, const ReadOptions& options, Warnings& warnings);
 
-/// @param path  For messages.
 PhotometricWeb read_ldt_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options,
                              Warnings& warnings);
 

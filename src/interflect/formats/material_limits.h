@@ -20,7 +20,7 @@ inline Material default_material() {
     return grey;
 }
 
-/// @return  Whether it changed.
+/// Whether it changed.
 inline bool limit_reflectance(Rgb& reflectance) {
     const Rgb given = reflectance;
     for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], static_cast<float>(largest_reflectance));

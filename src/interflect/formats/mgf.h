@@ -12,17 +12,14 @@ namespace interflect::detail {
 /// (docs/mgf-extensions.md).
 ///
 /// * Surfaces become patches, two per face unless `sides 1`, with shared vertices.
-/// * Colours become linear Rec. 709; MGF's neutral is R = G = B. Spectra and weights may be negative.
+/// * Colours become linear Rec. 709; MGF's neutral is R = G = B.
 /// * `rd` is limited to 0.99; `ts` ignores roughness. `rs` is a mirror for the camera if its roughness is at most 0.02.
-/// Warnings report omitted `rs` and `td`.
 /// * `o` and array copies ("a0", "a1") name objects, joined by dots.
-/// * The end of a file closes everything open, with a warning.
 ///
 /// Time is linear in the text with arrays expanded.
 /// @throws InputError for invalid input. Errors in a colour or material count only if a face uses it.
 Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  For messages and references.
 Scene read_mgf_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

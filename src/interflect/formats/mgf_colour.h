@@ -11,8 +11,7 @@ struct Chromaticity {
     double x = 1.0 / 3, y = 1.0 / 3;
 };
 
-/// Integrates a spectrum from 380 to 780 nm, linear between its values and 0 elsewhere; flat spectra are exactly
-/// neutral.
+/// Integrates a spectrum from 380 to 780 nm, linear between its values and 0 elsewhere.
 /// @param first, last  Wavelengths [nm], ascending.
 /// @param values  At least two, at equal steps; may be negative.
 /// @throws std::invalid_argument also if the luminance or X + Y + Z is 0.
@@ -40,7 +39,6 @@ struct Rec709Colour {
 
 /// Converts to linear Rec. 709 with white D65 (0.3127, 0.3290). The linear Bradford transform (Lam 1985) at Y = 1 makes
 /// illuminant E neutral: XYZ' = B^-1 diag(B W_D65 / B W_E) B XYZ, W_E = (1, 1, 1).
-///
 /// Mixes colours outside [0, largest] with neutral, so luminance(rgb) == min(luminance, largest).
 /// @param luminance  rd, or ed [lm/m^2]; >= 0.
 /// @param largest  largest_reflectance; infinite for exitances.

@@ -20,13 +20,12 @@ namespace interflect::detail {
 template <class Context>
 class ContextTable {
   public:
-    /// @param kind  For messages: "vertex".
+    /// @param kind  "vertex", for messages.
     ContextTable(std::string_view kind, std::size_t max_name_length) : kind_(kind), max_name_length_(max_name_length) {}
 
     Context& current() { return *current_; }
     std::string_view current_name() const { return current_name_; }  ///< Empty if unnamed.
 
-    /// @throws std::invalid_argument
     Context& find(std::string_view name) {
         const auto entry = named_.find(name);
         if (entry == named_.end()) throw std::invalid_argument(fmt::format("{} '{}' is not defined", kind_, name));
@@ -90,8 +89,8 @@ struct MgfMaterial {
     MgfColour rd_colour, rs_colour, ts_colour, ed_colour;
     MgfTexture rd_texture, ts_texture, ed_texture;
     Location defined;                  ///< Last change.
-    std::uint32_t fault = none;        ///< First error, in MgfFaults.
-    std::uint32_t scene_index = none;  ///< In Scene::materials, once used.
+    std::uint32_t fault = none;        ///< In MgfFaults.
+    std::uint32_t scene_index = none;  ///< Once used.
 
     bool is_textured() const {
         return !(rd_texture.path.empty() && ts_texture.path.empty() && ed_texture.path.empty());

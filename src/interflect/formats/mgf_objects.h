@@ -19,11 +19,10 @@ class MgfObjects {
 
     std::size_t depth() const { return open_.size(); }
 
-    /// @param is_copy  Closed by close_copy() only. @throws std::invalid_argument
+    /// @param is_copy  Closed by close_copy() only.
     void open(std::string_view name, bool is_copy, const Location& where);
     /// @return  false for an array copy or a depth of at most `outer_depth`.
     bool close_innermost(std::size_t outer_depth);
-    /// Closes the innermost copy with its objects.
     void close_copy();
     /// Warns about unclosed objects.
     void close_down_to(std::size_t depth);

@@ -65,7 +65,7 @@ void MgfReader::read(const std::filesystem::path& path, std::string text) {
 }
 
 Scene MgfReader::finish() {
-    // A deferred error is more specific than missing faces.
+    // Deferred errors are more specific.
     if (scene_.patch_count() == 0) faults_.refuse_first();
     return scene_.finish();
 }

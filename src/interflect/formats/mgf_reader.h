@@ -25,7 +25,7 @@
 
 namespace interflect::detail {
 
-/// Open file, which cannot close outer transforms or objects.
+/// Cannot close outer transforms or objects.
 struct OpenMgfFile {
     const SourceFile& source;
     LineReader lines;

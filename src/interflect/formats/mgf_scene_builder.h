@@ -39,7 +39,7 @@ class MgfSceneBuilder {
     /// Also stores the index in `material`.
     std::uint32_t material(MgfMaterial& material, std::string_view name);
     std::uint32_t object(const std::string& name);
-    /// Adds a number to the name: "spot-3".
+    /// Appends a number to the name: "spot-3".
     void add_light(Luminaire luminaire, const std::string& name);
     Warnings& warnings() { return scene_.warnings; }
     void place_face(std::span<const Imath::V3d> outline) { faces_.place(outline); }

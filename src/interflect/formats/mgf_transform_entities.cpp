@@ -38,7 +38,7 @@ void MgfReader::open_transform(MgfWords words, const LineReader::Position& body)
     place_copy(transforms_.back());
 }
 
-/// @return  Whether another copy follows.
+/// Whether another copy follows.
 bool MgfReader::close_transform() {
     OpenMgfTransform& transform = transforms_.back();
     if (transform.sequence.is_array()) {

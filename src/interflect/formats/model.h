@@ -53,9 +53,9 @@ struct Model {
 /// Merges two triangles that form a planar, convex quadrilateral with linear coordinates. Omits faces without area,
 /// with a warning.
 ///
-/// Meshes with lightmap coordinates share their object's lightmap; other patches have NaN. Ignores these coordinates,
-/// with a warning, if instances with different transforms would share them.
-/// @throws InputError for an invalid model, scenes without faces, and scene_faults(). @throws TooManyPatches
+/// Meshes with lightmap coordinates share their object's lightmap; other patches have NaN. Ignores the coordinates if
+/// instances with different transforms share them.
+/// @throws InputError for an invalid model, a scene without faces, and scene_faults(). @throws TooManyPatches
 Scene scene_of(Model&& model, const ReadOptions& options);
 
 }  // namespace interflect::detail

@@ -95,7 +95,7 @@ class InstanceAdder {
     InstanceAdder(const Model& model, const std::vector<bool>& has_layout, Scene& scene, const ReadOptions& options)
         : model_(model), has_layout_(has_layout), scene_(scene), faces_(scene, options), weld_(scene) {}
 
-    /// Places all faces without adding them.
+    /// Places faces without adding them.
     V3d suitable_origin() {
         for (const MeshInstance& instance : model_.instances) {
             const Mesh& mesh = model_.meshes[instance.mesh];

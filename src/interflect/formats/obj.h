@@ -11,7 +11,6 @@ namespace interflect::detail {
 /// Reads Wavefront OBJ with its material libraries (docs/formats.md). @throws InputError; see also scene_of().
 Scene read_obj(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  For messages and references.
 Scene read_obj_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

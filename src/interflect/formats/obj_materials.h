@@ -21,9 +21,8 @@ class ObjMaterials {
 
     /// @throws InputError, std::invalid_argument
     void read(const std::filesystem::path& path, const Location& where);
-    /// @param path  For messages and references.
     void read_text(std::string_view text, const std::filesystem::path& path);
-    /// @return  Index into Model::materials; 0, with a warning, if unknown.
+    /// Returns an index into Model::materials; 0, with a warning, if unknown.
     std::uint32_t find(const std::string& name, const Location& where);
 
   private:
@@ -34,12 +33,11 @@ class ObjMaterials {
         std::filesystem::path texture;  // map_Kd
         std::filesystem::path mask;     // map_d
         Location where;
-        std::uint32_t material = none;  // index, once used
+        std::uint32_t material = none;  // once used
     };
     void read_line(std::span<const std::string_view> words, Definition& definition, const Location& where);
     std::filesystem::path texture_path(std::span<const std::string_view> words, const Location& where);
     std::uint32_t convert(const std::string& name, const Definition& definition);
-    /// Warns about unreadable files.
     std::uint32_t texture(const Definition& definition);
     /// White if unreadable.
     Texture read_colours(const Definition& definition);

@@ -11,8 +11,7 @@
 
 namespace interflect::detail {
 
-/// Removes the byte order mark and the end mark of MS-DOS.
-/// @throws InputError as read_text_file(), and beyond max_photometric_bytes.
+/// Removes the byte order mark and the end mark of MS-DOS. @throws InputError, also beyond max_photometric_bytes.
 std::string read_photometric_text(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads lines (ended by LF, CR or both) or words. Errors are InputErrors.
@@ -24,10 +23,8 @@ class PhotometricText {
 
     /// Returns the next line, trimmed; nullopt at the end.
     std::optional<std::string_view> line();
-    /// Returns the next word on any line.
     std::optional<std::string_view> word();
 
-    /// @param what  For messages.
     double number(const std::string& what);
     /// Reads an integer in [least, most].
     std::size_t count(const std::string& what, std::size_t least, std::size_t most);

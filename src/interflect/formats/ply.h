@@ -12,7 +12,6 @@ namespace interflect::detail {
 /// @throws InputError; see also scene_of().
 Scene read_ply(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  For messages.
 Scene read_ply_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

@@ -12,7 +12,7 @@ namespace interflect::detail {
 struct PlyProperty {
     std::string name;
     PlyType type = PlyType::float32;
-    std::optional<PlyType> count_type;  ///< Type of a list's length, if any.
+    std::optional<PlyType> count_type;  ///< Of a list's length, if any.
 };
 
 struct PlyElement {

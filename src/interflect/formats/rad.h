@@ -12,7 +12,6 @@ namespace interflect::detail {
 /// at 179 lm/W. @throws InputError; see also scene_of().
 Scene read_rad(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  For messages and references.
 Scene read_rad_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

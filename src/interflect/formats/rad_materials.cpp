@@ -141,7 +141,7 @@ void RadMaterials::define(const RadPrimitive& primitive, const Location& where) 
 }
 
 std::uint32_t RadMaterials::material(std::uint32_t modifier) {
-    // Bases are defined first, so the chain ends.
+    // Bases are defined first: the chain ends.
     for (; modifier != none; modifier = modifiers_[modifier].base) {
         Modifier& m = modifiers_[modifier];
         const Type& type = types().at(m.primitive.type);

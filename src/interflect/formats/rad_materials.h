@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-/// Radiance's luminous efficacy of white light [lm/W].
+/// [lm/W]
 inline constexpr double rad_efficacy = 179;
 
 /// Pane at normal incidence, with all internal reflections.
@@ -37,7 +37,7 @@ class RadMaterials {
 
     /// @return  `none` for "void". @throws std::invalid_argument if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
-    /// @return  Index into Model::materials; `none` if invisible. @throws InputError
+    /// Returns an index into Model::materials; `none` if invisible. @throws InputError
     std::uint32_t material(std::uint32_t modifier);
 
   private:
@@ -70,7 +70,7 @@ class RadMaterials {
 
     Model& model_;
     bool may_miss_ = false;
-    std::deque<std::string> missing_names_;  // referenced by views
+    std::deque<std::string> missing_names_;  // string_views refer to these
     std::vector<Modifier> modifiers_;
     std::unordered_map<std::string_view, std::uint32_t> index_;  // latest of each name
 };

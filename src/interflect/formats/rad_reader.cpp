@@ -189,7 +189,7 @@ void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file,
         model_.warnings.add("void-surface", "surface without a material is invisible, and left out", where.text());
         return;
     }
-    // Spheres have the most faces.
+    // A sphere has the most faces.
     const double d = options_.curve_divisions;
     if (primitive.type == "sphere" || primitive.type == "bubble") require_room(8 * d * d, file.copies.size());
     add_mesh((this->*surface.read)(primitive.numbers), primitive, material, file, where);

@@ -21,8 +21,7 @@ struct RadXform {
     std::string prefix(const std::vector<int>& copy) const;
 };
 
-/// @param command  Without `!`.
-/// @return  nullopt for other commands, stdin and shell syntax beyond quotes.
+/// @param command  Without `!`. @return  nullopt for other commands, stdin and shell syntax beyond quotes.
 /// @throws std::invalid_argument if xform would reject it.
 std::optional<RadXform> parse_xform(std::string_view command);
 

@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Budgets [words].
+/// [words]; a quadrilateral with its vertices takes 33.
 constexpr std::uint64_t free_of_limit = 100'000, words_per_allowed_patch = 25;
 constexpr std::uint64_t free_of_made = 50'000'000, words_per_made_patch = 1000;
 

@@ -24,7 +24,7 @@ class SceneFaces {
     /// @param scene  With name and origin.
     SceneFaces(Scene& scene, const ReadOptions& options) : scene_(scene), max_patches_(options.max_patches) {}
 
-    /// @throws PatchLimit beyond the limit, including omitted faces.
+    /// Counts omitted faces too. @throws PatchLimit
     void require_room(double patches) const;
     /// @return  Relative to the scene's origin [m].
     V3f position(const Imath::V3d& world) const;

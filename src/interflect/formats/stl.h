@@ -11,7 +11,6 @@ namespace interflect::detail {
 /// Reads STL, with reflectance 0.5 (docs/formats.md). @throws InputError; see also scene_of().
 Scene read_stl(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// @param path  For messages.
 Scene read_stl_bytes(std::string_view bytes, const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace interflect::detail

@@ -11,7 +11,7 @@ namespace interflect::detail {
 /// Removes the byte order mark. @throws InputError as read_bytes() and require_text().
 std::string read_text_file(const std::filesystem::path& path);
 
-/// @param most  Limit [bytes]. @throws InputError if unreadable or larger.
+/// @param most  [bytes]. @throws InputError if unreadable or larger.
 std::string read_bytes(const std::filesystem::path& path,
                        std::uintmax_t most = std::numeric_limits<std::uintmax_t>::max());
 

@@ -9,8 +9,7 @@
 
 namespace interflect::detail {
 
-/// Reads .png or .jpg (sRGB), .exr or .hdr (linear). @param most  Texel limit.
-/// @throws InputError as read_image(), and for invalid textures.
+/// Reads .png or .jpg (sRGB), .exr or .hdr (linear). @param most  Texel limit. @throws InputError
 Texture read_texture(const std::filesystem::path& path, std::uint64_t most = most_texels);
 
 /// Reads radiances from .exr or .hdr. @throws InputError

@@ -9,8 +9,8 @@
 
 namespace interflect::detail {
 
-/// Arguments of MGF's `xf`, applied from left to right to row vectors. -i N repeats the transforms up to the next -i or
-/// -a N times. -a N makes N copies; copy k, from 0, repeats them k times. Several -a make a grid.
+/// Arguments of MGF's `xf`, applied from left to right to row vectors. Copy k of -a, from 0, repeats its transforms k
+/// times; several -a make a grid.
 class TransformSequence {
   public:
     /// @throws std::invalid_argument for invalid arguments and scaling by 0.
@@ -32,7 +32,7 @@ class TransformSequence {
     std::vector<int> array_sizes_;
 };
 
-/// Advances to the next copy, the last array fastest. @return  false after the last copy.
+/// Advances to the next copy, the last array fastest; returns false after the last copy.
 bool next_index(std::vector<int>& copy, std::span<const int> sizes);
 
 }  // namespace interflect::detail

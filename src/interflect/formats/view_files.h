@@ -11,17 +11,16 @@ namespace interflect::detail {
 /// Returns /a/office.views.json for /a/office.mgf.
 std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
 
-/// Reads {"views": [{"name": "desk", "eye": [x, y, z], "look_at": [x, y, z], "up": [x, y, z], "fov": 45}]}, in metres
-/// and degrees (vertical, full). `up` defaults to (0, 0, 1) and `fov` to 45.
+/// Reads named views, in metres and degrees (docs/design.md). `up` defaults to (0, 0, 1) and `fov` to 45.
 /// @throws InputError for invalid or unknown members, and duplicate names.
 std::vector<View> read_view_list(const std::filesystem::path& path);
 
-/// Writes views exactly, but without `extent`. @param views  With unique names. @throws std::runtime_error
+/// Omits `extent`. @param views  With unique names. @throws std::runtime_error
 void write_view_list(std::span<const View> views, const std::filesystem::path& path);
 
 /// Reads a Radiance view (rvu options), named after the file. Defaults are Radiance's; later lines override earlier
 /// ones. Ignores -vh, because the picture's shape determines it.
-/// @throws InputError for invalid input, and for projections other than -vtv, shift, lift or clipping planes.
+/// @throws InputError, also for projections other than -vtv, shift, lift or clipping planes.
 View read_radiance_view(const std::filesystem::path& path);
 
 }  // namespace interflect::detail

@@ -15,15 +15,13 @@ struct MazeOptions {
     std::uint64_t seed = 1;
 };
 
-/// Creates a maze to test importance: each view sees a small part, and most light is indirect. Rooms of 5 to 7 m, 2.8 m
-/// high, form a nearly square grid about the origin, z up, each with a luminaire of about 8,000 lm. Faces are
-/// one-sided; furniture consists of closed convex solids, at least 4 mm apart. A room has about 50 patches, with
-/// furniture 2,590; nine match the scene in Prikryl et al. 2000 (23,182). Views "overview" and, for the first 64 rooms,
-/// "room-0" and so on. Equal options give equal scenes.
+/// Creates a maze to test importance: each view sees a small part, and most light is indirect. Rooms of 5 to 7 m form a
+/// nearly square grid about the origin, z up, each with a luminaire of about 8,000 lm. Nine furnished rooms match the
+/// scene in Prikryl et al. 2000 (23,182 patches). Views "overview" and, for the first 64 rooms, "room-0" and so on.
 /// @throws InputError if an option is out of range.
 Scene make_maze(const MazeOptions& options);
 
-/// Returns the number of rooms for about `patches` patches; ignores options.rooms. @throws InputError above most_rooms.
+/// Returns the number for about `patches` patches; ignores options.rooms. @throws InputError above most_rooms.
 std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options);
 
 }  // namespace interflect::detail

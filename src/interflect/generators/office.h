@@ -15,8 +15,8 @@ struct OfficeOptions {
     std::uint64_t seed = 1;
 };
 
-/// Creates one floor of equal rooms with rows of desks, a grid of luminaires and furniture along the walls; otherwise
-/// as make_maze(). A desk has about 230 patches; two rows share a bookcase of 650.
+/// Creates a floor of equal rooms with rows of desks, a grid of luminaires and furniture along the walls; otherwise as
+/// make_maze().
 /// @throws InputError if an option is out of range.
 Scene make_office(const OfficeOptions& options);
 

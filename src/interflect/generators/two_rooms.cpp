@@ -14,7 +14,7 @@ namespace {
 
 constexpr float width = 4, height = 3, thickness = 0.01f;  // of a room and of the partition [m]
 constexpr float length = 2 * width + thickness;            // of both rooms together [m]
-constexpr float largest_turn = 40;                         // [degrees]; keeps the partition clear of the far walls
+constexpr float largest_turn = 40;                         // [degrees]; clear of the far walls
 
 std::uint32_t add_material(Scene& scene, const char* name, const Rgb& reflectance, const Rgb& exitance = {0, 0, 0}) {
     scene.materials.push_back({name, reflectance, exitance});

@@ -5,13 +5,13 @@
 namespace interflect::detail {
 
 struct TwoRoomsOptions {
-    float turn = 0;          ///< Turn of the partition about the vertical [degrees], -40 to 40.
-    bool furniture = false;  ///< Two cabinets per side of the partition, paper on one.
+    float turn = 0;          ///< About the vertical [degrees], -40 to 40.
+    bool furniture = false;  ///< Two cabinets per side, paper on one.
 };
 
-/// Creates two sealed rooms of 4 x 4 x 3 m with common floor, ceiling and outer wall polygons. The partition is 1 cm
-/// thick; a rotated one penetrates the outer walls. The only luminaire is in the first room (x < 4): light in the
-/// second has leaked. Views "lit" and "dark".
+/// Creates two sealed rooms of 4 x 4 x 3 m with common floor, ceiling and outer wall polygons. A rotated partition
+/// penetrates the outer walls. The only luminaire is in the first room (x < 4): light in the second has leaked. Views
+/// "lit" and "dark".
 /// @throws InputError if the turn is out of range.
 Scene make_two_rooms(const TwoRoomsOptions& options);
 

@@ -12,7 +12,7 @@
 namespace interflect::detail {
 
 struct Boxed {
-    Imath::Box3f box;  ///< After arrangement: bounds of the subtree.
+    Imath::Box3f box;  ///< After arrangement: of the subtree.
     std::uint32_t index = 0;
 };
 

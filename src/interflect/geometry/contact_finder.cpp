@@ -17,7 +17,7 @@ namespace {
 using Imath::V2d;
 using Imath::V3d;
 
-/// 1 degree: flatter intersections bound no shadow.
+/// Flatter intersections (1 degree) bound no shadow.
 constexpr double least_angle_sine = 0.0175;
 
 }  // namespace

@@ -25,7 +25,7 @@ using namespace detail;
 
 namespace {
 
-/// Narrower strips are not divided across. Relative to the face's diameter.
+/// Relative to the face's diameter. Narrower strips are not divided across.
 constexpr double narrow = 2e-3;
 
 constexpr std::size_t facets_at_once = 256;
@@ -41,14 +41,13 @@ struct CutFacet {
 };
 
 /// Returns the length above which a sliver is cut across [m]. Quartering preserves aspect ratios, so long patches yield
-/// long elements. Facets with at least a quarter of their flat surface's area have no limit.
+/// long elements.
 double longest_sliver(const Facet& facet, double surface_area) {
     const double width = surface_area / facet.diameter;
     const bool is_small_part = surface_area > 4 * facet.area();
     return is_small_part ? longest_sliver_share * width : std::numeric_limits<double>::infinity();
 }
 
-/// @param surface_area  Of the facet's flat surface [m^2].
 CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_area, const ContactOptions& options) {
     CutFacet result;
     std::vector<PlanarSegment> segments = finder.segments(static_cast<double>(options.least_extent));
@@ -65,7 +64,7 @@ CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_are
     return result;
 }
 
-/// Returns the area of each facet's flat surface [m^2].
+/// Returns areas by facet [m^2].
 std::vector<double> areas_of_surfaces(const Scene& scene, const std::vector<Facet>& facets) {
     const std::vector<std::uint32_t> surfaces = flat_surfaces(scene);
     std::vector<double> area(scene.patches.size(), 0.0), result;
@@ -142,7 +141,7 @@ class PieceWriter {
 /// Facets first ... last - 1 of one face.
 struct FacetRange {
     std::size_t first, last;
-    std::uint64_t patches = 0;  ///< Number of resulting patches, on both sides; 0: the face stays whole.
+    std::uint64_t patches = 0;  ///< On both sides; 0: the face stays whole.
 };
 
 std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<Facet>& facets,
@@ -178,7 +177,7 @@ std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<F
     return faces;
 }
 
-/// Returns Patch::surface of each patch: `none` unless its flat surface contains a cut face or a patch with a number.
+/// Returns Patch::surface of each patch: `none` unless its flat surface contains a cut face or has a number.
 std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
                                                    const std::vector<FacetRange>& faces) {
     std::vector<std::uint32_t> surface = flat_surfaces(scene);

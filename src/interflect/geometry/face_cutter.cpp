@@ -248,7 +248,7 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
         }
         const Line line = best_cut(piece, tolerance);
         Halves halves = halves_of(piece.polygon, line, tolerance);
-        if (!halves.proper) {  // the line runs along the border: its segments are finished
+        if (!halves.proper) {  // the line runs along the border
             std::erase_if(piece.segments, [&](const PlanarSegment& s) {
                 return side_of(line.height(s.a), tolerance) == 0 && side_of(line.height(s.b), tolerance) == 0;
             });

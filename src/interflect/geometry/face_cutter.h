@@ -8,8 +8,8 @@
 
 namespace interflect::detail {
 
-/// Clips `segment` to the polygon's interior.
-/// @return  False, without a change, if the rest is shorter than `tolerance` [m] or lies along an edge.
+/// Clips `segment` to the polygon's interior. Returns false, without a change, if the rest is shorter than `tolerance`
+/// [m] or lies along an edge.
 bool clip_to_interior(const PlanarPolygon& polygon, double tolerance, PlanarSegment& segment);
 
 struct CutPolygon {
@@ -31,8 +31,7 @@ struct PieceShape {
     double longest_sliver = std::numeric_limits<double>::infinity();
 };
 
-/// Divides a convex polygon into compact patches, because elements inherit their shape: long quadrilaterals into at
-/// most 16 parts, slivers into at most 64.
+/// Divides long quadrilaterals into at most 16 parts, slivers into at most 64: elements inherit the shape of patches.
 void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches);
 
 }  // namespace interflect::detail

@@ -21,10 +21,8 @@ inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pa
 }
 
 /// Finds pairs of faces whose smaller one reaches more than pair_tolerance() into the larger, within that distance of
-/// its plane. Skips one-sided faces with opposite normals, which intercept different rays.
-/// @param ignored    Per patch.
-/// @param tolerance  Per patch [m], > 0.
-/// @return           Sorted by larger face.
+/// its plane. Skips one-sided faces with opposite normals, which intercept different rays. Sorted by larger face.
+/// @param tolerance  Per patch [m], > 0. @param ignored  Per patch.
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance);
 

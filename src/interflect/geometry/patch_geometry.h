@@ -42,8 +42,8 @@ class PatchGeometry {
     /// Moves a point to at least `distance` [m] from the border, or less in narrow patches.
     Parameters inset(Parameters p, float distance) const;
 
-    /// Returns |dx/du x dx/dv| [m^2]. It is linear in u and v, so a cell's area is its parameter area times the value
-    /// at its centre.
+    /// Returns |dx/du x dx/dv| [m^2]. Linear in u and v: a cell's area is its parameter area times the value at its
+    /// centre.
     float jacobian(Parameters p) const;
 
   private:

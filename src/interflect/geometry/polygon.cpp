@@ -146,7 +146,7 @@ class Triangulation {
     Scene& scene_;
     const OutlinePlane& frame_;
     V3d origin_;
-    std::deque<std::uint32_t> handles_;  // for GLU's pointers; a deque keeps addresses valid
+    std::deque<std::uint32_t> handles_;  // for GLU's pointers; addresses stay valid
     std::vector<std::uint32_t> corners_;
     bool failed_ = false;
 };
@@ -173,7 +173,7 @@ std::vector<std::uint32_t> Triangulation::operator()(std::span<const Loop> loops
     gluTessCallback(t, GLU_TESS_VERTEX_DATA, callback(&emit));
     gluTessCallback(t, GLU_TESS_COMBINE_DATA, callback(&combine));
     gluTessCallback(t, GLU_TESS_ERROR_DATA, callback(&fail));
-    // Makes GLU emit separate triangles instead of strips and fans.
+    // Makes GLU emit separate triangles.
     gluTessCallback(t, GLU_TESS_EDGE_FLAG_DATA, callback(&ignore_edge_flag));
 
     gluTessBeginPolygon(t, this);

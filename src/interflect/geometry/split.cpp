@@ -23,7 +23,7 @@ struct Pieces {
 };
 
 std::uint64_t pieces_of_edge(const V3f& a, const V3f& b, float largest_edge) {
-    constexpr float most = 1e9f;  // above any limit, also for an infinite quotient
+    constexpr float most = 1e9f;  // above any limit
     return static_cast<std::uint64_t>(std::clamp(std::ceil((b - a).length() / largest_edge), 1.0f, most));
 }
 

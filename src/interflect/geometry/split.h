@@ -4,16 +4,15 @@
 
 namespace interflect::detail {
 
-/// Divides every patch into a grid, for methods without refinement. Triangles become n^2 triangles. Interpolates
-/// attributes.
+/// Divides every patch into a grid, for methods without refinement. Triangles become n^2 triangles.
 /// @param largest_edge  Maximum edge of the pieces [m], > 0.
 /// @throws TooManyPatches above `max_patches`; InputError for an invalid edge or a scene with faults.
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_patches);
 
-/// Returns a default edge length [m]: 1/48 of the diagonal of core_bounds(), or more for at most about 200,000 patches.
+/// Returns an edge length [m]: 1/48 of the diagonal of core_bounds(), or more for at most about 200,000 patches.
 float default_mesh_size(const Scene& scene);
 
-/// Returns a default minimum element side [m]: 5 mm, but at most a thousandth of the area-weighted median patch side.
+/// Returns a minimum element side [m]: 5 mm, but at most a thousandth of the area-weighted median patch side.
 double default_element_size(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -12,8 +12,7 @@
 namespace interflect::detail {
 
 /// Exact means over triangles of a texture as filtered by texel_at(). Integrates F dy along the border instead of f
-/// over the area (Green's theorem, dF/dx = f). F is cubic between texel lines, so Simpson's rule is exact. 3 bytes per
-/// texel.
+/// over the area (Green's theorem, dF/dx = f). F is cubic between texel lines, so Simpson's rule is exact.
 class TextureIntegral {
   public:
     /// @param texture  Without faults; must outlive this.
@@ -35,7 +34,7 @@ class TextureIntegral {
 
     const Texture& texture_;
     std::size_t sums_per_row_;
-    std::vector<RgbD> sums_;  // per row: sums before every eighth texel, then of the whole row
+    std::vector<RgbD> sums_;  // per row: before every eighth texel, then of the whole row
     Rgb largest_;
     RgbD mean_{0, 0, 0};
 };

@@ -13,10 +13,9 @@ namespace interflect::detail {
 using FaceVertices = std::array<std::uint32_t, 4>;
 
 /// Merges triangles into planar, convex quadrilaterals with linear texture and lightmap coordinates. Prefers pairs
-/// along the longest edge of both.
+/// along the longest edge of both. Keeps the order of first triangles.
 /// @param scene      With welded vertices.
 /// @param triangles  Three vertex indices each.
-/// @return           Faces in the order of their first triangle.
 std::vector<FaceVertices> merge_triangle_pairs(const Scene& scene, std::span<const std::uint32_t> triangles);
 
 }  // namespace interflect::detail

@@ -26,7 +26,7 @@ VertexCoordinates coordinates_of(const Scene& scene, std::uint32_t vertex);
 VertexCoordinates interpolated(const Scene& scene, std::span<const std::uint32_t> vertices,
                                std::span<const float> weights);
 
-/// Normalises and rounds a normal, to weld nearly equal ones. Returns zero for zero and non-finite vectors.
+/// Normalises and rounds, to weld nearly equal normals. Returns zero for zero and non-finite vectors.
 V3f welded_normal(const Imath::V3d& normal);
 
 /// Returns the index. Once a vertex has an attribute, all vertices store it.

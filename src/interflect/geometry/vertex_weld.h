@@ -8,13 +8,13 @@
 
 namespace interflect::detail {
 
-/// Merges vertices with equal position and attributes (-0 equals 0). At most 16 bytes per vertex.
+/// Merges vertices with equal position and attributes (-0 equals 0).
 class VertexWeld {
   public:
     /// @param scene  Receives new vertices. Vertices added elsewhere are not found.
     explicit VertexWeld(Scene& scene) : scene_(scene), slots_(16, none) {}
 
-    /// Finds or adds a vertex. Requires finite numbers.
+    /// Requires finite numbers.
     std::uint32_t vertex(const V3f& position, const VertexCoordinates& coordinates = {});
 
   private:

@@ -7,8 +7,9 @@
 
 namespace interflect::detail {
 
-/// Maps positions to violet, teal and yellow with about equal perceived steps, also in grey.
-/// @param position  Clamped to [0, 1]. @return  Linear Rec. 709 in [0, 1]; NaN for NaN.
+/// Maps positions to violet, teal and yellow with about equal perceived steps, also in grey. Returns linear Rec. 709;
+/// NaN for NaN.
+/// @param position  Clamped to [0, 1].
 Rgb false_colour(float position);
 
 enum class Spacing {

@@ -30,7 +30,7 @@ Image decode_jpeg(std::string_view bytes, std::int64_t most_pixels);
 std::string encode_radiance(const Image& image);
 Image decode_radiance(std::string_view bytes, std::int64_t most_pixels);
 
-/// @throws InputError if a layer and the image differ in size.
+/// @throws InputError for layers of another size.
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::span<const ImageLayer> layers);
 Image read_exr(const std::filesystem::path& path, std::int64_t most_pixels);
 std::optional<float> read_exr_field_of_view(const std::filesystem::path& path);

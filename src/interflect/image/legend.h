@@ -17,8 +17,7 @@ Image with_legend(const Image& picture, const ColourScale& scale, const std::str
 /// [pixels]
 int legend_height(int width);
 
-/// Returns whether an unclipped legend takes at most half of the picture.
-/// @throws InputError for a title that is not printable ASCII.
+/// Whether an unclipped legend takes at most half of the picture. @throws InputError for an invalid title.
 bool legend_fits(int width, int height, const std::string& title);
 
 /// Returns at most `most` values, ascending: 1, 2, 5 times powers of ten, or multiples of such a number.

@@ -5,7 +5,7 @@
 
 namespace interflect::detail {
 
-/// Commits the file. Errors contain its final name.
+/// Errors contain the final name.
 void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata = ImageMetadata(),
                  std::span<const ImageLayer> layers = {});
 

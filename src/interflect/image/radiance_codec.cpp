@@ -193,7 +193,7 @@ Image decode_radiance(std::string_view bytes, std::int64_t most_pixels) {
     read_header(reader);
     const Size size = parse_resolution(reader.line());
     require_allowed_size(size.width, size.height, most_pixels);
-    // The densest encoding uses eight bytes for 127 pixels.
+    // Eight bytes for at most 127 pixels.
     const std::int64_t least_bytes = std::int64_t{size.width} * size.height / 16;
     if (static_cast<std::int64_t>(reader.bytes_left()) < least_bytes) throw std::runtime_error("it ends too early");
 

@@ -88,7 +88,7 @@ Image tone_map(const Image& image, float exposure, Tonemap curve, float display_
     for (Rgb& pixel : shown.pixels) {
         if (!is_finite(pixel)) continue;
         const Rgb mapped = shown_of(Rgb(std::max(0.0f, pixel.x), std::max(0.0f, pixel.y), std::max(0.0f, pixel.z)));
-        // This order turns the NaN of an overflow into white.
+        // Turns the NaN of an overflow into white.
         for (int c = 0; c < 3; ++c) pixel[c] = std::min(1.0f, mapped[c]);
     }
     return shown;

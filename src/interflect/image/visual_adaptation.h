@@ -4,12 +4,10 @@
 
 namespace interflect::detail {
 
-// Operators that match perception at the display to the scene (docs/tone-mapping.md). Luminances are in cd/m^2;
-// `adapted` > 0 is the scene's adaptation L_wa, `white` > 0 the display's white L_dmax. Results are relative to white
-// and not clipped.
+// Operators that match perception at the display to the scene (docs/tone-mapping.md). `adapted` is the scene's L_wa,
+// `white` the display's L_dmax, both > 0 [cd/m^2]. Results are relative to white, not clipped.
 
-/// Ward 1994, Graphics Gems IV.
-/// @return  Factor from luminance to [0, 1].
+/// Returns the factor from luminance to [0, 1] (Ward 1994, Graphics Gems IV).
 float ward_factor(float adapted, float white);
 
 /// Tumblin and Rushmeier 1993, with the constants of Tumblin, Hodgins and Guenter 1999.
@@ -39,7 +37,7 @@ class FerwerdaOperator {
 float cone_threshold(float adapted);
 float rod_threshold(float adapted);
 
-/// Scotopic luminance of a Rec. 709 radiance [scotopic cd/m^2], by Larson et al. 1997 at the primaries.
+/// [scotopic cd/m^2] of a Rec. 709 radiance, by Larson et al. 1997 at the primaries.
 constexpr float scotopic_luminance(const Rgb& c) { return 0.085f * c.x + 1.969f * c.y + 0.519f * c.z; }
 
 }  // namespace interflect::detail

@@ -21,14 +21,14 @@ struct SkyGrid {
     std::size_t column_of(float s) const;
 };
 
-/// Samples cells by weight, uniform in solid angle within a cell. Immutable; 4 bytes per cell.
+/// Samples cells by weight, uniform in solid angle within a cell. Immutable.
 class DirectionTable {
   public:
     /// @param weights  Per cell, >= 0.
     DirectionTable(const SkyGrid& grid, std::span<const float> weights);
 
     double sum() const { return sum_; }  ///< Must be > 0 to sample.
-    /// @param u, v  In (0, 1); u selects the column, v the row.
+    /// @param u, v  For column and row, in (0, 1).
     SkyPlace sample(float u, float v) const;
     /// [1/sr]
     float density(const SkyPlace& place) const;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Returns the scene's box, enlarged so that rays starting on it start outside the scene.
+/// Returns the scene's box, enlarged: rays that start on it start outside the scene.
 Imath::Box3f box_around(const Scene& scene) {
     constexpr float margin = 1e-3f;  // relative to the diagonal
     Imath::Box3f box;
@@ -29,14 +29,13 @@ Imath::Box3f box_around(const Scene& scene) {
     return box;
 }
 
-/// Samples the cosine c to a beam's axis, v in (0, 1]. Intensity is constant within `inner`, then proportional to (c -
-/// outer)^2.
+/// Samples the cosine to a beam's axis, v in (0, 1]. Intensity is constant within `inner`, then proportional to (cosine
+/// - outer)^2.
 float sample_cosine(float v, float inner, float outer, float inner_share) {
     if (v <= inner_share) return 1 - (1 - inner) * (v / inner_share);
     return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));
 }
 
-/// Returns the unit vector at an angle from `axis` with this cosine and sine.
 /// @param turn  Azimuth from s towards t, in full turns.
 V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float sine, float turn) {
     const float angle = 2 * pi * turn;
@@ -62,7 +61,7 @@ std::array<BoxSide, 6> sides_of(const V3f& low, const V3f& size) {
 }
 
 float least_channel(const Rgb& c) { return std::min({c.x, c.y, c.z}); }
-/// A map is the sum of its grey part, the least channel, and the excess of each channel over it.
+/// Grey part of a map (least channel), and the excess of each channel over it.
 constexpr std::array<SkyComponent, 4> map_components = {
     {{Rgb(1, 1, 1), least_channel},
      {Rgb(1, 0, 0), [](const Rgb& c) { return c.x - least_channel(c); }},
@@ -150,7 +149,7 @@ void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
     emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
-/// Emits from the bounding rectangle of the box as seen along the light, enlarged because rays of a disc are tilted.
+/// Emits from the bounding rectangle of the box as seen along the light, enlarged for the tilted rays of a disc.
 void Emission::add(const DirectionalLight& light) {
     const V3f direction = light.direction.normalized();
     const TangentFrame frame(direction);
@@ -172,7 +171,7 @@ void Emission::add(const DirectionalLight& light) {
     }
 }
 
-/// Uniform diffuse emission by a convex surface, here a box, has equal radiance in all directions inside.
+/// Diffuse emission by a convex surface, here a box, has equal radiance in all directions inside.
 void Emission::add(const UniformSky& sky) {
     for (std::size_t b = 0; b < boxes_.size(); ++b)
         for (const BoxSide& side : sides_of(boxes_[b].min, boxes_[b].size())) {
@@ -195,7 +194,7 @@ void Emission::add(const EnvironmentMap& map) {
     add_sky(std::make_shared<SkyRadiance>(map), finest, map_components);
 }
 
-/// The same side of all boxes shares one table of radiance times cosine per component.
+/// All boxes share one table of radiance times cosine per side and component.
 void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyGrid& grid,
                        std::span<const SkyComponent> components) {
     const std::vector<Rgb> integrals = sky->cell_integrals(grid);
@@ -247,7 +246,7 @@ Ray Emission::Rectangle::ray(float u, float v, float c, float d) const {
     return {corner + edge_u * u + edge_v * v, turned(direction, s, t, std::sqrt(1 - squared), std::sqrt(squared), d)};
 }
 
-/// A cell of the table may extend behind the side's plane. Directions behind the plane are mirrored to its front.
+/// A cell of the table may extend behind the side's plane; its directions are mirrored to the front.
 Ray Emission::SkySide::ray(float u, float v, float c, float d) const {
     V3f direction = -sky->frame().direction(places->sample(c, d));
     const float cosine = direction.dot(normal);
@@ -286,8 +285,8 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-/// Returns a ray that misses the scene if the ray's line misses the target `box`, or crosses a later box, which samples
-/// it. Else moves the origin of a target's ray back to the scene's box.
+/// The ray misses the scene if its line misses the target `box`, or crosses a later box, which samples it. Else moves
+/// the origin of a target's ray back to the scene's box.
 Ray Emission::restrict_to_box(const Ray& ray, std::size_t box) const {
     const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };
     const auto own = boxes_.begin() + static_cast<std::ptrdiff_t>(box);
@@ -345,7 +344,7 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
     if (const Web* web = std::get_if<Web>(&emitter.shape))
         return {ray.origin, V3f(0), emitter.rating * web->light->intensity(web->frame.to_luminaire(ray.direction))};
     const auto of_side = [&](const V3f& normal, float part_area, const Rgb& exitance) {
-        // Of a disk of this area, from a point on its axis.
+        // For a disk of this area, from a point on its axis.
         const float form_factor = part_area / (part_area + pi * squared);
         return Proxy{ray.origin, normal, exitance * (form_factor * squared)};
     };
@@ -354,7 +353,7 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
                        emitter.rating * (pi * side->component.amount(side->sky->towards(-ray.direction))));
     const Rectangle& rectangle = std::get<Rectangle>(emitter.shape);
     if (rectangle.is_sky()) return of_side(rectangle.direction, rectangle.part_area, emitter.rating);
-    // At this distance, direction and irradiance are nearly constant over the scene.
+    // Direction and irradiance are then nearly constant over the scene.
     const float far = 100 * boxes_.front().size().length();
     return {ray.origin - far * ray.direction, rectangle.direction, emitter.rating * (far * far)};
 }

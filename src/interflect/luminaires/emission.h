@@ -26,35 +26,32 @@ struct SkyComponent {
     float (*amount)(const Rgb& radiance);
 };
 
-/// Whether a ray's infinite line crosses a box.
 bool line_crosses(const Imath::Box3f& box, const Ray& ray);
 
 /// Generates the rays of luminaires. A point, spot or measured light is one emitter. Outside light (directional lights
-/// and skies) has emitters for each box: the scene's box and targets, which are boxes of high importance. Each line of
-/// outside light is sampled from the last box that it crosses. Each emitter is divided into parts of equal power: by
-/// direction, or by position for outside light. Immutable, thread-safe.
+/// and skies) has emitters for each box: the scene's box and targets, boxes of high importance inside it. Each line of
+/// outside light is sampled from the last box that it crosses. Each emitter has parts of equal power: by direction, or
+/// by position for outside light. Immutable, thread-safe.
 class Emission {
   public:
     Emission() = default;  ///< No luminaires.
-    /// @param targets  Inside the scene's box.
     explicit Emission(const Scene& scene, std::span<const Imath::Box3f> targets = {});
 
     std::size_t part_count() const { return emitters_.size() * parts_per_emitter; }
     /// Returns the power [lm or W]; of outside light, the power sent through the part's box.
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
-    /// Returns the power of all parts, without those of targets.
+    /// Excludes targets.
     RgbD total_power() const { return power_of_boxes(0, 1); }
-    /// Returns the power of all targets' parts.
+    /// Returns the power of the targets [lm or W].
     RgbD repeated_power() const { return power_of_boxes(1, boxes_.size()); }
     /// Returns an index into Scene::luminaires.
     std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }
-    /// An emitter's parts are the cells of a grid over its (u, v), numbered row by row. Their importance is comparable.
+    /// An emitter's parts are the cells of a grid over its (u, v), numbered row by row.
     static constexpr std::size_t cells_per_side = 8, parts_per_emitter = cells_per_side * cells_per_side;
 
     bool has_sky() const;
     std::size_t sun_count() const { return suns_.size(); }
-    /// Samples the direction in which the sun's light travels.
-    /// @param c, d  Uniform in (0, 1).
+    /// Samples the direction in which the sun's light travels. @param c, d  Uniform in (0, 1).
     V3f sun_direction(std::size_t sun, float c, float d) const;
     const Imath::Box3f& scene_box() const { return boxes_.front(); }
     /// Box 0 is the scene's; targets follow.
@@ -63,26 +60,23 @@ class Emission {
 
     struct PartAlong {
         std::size_t part;
-        double brightness;  ///< Sum of channels: radiance of a sky, or irradiance facing the sun.
+        double brightness;  ///< Sum of channels: sky radiance, or irradiance facing the sun.
     };
-    /// Returns the parts that emit along a line.
     /// @param light  Any point of the line, and the direction in which light travels.
-    /// @param sun    Index; `none` for parts of skies.
+    /// @param sun    Index; `none` for skies.
     std::vector<PartAlong> parts_along(const Ray& light, std::uint32_t sun) const;
 
     /// Generates rays of equal power from the part's samples, starting with number `first_sample`. Rays of outside
-    /// light start on or outside the scene's box. If another box samples the line of a ray, the ray misses the scene
-    /// instead.
+    /// light start on or outside the scene's box; if another box samples the line of a ray, the ray misses the scene.
     /// @param key     Of the part's point sequence (fill_points).
     /// @param points  Working memory.
     void shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                std::span<Ray> rays) const;
 
-    /// Point source that stands for a part in the oracle. At the end of a ray of the part, both cause about the same
-    /// irradiance.
+    /// Point source that stands for a part in the oracle. At the end of a ray, both cause about the same irradiance.
     struct Proxy {
         V3f position{0, 0, 0};  ///< [m]
-        V3f normal{0, 0, 0};    ///< Emission is proportional to the cosine to it; zero: isotropic.
+        V3f normal{0, 0, 0};    ///< Emission is proportional to the cosine; zero: isotropic.
         /// Along the normal; irradiance at distance d is intensity / d^2 [lm/sr or W/sr].
         Rgb intensity{0, 0, 0};
     };
@@ -90,11 +84,10 @@ class Emission {
     Proxy proxy(std::size_t part, const Ray& ray, float distance) const;
 
   private:
-    /// Cone around `axis` from cosine 1 to `outer`.
     struct Beam {
         V3f position, axis, s, t;
         float inner, outer;  // cosines
-        float inner_share;   // share of the power within `inner`
+        float inner_share;   // of power within `inner`
         Ray ray(float u, float v, float, float) const;
     };
     /// Emits at angles theta from `direction`, up to a maximum, with density proportional to cos(theta).
@@ -102,7 +95,7 @@ class Emission {
         V3f corner, edge_u, edge_v;
         V3f direction, s, t;
         float sine;       // of the maximum angle; 0: parallel, 1: diffuse
-        float part_area;  // of the same emitter for the scene's box, even if this one is for a target
+        float part_area;  // of the emitter for the scene's box
         bool is_sky() const { return sine == 1; }
         Ray ray(float u, float v, float c, float d) const;
     };
@@ -114,7 +107,7 @@ class Emission {
         float part_area;  // as in Rectangle
         Ray ray(float u, float v, float c, float d) const;
     };
-    /// Rays start `offset` above the opening, which may lie in a surface.
+    /// Rays start `offset` [m] above the opening, which may lie in a surface.
     struct Web {
         std::shared_ptr<const WebSampler> sampler;
         std::shared_ptr<const PhotometricWeb> light;
@@ -125,7 +118,7 @@ class Emission {
     };
     struct Emitter {
         std::variant<Beam, Rectangle, SkySide, Web> shape;
-        Rgb rating;  // Beam: intensity; Rectangle: exitance; SkySide: colour of the component; Web: factor
+        Rgb rating;  // Beam: intensity; Rectangle: exitance; SkySide: colour; Web: factor
         RgbD part_power;
         std::size_t box = 0;
         std::size_t luminaire = 0;
@@ -145,8 +138,8 @@ class Emission {
     RgbD power_of_boxes(std::size_t begin, std::size_t end) const;
     Ray restrict_to_box(const Ray& ray, std::size_t box) const;
 
-    std::vector<Imath::Box3f> boxes_;  // the scene's, then targets; empty without patches
-    std::vector<std::size_t> suns_;    // emitters of directional lights for box 0
+    std::vector<Imath::Box3f> boxes_;  // the scene's, then targets
+    std::vector<std::size_t> suns_;    // emitters for box 0
     std::vector<std::vector<std::size_t>> emitters_of_boxes_;
     std::vector<Emitter> emitters_;
     std::map<const PhotometricWeb*, std::shared_ptr<const WebSampler>> samplers_;

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Unoccluded radiance of skies and suns. Immutable, thread-safe.
+/// Unoccluded radiance of skies and suns.
 class Skies {
   public:
     explicit Skies(const Scene& scene);

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Radiance of a sky dome or environment map. Immutable, thread-safe.
+/// Radiance of a sky dome or environment map.
 class SkyRadiance {
   public:
     /// @param dome, map  Without luminaire_fault().

@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Samples directions exactly by a web's interpolated intensity. Immutable, thread-safe.
+/// Samples directions exactly by a web's interpolated intensity.
 class WebSampler {
   public:
     /// @param web  Without web_fault().

@@ -26,7 +26,7 @@ constexpr double most_pixels_per_degree = 1000;  // eight times the resolution o
 
 // --- Colour spaces
 
-/// Linear Rec. 709 to XYZ relative to white (D65), exact. Transposed, since Imath multiplies rows by matrices.
+/// Linear Rec. 709 to XYZ relative to white (D65), exact. Transposed, since Imath multiplies rows.
 const M33d xyz_of_rgb(10135552.0 / 23359437, 2613072.0 / 12288897, 1425312.0 / 80288307,  //
                       8788810.0 / 23359437, 8788810.0 / 12288897, 8788810.0 / 80288307,   //
                       4435075.0 / 23359437, 887015.0 / 12288897, 70074185.0 / 80288307);
@@ -78,7 +78,7 @@ struct Channel {
     std::size_t start(int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
 };
 
-/// Weights at -radius ... radius [pixels].
+/// At -radius ... radius [pixels].
 using Kernel = std::vector<float>;
 
 int radius_of(const Kernel& kernel) { return static_cast<int>(kernel.size() / 2); }
@@ -144,7 +144,7 @@ struct Gaussian {
 };
 constexpr std::array<Gaussian, 1> achromatic = {{{1, 0.0047}}}, red_green = {{{1, 0.0053}}};
 constexpr std::array<Gaussian, 2> blue_yellow = {{{34.1, 0.04}, {13.5, 0.025}}};
-constexpr double widest = 0.04;  // b that determines the size of all filters
+constexpr double widest = 0.04;  // b for the size of all filters
 
 using Opponent = std::array<Channel, 3>;
 
@@ -196,7 +196,7 @@ double compressed_distance(const V3d& a, const V3d& b) {
     return std::pow(std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z), colour_exponent);
 }
 
-/// In [0, 1]. Distances up to 0.4 of the largest, green to blue, use 0.95 of the range.
+/// In [0, 1]. Distances up to 0.4 of the largest use 0.95 of the range.
 double colour_difference(const V3d& a, const V3d& b) {
     constexpr double knee_share = 0.4, knee_value = 0.95;
     static const double largest = compressed_distance(perceived_colour(V3d(0, 1, 0)), perceived_colour(V3d(0, 0, 1)));

@@ -16,7 +16,7 @@ struct FlipOptions {
 /// @param reference  Of the same size; the result is symmetric.
 /// @return           0 (equal) to 1, in all channels; the same for any number of threads.
 /// @throws InputError for different sizes, no pixels, or options out of range. Pixels must be finite.
-/// O(N pixels_per_degree) time, about 60 bytes per pixel.
+/// O(N pixels_per_degree) time.
 Image flip_map(const Image& image, const Image& reference, const FlipOptions& options = {});
 
 Image show_flip_map(const Image& map);

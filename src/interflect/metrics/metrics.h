@@ -7,9 +7,9 @@
 
 namespace interflect::detail {
 
-/// Luminances averaged over square blocks, to reduce noise.
+/// Difference of luminances averaged over square blocks, to reduce noise.
 struct BlockDifference {
-    int block = 1;  ///< Side [pixels]; ignores incomplete blocks.
+    int block = 1;  ///< [pixels]; ignores incomplete blocks.
     /// sqrt(mean of ((A - B) / (B + 0.01 m))^2) of block means A, B; m is the reference's mean.
     double relative_rmse = 0;
     double trimmed_relative_rmse = 0;  ///< Without the worst 1% of blocks.
@@ -19,13 +19,13 @@ struct BlockDifference {
 struct ImageDifference {
     double ratio_of_means = 1;  ///< Mean luminance: image / reference.
     double rmse = 0;            ///< sqrt(mean of (a - b)^2) [unit of the images].
-    /// Mean of (a - b)^2 / (b^2 + (0.01 m)^2), m the reference's mean luminance.
+    /// Mean of (a - b)^2 / (b^2 + (0.01 m)^2), m the mean luminance of b.
     double relative_mse = 0;
     double maximum = 0;              ///< Largest |a - b| [unit of the images].
     double perceptual_distance = 0;  ///< perceptual.h.
     double flip = 0;                 ///< Mean of flip_map.
     std::array<BlockDifference, 3> blocks{{{1, 0, 0}, {5, 0, 0}, {9, 0, 0}}};
-    std::int64_t non_finite_pixels = 0;  ///< In either image; if > 0, measures are NaN.
+    std::int64_t non_finite_pixels = 0;  ///< If > 0, measures are NaN.
     /// Empty if pixels are not finite.
     Image flip_map;
 };
@@ -33,7 +33,7 @@ struct ImageDifference {
 struct CompareOptions {
     /// Divides the image by ratio_of_means first.
     bool scale = false;
-    /// Full vertical angle [degrees], in (0, 180).
+    /// Vertical [degrees], in (0, 180).
     double field_of_view = 45;
     /// Otherwise FLIP uses the reference's automatic_exposure() and Tonemap::filmic.
     bool tone_mapped = false;

@@ -17,7 +17,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double response_exponent = 0.33;  // of the eye to luminance [Mannos and Sakrison 1974]
+constexpr double response_exponent = 0.33;  // of the eye [Mannos and Sakrison 1974]
 
 double lit_luminance(const Rgb& pixel) { return std::max(luminance(RgbD(pixel)), 0.0); }
 

@@ -4,21 +4,15 @@
 
 namespace interflect::detail {
 
-/// Returns the contrast sensitivity A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
+/// Returns A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
 /// @param cycles_per_degree  f >= 0.
 double contrast_sensitivity(double cycles_per_degree);
 
-/// Computes the first model in Rushmeier et al. 1995 from luminances L and R of image and reference, clamped to >= 0. m
-/// is the mean of R, f the frequency [cycles per degree] for square pixels:
-///
-///     d(x, y)  = (L / m)^0.33 - (R / m)^0.33
-///     D(u, v)  = 1/N sum of d(x, y) exp(-2 pi i (u x / width + v y / height))
-///     distance = sqrt(sum over u, v of A(f(u, v))^2 |D(u, v)|^2)
-///
-/// A black reference gives 0 for a black image, otherwise infinity.
+/// Computes the first model of Rushmeier et al. 1995 (formulas in docs/metrics.md) from luminances, clamped to >= 0. A
+/// black reference gives 0 for a black image, otherwise infinity.
 /// @param field_of_view  Full vertical angle [degrees], in (0, 180).
 /// @throws InputError for different sizes, no pixels, or a field of view out of range. Pixels must be finite.
-/// O(N log N) for sides with small prime factors, at worst O(N (width + height)); 16 bytes per pixel.
+/// O(N log N) for sides with small prime factors, at worst O(N (width + height)).
 double perceptual_distance(const Image& image, const Image& reference, double field_of_view);
 
 }  // namespace interflect::detail

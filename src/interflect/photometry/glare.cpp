@@ -33,7 +33,7 @@ struct Place {
 struct Sums {
     std::string name;
     double solid_angle = 0, luminance = 0, squared = 0,
-           glare = 0;  // integrals over the solid angle of 1, L, L^2, L^2/p^2
+           glare = 0;  // over the solid angle of 1, L, L^2, L^2/p^2
 
     void add(double l, double omega, double p) {
         solid_angle += omega;

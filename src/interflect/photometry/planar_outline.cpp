@@ -48,7 +48,7 @@ Imath::Box2d turned_box(const std::vector<V2d>& points, double angle) {
     return box;
 }
 
-/// Returns the rotation to the smallest enclosing rectangle, in (-45, 45] degrees; prefers 0.
+/// Returns [rad], in [-pi/4, pi/4]; prefers 0.
 double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
     constexpr double quarter = std::numbers::pi / 2, better = 1 - 1e-4;
     const auto area = [&](double angle) {

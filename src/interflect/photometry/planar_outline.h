@@ -17,9 +17,9 @@ struct PlanarOutline {
     Imath::Box2d box;
 
     Imath::V3d point(const Imath::V2d& p) const { return origin + u * p.x + v * p.y; }
-    /// Includes the faces' borders.
+    /// Includes borders.
     bool holds(const Imath::V2d& p) const;
-    /// Returns the outlines of the area and its holes. O(edges^2).
+    /// Includes holes. O(edges^2).
     std::vector<PlanarSegment> border() const;
 };
 

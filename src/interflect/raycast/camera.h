@@ -5,7 +5,7 @@
 
 namespace interflect::detail {
 
-/// Rays through square pixels: from the eye with `fov` over the image's height, or parallel for a view with `extent`.
+/// Rays through square pixels: perspective, or parallel for a view with `extent`.
 class Camera {
   public:
     /// @param origin  Scene::origin; rays are relative to it.
@@ -13,7 +13,7 @@ class Camera {
     ///     outside 1 ... most_image_pixels.
     Camera(const View& view, int width, int height, const Imath::V3d& origin);
 
-    /// @param x, y  From the top left corner [pixels]; the first pixel's centre is (0.5, 0.5).
+    /// @param x, y  From the top left corner [pixels].
     Ray ray(float x, float y) const {
         const V3f place = corner_ + x * pixel_right_ + y * pixel_down_;
         return is_orthographic_ ? Ray{eye_ + place, forward_} : Ray{eye_, place.normalized()};
@@ -23,7 +23,7 @@ class Camera {
     bool is_orthographic_;
     V3f eye_;                       // relative to the scene's origin [m]
     V3f forward_;                   // unit length
-    V3f corner_;                    // from the eye to the top left corner, at distance 1, or 0 if orthographic
+    V3f corner_;                    // from the eye to the top left corner, at distance 1 (orthographic: 0)
     V3f pixel_right_, pixel_down_;  // one pixel on that plane
 };
 

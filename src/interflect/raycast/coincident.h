@@ -16,8 +16,7 @@ namespace interflect::detail {
 /// Resolves hits on coincident faces, where a ray tracer reports whichever face it tests first. Faces answer (are
 /// reported) by priority: smaller flat surface (flat_surfaces.h), then emitters, then scene order. One-sided faces
 /// answer only rays to their front. Faces, identified by their first patches, coincide if they have the same corners or
-/// are overlapping_faces(). Memory: 1 bit per patch; with coincident faces 5, plus 96 bytes per priority face and 28
-/// per pair.
+/// are overlapping_faces().
 class CoincidentFaces {
   public:
     /// @param scene      Valid (scene_faults), with convex quadrilaterals.
@@ -43,7 +42,7 @@ class CoincidentFaces {
 
     bool has_covered_patches() const { return !uncovered_share_.empty(); }
 
-    /// Largest pair_tolerance() [m] per overlapping face, sorted by face.
+    /// Largest pair_tolerance() [m], sorted by face.
     struct Reach {
         std::uint32_t face;
         float tolerance;
@@ -82,7 +81,7 @@ class CoincidentFaces {
     std::vector<std::size_t> first_{0};         // start of each overlapped face in overlaps_, and the end
     // Per overlapped face: tree of indices into priority_faces_.
     std::vector<Boxed> overlaps_;
-    RankedBits covered_;  // patches covered completely or in part
+    RankedBits covered_;  // completely or in part
     std::vector<float> uncovered_share_;
     std::vector<Reach> reaches_;
 };

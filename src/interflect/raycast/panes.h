@@ -24,7 +24,7 @@ class Panes {
 
     struct HitBehind {
         std::uint32_t ray;
-        Rgb transmittance;  ///< Product over all panes before the hit.
+        Rgb transmittance;  ///< Product over panes before the hit.
         Hit hit;            ///< Distance from the ray's origin. Includes escaped rays.
     };
     /// Finds all hits behind panes, sorted by ray, then depth.

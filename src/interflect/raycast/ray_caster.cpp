@@ -28,7 +28,7 @@ constexpr auto relative_tolerance = static_cast<float>(relative_planarity);
 
 constexpr float offset_over_tolerance = 4;
 
-/// Maximum distance of a hit from its face, relative to its largest coordinate plus the ray's length (16 roundings).
+/// Relative to the face's largest coordinate plus the ray's length (16 roundings).
 constexpr float relative_hit_error = 0x1p-20f;
 
 float largest_coordinate(const V3f& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }

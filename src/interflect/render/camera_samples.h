@@ -24,7 +24,7 @@ struct PixelOffset {
     float x = 0, y = 0;
 };
 
-/// Rays and hits of one pixel, ordered by sample.
+/// Rays and hits of a pixel, ordered by sample.
 struct PixelSamples {
     std::size_t pixel = 0;  ///< y * width + x.
     std::span<const Ray> rays;
@@ -54,7 +54,7 @@ inline std::uint32_t leaf_of_hit(const ElementForest& forest, const Ray& ray, co
     return forest.leaf_at(hit.patch, parameters_of_hit(forest, ray, hit));
 }
 
-/// @throws InputError with the name of the values unless each element has one.
+/// @throws InputError naming `what` unless each element has a value.
 void require_values_of_elements(const ElementForest& forest, std::size_t value_count, const char* what);
 
 }  // namespace interflect::detail

@@ -81,8 +81,7 @@ std::size_t noisy_kinds(const PictureLayers& layers) { return layers.is_indirect
 /// Distance between pixels, at least 1.
 float distance_of(int dx, int dy) { return std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy))); }
 
-/// Weight of pixel k in the neighbourhood of pixel i: 1 in its tangent plane with equal normals, 0 without a surface.
-/// @param steps  distance_of() the two.
+/// Returns the weight of pixel k for pixel i: 1 in its tangent plane with equal normals, 0 without a surface.
 float shape_weight(const PictureLayers& layers, std::size_t i, std::size_t k, float steps) {
     const Rgb turn = layers.normal.pixels[i] - layers.normal.pixels[k];
     const Rgb step = layers.position.pixels[k] - layers.position.pixels[i];
@@ -113,7 +112,7 @@ class Band {
                 for (auto& channel : sums) channel.assign(shape_.size(), 0.0f);
     }
 
-    /// @param irradiance  Receives the filtered light, over pi.
+    /// @param irradiance  Receives the result, over pi.
     void filter(Image& irradiance) {
         for (int dy = -window_radius; dy <= window_radius; ++dy)
             for (int dx = -window_radius; dx <= window_radius; ++dx) {
@@ -237,8 +236,7 @@ Rgb removed_around(const PictureLayers& layers, const NoisyLight& noisy, const I
     return square > variance ? removed * ((1 - variance / square) / weight) : Rgb(0);
 }
 
-/// Returns the filtered light of a pixel, corrected by removed_around(), because the filter blurs variations below the
-/// noise.
+/// Adds removed_around(), because the filter blurs variations below the noise.
 Rgb result_at(const PictureLayers& layers, const NoisyLight& noisy, const Image& filtered, int x, int y) {
     const std::size_t i = pixel_at(x, y, filtered.width);
     Rgb light = layers.emitted.pixels[i];

@@ -19,8 +19,8 @@ using Corners = std::array<std::uint32_t, 4>;
 
 std::uint32_t corner_count(const Corners& corners) { return corners[3] == none ? 3 : 4; }
 
-/// Corners of each child as points of the parent: its corners 0 to 3, the midpoint 4 + c of the edge that starts at
-/// corner c, and the centre 8.
+/// Corners of each child as points of the parent: corners 0 to 3, the midpoint 4 + c of the edge that starts at corner
+/// c, the centre 8.
 using Places = std::array<std::array<std::uint32_t, 4>, 4>;
 constexpr Places quadrilateral_children{{{0, 4, 8, 7}, {4, 1, 5, 8}, {7, 8, 6, 3}, {8, 5, 2, 6}}};
 constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};
@@ -93,7 +93,7 @@ class VertexBuilder {
         const std::uint32_t a = corners[c], b = corners[(c + 1) % corner_count(corners)];
         return {std::min(a, b), std::max(a, b)};
     }
-    /// Edges of patches use their group: both sides of a crease can have the same ends, but not the same midpoint.
+    /// Edges of patches use their group: edges at a crease can have the same ends, but not the same midpoint.
     std::uint64_t edge_key(std::uint32_t e, std::uint32_t c) const {
         const auto key = [](std::uint64_t low, std::uint64_t high) { return high << 32 | low; };
         if (e < forest_.patch_count()) return key(surfaces_.edges.group[4 * e + c], surfaces_.edges.group[4 * e + c]);
@@ -127,7 +127,7 @@ class VertexBuilder {
         for (std::uint32_t c = 0; c < corner_count(corners_[leaf]); ++c)
             if (const std::uint32_t middle = middles_.find(edge_key(leaf, c)); middle != none) hangs[middle] = true;
     }
-    /// Requires the final value of `hangs` for all vertices before v.
+    /// Requires final values of `hangs` before v.
     bool lies_on_half_of_a_leafs_edge(std::uint32_t v, const std::vector<bool>& hangs) const {
         const auto [end, later_end] = edges_of_[v];
         return later_end != none && hangs[later_end] &&
@@ -142,7 +142,7 @@ class VertexBuilder {
         float size() const { return at[1] - at[0]; }
     };
 
-    /// Adds the leaf edges that overlap [from, to] of the patch's edge. `e` covers [low, high] of it.
+    /// Collects leaf edges that overlap [from, to] of the patch's edge. `e` covers [low, high] of it.
     void collect_leaf_edges(std::uint32_t e, std::uint32_t c, float low, float high, float from, float to,
                             std::vector<LeafEdge>& found) const {
         if (high <= from || low >= to) return;
@@ -186,7 +186,7 @@ class VertexBuilder {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
         float fraction, angle;
-        float edge_length;  // of the leaf edge from ends[0] to ends[1] [m]
+        float edge_length;  // from ends[0] to ends[1] [m]
     };
 
     static void add_seam_vertices(const SmoothSurfaces::Seam& seam, const SeamSides& sides, std::size_t k,
@@ -225,7 +225,7 @@ class VertexBuilder {
                     }
             }
         }
-        // By decreasing length: the ends of an edge can hang only on longer edges, so they precede the vertices on it.
+        // The ends of an edge can hang only on longer edges, so they precede the vertices on it.
         std::stable_sort(found.begin(), found.end(),
                          [](const SeamVertex& a, const SeamVertex& b) { return a.edge_length > b.edge_length; });
         constexpr float clearly_longer = 1.01f;
@@ -240,7 +240,7 @@ class VertexBuilder {
     const ElementForest& forest_;
     const SmoothSurfaces surfaces_;
     std::vector<Corners> corners_;
-    std::vector<Ends> edges_of_;  // [vertex] ends of the edge that it halves, or no_edge
+    std::vector<Ends> edges_of_;  // [vertex] ends of the halved edge, or no_edge
     KeyTable middles_;
 };
 

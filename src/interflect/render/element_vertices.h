@@ -22,25 +22,25 @@ class ElementVertices {
         std::array<std::uint32_t, 2> ends;
         float fraction = 0.5f;  // 0 at ends[0], 1 at ends[1]
     };
-    /// Vertex on a seam (SmoothSurfaces::Seam), inside a leaf edge of the other side. That edge is not clearly longer
-    /// than the leaf edges at the vertex, so the vertex averages both sides.
+    /// Vertex on a seam (SmoothSurfaces::Seam), inside a leaf edge of the other side that is not clearly longer than
+    /// its own. It averages both sides.
     struct Coupling {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
         float fraction;
-        float angle;  // weight of the other side's value: its angle at the vertex [rad]
+        float angle;  // weight of the other side's value [rad]
     };
 
     /// @throws InputError for a forest of another scene.
     ElementVertices(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options = {});
 
     std::uint32_t count() const { return count_; }
-    /// Returns the vertices at an element's corners: (0,0) (1,0) (1,1) (0,1) of its Cell; on triangles (0,0) (1,0)
-    /// (0,1), then `none`.
+    /// Returns the vertices at (0,0) (1,0) (1,1) (0,1) of an element's Cell; on triangles (0,0) (1,0) (0,1), then
+    /// `none`.
     const std::array<std::uint32_t, 4>& corners(std::uint32_t e) const { return corners_[e]; }
-    /// If an end of an edge hangs too, it precedes the vertex on that edge.
+    /// The ends of an edge precede the vertices that hang on it.
     const std::vector<Hanging>& hanging() const { return hanging_; }
-    /// Couplings interpolate the values that vertices have before any coupling.
+    /// Couplings interpolate the values before any coupling.
     const std::vector<Coupling>& couplings() const { return couplings_; }
     const SmoothNormals& normals() const { return normals_; }
 

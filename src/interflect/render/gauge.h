@@ -9,16 +9,16 @@
 
 namespace interflect::detail {
 
-/// Receiver of irradiance: a small plane, or the mean over an arc of normals.
+/// A small plane, or the mean over an arc of normals.
 struct Gauge {
     V3f position{0, 0, 0};                 // relative to the scene's origin [m]
     V3f normal{0, 0, 1};                   // middle of the arc
     V3f tangent{0, 0, 0};                  // perpendicular, in the arc's plane; both have unit length
     float half_arc = 0;                    // [rad]
     float offset = 0;                      // of ray origins along the normal [m]
-    std::uint32_t patch = none;            // patch below the gauge; none for a point in space
-    V3f side_u{0, 0, 0}, side_v{0, 0, 0};  // parallelogram around `position`, from which rays start on the patch [m]
-    float inset = 0;                       // least distance of their starts from the patch's border [m]
+    std::uint32_t patch = none;            // below the gauge; `none` in space
+    V3f side_u{0, 0, 0}, side_v{0, 0, 0};  // parallelogram around `position` on the patch, from which rays start [m]
+    float inset = 0;                       // least distance of ray starts from the patch's border [m]
 
     float spacing() const { return std::max(side_u.length(), side_v.length()); }
     /// @param u  In [0, 1].

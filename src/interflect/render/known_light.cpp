@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Negative irradiance (noise) is never sampled.
+/// Negative irradiance (noise) is not sampled.
 std::vector<float> received_power(const ElementForest& forest, std::span<const Rgb> irradiance) {
     std::vector<float> power(forest.size(), 0.0f);
     for (std::uint32_t e = 0; e < forest.size(); ++e)

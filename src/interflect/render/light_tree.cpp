@@ -118,7 +118,7 @@ LightTree::LightTree(std::vector<Light> lights, std::size_t index_count) : leaf_
 struct LightTree::Split {
     int axis = 0;
     float low = 0, scale = 0;
-    std::size_t first_above = 0;  // 0: all centres coincide
+    std::size_t first_above = 0;  // 0: coincident centres
     float cost = std::numeric_limits<float>::infinity();
 
     std::size_t bin_of(const V3f& centre) const {

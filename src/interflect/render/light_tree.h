@@ -22,7 +22,7 @@ class LightTree {
         V3f low, high;
         void extend(const Box& other);
     };
-    /// Light whose intensity is at most power / pi times the cosine of the angle outside its cone.
+    /// Intensity is at most power / pi times the cosine of the angle outside the cone.
     struct Light {
         std::uint32_t index;
         float power;  ///< Sum of channels [W or lm].
@@ -38,8 +38,7 @@ class LightTree {
     /// @param index_count  Greater than every index.
     LightTree(std::vector<Light> lights, std::size_t index_count);
 
-    /// Samples a light for point x on a surface with normal n.
-    /// @param uniform  In (0, 1).
+    /// Samples a light for point x on a surface with normal n. @param uniform  In (0, 1).
     Choice choose(const V3f& x, const V3f& n, double uniform) const;
 
     /// Returns the probability of choose(); 0 for an index without light.
@@ -74,7 +73,7 @@ class LightTree {
 std::vector<LightTree::Light> patch_lights(const Scene& scene, std::span<const PatchGeometry> geometry,
                                            std::span<const float> power);
 
-/// Returns the power per patch, sum of channels [W or lm]. Adds 1% of a texture's largest texel, which keeps the power
+/// Returns the power per patch, sum of channels [W or lm], plus 1% of a texture's largest texel, which keeps it
 /// positive.
 std::vector<float> emitted_powers(const Scene& scene, std::span<const PatchGeometry> geometry);
 

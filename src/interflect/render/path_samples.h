@@ -32,10 +32,9 @@ struct SkySample {
 };
 
 /// Returns Sobol' points at a path's first vertices, then pseudo-random numbers.
-/// @param vertex  1 is the first vertex after the camera.
-/// @param index   Path in its batch.
+/// @param vertex  1 is the first vertex after the camera. @param index  Of the path in its batch.
 VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
-/// @param index  Shadow ray in its batch at this vertex, also below.
+/// @param index  Of the shadow ray in its batch at this vertex, also below.
 LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
 SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);

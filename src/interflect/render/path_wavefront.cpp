@@ -22,8 +22,8 @@ constexpr float roulette_threshold = 0.5f;
 /// Squared error times time in maze, office-graz and office2 (16 samples, filtered; one ray: 1): two rays 0.75, 0.82,
 /// 0.66; four rays 0.63, 0.76, 0.51.
 constexpr std::uint32_t gathered_shadow_rays = 4;
-/// The same in hybrid shading. Error of pixels after filtering in office-graz, 16 samples: one ray 8.8%, two 6.5%, four
-/// 5.5% in 1.1 and 1.4 times the time of one.
+/// For hybrid shading: error of filtered pixels in office-graz, 16 samples: one ray 8.8%, two 6.5%, four 5.5% in 1.1
+/// and 1.4 times the time of one.
 constexpr std::uint32_t hybrid_shadow_rays = 4;
 /// In hybrid shading, one of this many paths also samples emitters and skies by its direction, best near emitters.
 constexpr std::uint32_t paths_per_direction = 4;
@@ -215,7 +215,7 @@ bool PathWavefront::leave(Ray& ray, Path& path, const V3f& middle) {
         const std::uint32_t index = point * count + k;
         const LightSample sample = light_sample(key, vertex_, index);
         if (samples_emitters) connect_to_patch(ray.origin, path, sample);
-        // Reflected paths cannot hit luminaires other than skies.
+        // Reflected paths hit no luminaires but skies.
         if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
         if (samples_emitters && s_.skies.can_sample()) connect_to_sky(ray.origin, path, index);
     }

@@ -47,13 +47,13 @@ struct PathScene {
     Panes panes;
     bool splits;                                    // at panes or mirrors
     const UnoccludedLight& unoccluded;              // at the first vertex, with an indirect field
-    const KnownLight* known = nullptr;              // ends paths; null: only Russian roulette ends them
-    const SmoothNormals* smooth_normals = nullptr;  // of the surfaces that the camera sees; null: flat patches
+    const KnownLight* known = nullptr;              // ends paths; null: only Russian roulette does
+    const SmoothNormals* smooth_normals = nullptr;  // of visible surfaces; null: flat patches
     const IndirectField* indirect_field = nullptr;  // replaces reflected paths at the first vertex
-    bool is_indirect_only = false;                  // without light that is reflected once
-    bool finds_points = false;                      // paths end at the first vertex, see PathWavefront::points()
+    bool is_indirect_only = false;                  // omits light that is reflected once
+    bool finds_points = false;                      // paths end at the first vertex
 
-    /// Whether some direct light is not exact, but also found by directions of paths.
+    /// Whether some direct light is not exact.
     bool directions_find_light() const {
         return !unoccluded.has_patches() || skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
     }
@@ -117,9 +117,9 @@ class PathWavefront {
         std::uint32_t index;         // in light_
         V3f normal;                  // of the surface that the ray left
         std::uint32_t patch = none;  // that surface
-        float travelled = 0;  // from that surface or the camera to the ray's origin, behind panes or in mirrors [m]
+        float travelled = 0;         // from that surface or the camera to the ray's origin [m]
         bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
-        std::uint32_t place = none;  // in seen_: ends at the next vertex, because its indirect light is known
+        std::uint32_t place = none;  // in seen_: ends at the next vertex
     };
     /// Points of a batch.
     struct Sequence {
@@ -130,7 +130,7 @@ class PathWavefront {
         Rgb emitted{0, 0, 0}, direct{0, 0, 0}, indirect{0, 0, 0};
         FirstHit first{};
     };
-    /// Irradiance by the sources of a kind, without occlusion: exact, and estimated by shadow rays.
+    /// Irradiance by the sources of a kind: exact without occlusion, and sampled by shadow rays.
     struct ExactLight {
         Rgb exact{0, 0, 0};
         // Contributions of all shadow rays, and of unoccluded ones, each in two halves.
@@ -138,9 +138,9 @@ class PathWavefront {
         std::uint32_t next_half = 0;
         Rgb result() const;
     };
-    /// Place that the camera sees in a pixel: light of a patch, which all its paths there share.
+    /// Surface point of a pixel: its light is computed once for all paths to the patch.
     struct SeenPlace {
-        std::uint32_t batch = none, patch = none, index = 0;  // index: in light_, of its first path
+        std::uint32_t batch = none, patch = none, index = 0;  // index: in light_
         V3f normal{0, 0, 0};
         Rgb throughput{0, 0, 0};      // sum over the paths
         std::optional<Rgb> indirect;  // irradiance
@@ -150,7 +150,7 @@ class PathWavefront {
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;              // to the luminaire [m]
+        float distance;              // [m]
         std::uint32_t bounces;       // reflections of its light
         std::uint32_t place = none;  // in seen_; then `radiance` only estimates the visible share of exact light
         std::uint32_t half = 0;      // of that estimate
@@ -173,10 +173,10 @@ class PathWavefront {
     /// Connects `ray.origin` to the lights and samples a direction. Returns as interact().
     /// @param middle  Of the pixel's or texel's part of the surface.
     bool leave(Ray& ray, Path& path, const V3f& middle);
-    /// Returns the index in seen_ of the first vertex, added if new; none without indirect light.
+    /// Returns the index in seen_, added if new; none without indirect light.
     std::uint32_t seen_place(const V3f& x, const Path& path);
     void add_light_of_seen_places();
-    /// Adds the connection to a place, which then estimates the visible share of exact light.
+    /// Connects a place, to estimate the visible share of its exact light.
     void estimate_visible_share(Connection& connection, const Path& path, ExactLight SeenPlace::*kind);
     void add_sky(const Ray& ray, const Path& path);
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);

@@ -22,14 +22,14 @@ struct Quantity {
 };
 
 struct QuantityPicture {
-    Image values;  ///< Mean over visible surfaces, in all channels; 0 without surfaces.
+    Image values;  ///< Means over visible surfaces; 0 without surfaces.
     Image shown;   ///< False colours; escaped rays are black.
     ColourScale scale;
     std::int64_t non_finite_pixels = 0;  ///< In either image.
     bool interrupted = false;            ///< The remaining pixels are 0.
 };
 
-/// Draws leaves in false colours, without shading.
+/// Draws leaves without shading.
 /// @throws InputError as render() does.
 QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
                                 const View& view, const Quantity& quantity, const CameraSampling& sampling,

@@ -7,8 +7,8 @@
 
 namespace interflect::detail {
 
-// render() and gather() for any irradiance of elements; InputError also for inconsistent sizes.
-// @param irradiance  H per element, in the unit of exitance; only leaves are used.
+// render() and gather() for any irradiance H per element [unit of exitance]; only leaves are used. InputError also for
+// inconsistent sizes.
 
 Rendering render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
                  std::span<const Rgb> irradiance, const RenderOptions& options = {}, const Monitor& monitor = {});

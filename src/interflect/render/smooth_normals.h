@@ -13,23 +13,18 @@
 
 namespace interflect::detail {
 
-/// Shading of curved surfaces by Scene::normals. To first order, their irradiance is
-///
-///     H(x) = H_solved(x) + G (n(x) - n_mean)
-///
-/// with n(x) interpolated from corner normals and n_mean its mean. G, the gradient of irradiance by normal, is a
-/// least-squares fit to the steps of irradiance across edges. The correction is clamped to the largest step. Patches
-/// without normals at all corners stay flat.
+/// Shading of curved surfaces by Scene::normals: H(x) = H_solved(x) + G (n(x) - n_mean) (docs/method.md, Curved
+/// surfaces). The correction is clamped to the largest step of irradiance across edges.
 class SmoothNormals {
   public:
     SmoothNormals() = default;
     SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces);
 
-    /// Adds G (n(x) - n_mean) at the centres of leaves of curved patches; clamps to >= 0.
+    /// Corrects the centres of leaves; clamps to >= 0.
     /// @param irradiance  Per element; only leaves change.
     void apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const;
 
-    /// Returns the unit normal at a point; the patch's own normal if flat.
+    /// Returns the unit normal at a point; the patch's own normal unless all corners have normals.
     /// @param geometry  Of the patch.
     V3f at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const;
 

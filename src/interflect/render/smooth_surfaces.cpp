@@ -38,7 +38,7 @@ float weld_tolerance(const Scene& scene) {
     return weld_share * largest;
 }
 
-/// Cells are four tolerances wide, so most searches visit one.
+/// Cells are four tolerances wide: most searches visit one.
 class VertexGrid {
   public:
     explicit VertexGrid(const Scene& scene)
@@ -161,7 +161,7 @@ class CreaseTest {
     const float least_cosine_;
     // Readers round normals by 0.2 degrees.
     const float cosine_of_equal_ = cosine_of(1);
-    // Some programs average normals across room corners, where light is not smooth.
+    // Some programs average normals across room corners.
     const float least_cosine_of_smooth_ = cosine_of(60);
 };
 

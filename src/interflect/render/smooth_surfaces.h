@@ -15,8 +15,8 @@ struct SmoothSurfaces {
         std::vector<std::uint32_t> group;
         std::uint32_t count = 0;
     };
-    /// Common part of two edges across which their patches continue. Parameters are in [0, 1] in each patch's vertex
-    /// order; from[0] and to[1] coincide.
+    /// Common part of two edges across which their patches continue. Parameters follow each patch's vertex order, in
+    /// [0, 1]; from[0] and to[1] coincide.
     struct Seam {
         std::array<std::uint32_t, 2> edge;  ///< 4 patch + first corner.
         std::array<float, 2> from, to;      ///< from < to.
@@ -28,9 +28,9 @@ struct SmoothSurfaces {
 /// Returns unit normals towards the lit sides.
 std::vector<V3f> patch_normals(const Scene& scene);
 
-/// Joins patches of equal material and orientation across shared edges without a crease. At a crease, scene normals
-/// differ or, without them, patch normals differ by more than SmoothingOptions::crease_angle. Pieces of a cut surface
-/// (Patch::surface) also join across seams. Contacts (Scene::contacts) and other T-junctions are borders.
+/// Joins patches of equal material and orientation across shared edges without a crease: equal scene normals or,
+/// without them, patch normals within SmoothingOptions::crease_angle. Pieces of a cut surface (Patch::surface) also
+/// join across seams. Contacts (Scene::contacts) and other T-junctions are borders.
 SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options = {});
 
 }  // namespace interflect::detail

@@ -16,7 +16,7 @@ constexpr float pi = std::numbers::pi_v<float>;
 /// Beyond this number, the sum would take longer than the shadow rays.
 constexpr std::size_t most_sources = 64;
 
-/// Angle between unit vectors, times the component along n of the unit normal of their plane.
+/// Angle between unit vectors, times the component along n of their plane's unit normal.
 float edge_integral(const V3f& a, const V3f& b, const V3f& n) {
     const V3f normal = a.cross(b);
     const float sine = normal.length();
@@ -26,7 +26,7 @@ float edge_integral(const V3f& a, const V3f& b, const V3f& n) {
 }  // namespace
 
 float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f& n) {
-    std::array<V3f, 5> above;  // a plane cuts off corners of a quadrilateral and adds at most one
+    std::array<V3f, 5> above;  // clipping adds at most one corner
     std::size_t count = 0;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const V3f a = vertices[i] - x, b = vertices[(i + 1) % vertices.size()] - x;

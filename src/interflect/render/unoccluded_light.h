@@ -10,19 +10,19 @@
 
 namespace interflect::detail {
 
-/// Exact irradiance by light sources without occluders. Shadow rays then estimate only its visible share. Immutable,
-/// thread-safe. Cost: linear in the number of sources, hence only for few.
+/// Exact irradiance without occluders; shadow rays then estimate only its visible share. Immutable, thread-safe. Cost:
+/// linear in the number of sources, hence only for few.
 class UnoccludedLight {
   public:
     /// Arguments must outlive this object.
     UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry);
 
-    /// Whether all emitting patches, or all luminaires that are not skies, are few and have a closed form.
+    /// Whether all emitting patches, or all luminaires but skies, are few and have a closed form.
     bool has_patches() const { return has_patches_; }
     bool has_luminaires() const { return has_luminaires_; }
 
     /// Returns the irradiance [as H] at x on a surface with normal n, by Lambert's formula for polygons.
-    /// @param own  The patch below x, which does not count; may be none.
+    /// @param own  The patch below x, which does not count; may be `none`.
     Rgb by_patches(const V3f& x, const V3f& n, std::uint32_t own) const;
     /// Measured luminaires: the mean over 16 points of the opening.
     Rgb by_luminaires(const V3f& x, const V3f& n) const;
@@ -34,9 +34,8 @@ class UnoccludedLight {
     bool has_patches_ = false, has_luminaires_ = false;
 };
 
-/// Returns the irradiance at x on a surface with normal n, by the part above the surface of a convex polygon of
-/// radiance
-/// 1. Its vertices may be in either order.
+/// Returns the irradiance at x on a surface with normal n by the part above it of a convex polygon of unit radiance.
+/// The vertices may be in either order.
 float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f& n);
 
 }  // namespace interflect::detail

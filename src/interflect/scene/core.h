@@ -15,7 +15,7 @@ struct FaceExtent {
     double size = 0;             ///< Diagonal of the bounding box [m]; > 0.
 };
 
-/// Every k-th face, with k a power of two.
+/// Every k-th face, k a power of two.
 class FaceSample {
   public:
     static constexpr std::size_t capacity = 1 << 13;
@@ -39,8 +39,8 @@ struct Core {
 /// Returns zeros without faces.
 Core core_of(std::span<const FaceExtent> faces);
 
-/// Returns an origin that preserves float precision: 0 if the middle is within 8 reaches, which costs at most 3 bits,
-/// otherwise the middle in steps of a power of two, so exact coordinates stay exact.
+/// Preserves float precision: 0 if the middle is within 8 reaches, which costs at most 3 bits, otherwise the middle in
+/// steps of a power of two, so exact coordinates stay exact.
 Imath::V3d origin_for(const Core& core);
 
 /// Bounds the faces with centres within 64 reaches of the middle [m], relative to the scene's origin.

@@ -8,10 +8,10 @@
 
 namespace interflect::detail {
 
-/// Returns each image once, in the order of the luminaires.
+/// Returns each image once, in luminaire order.
 std::vector<std::shared_ptr<const Texture>> environment_maps(const Scene& scene);
 
-/// Describes a fault in the number of skies or texels; empty if valid.
+/// Returns "" if the numbers of skies and texels are valid.
 std::string sky_count_fault(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -78,7 +78,7 @@ void scale(Luminaire& luminaire, float factor) {
 
 bool matches(std::string_view pattern, std::string_view name) {
     std::size_t p = 0, n = 0;
-    std::optional<std::size_t> star, resume;  // the last '*', and the text position after its match
+    std::optional<std::size_t> star, resume;  // the last '*', and the text after its match
     while (n < name.size()) {
         if (p < pattern.size() && pattern[p] == '*') {
             star = p++, resume = n;

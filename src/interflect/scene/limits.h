@@ -35,7 +35,6 @@ std::string exitance_fault(const Rgb& exitance);
 /// @param strongest  brightest_source(scene).
 std::string brightness_fault(float strongest);
 
-/// Returns the maximum of each texture and channel.
 std::vector<Rgb> largest_texels(const Scene& scene);
 
 /// @param largest  largest_texels().
@@ -48,8 +47,8 @@ inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<
 /// @param largest  largest_texels() of `textures`.
 Rgb largest_sum(const Material& material, const std::vector<Texture>& textures, const std::vector<Rgb>& largest);
 
-/// Returns the largest channel of textured exitances and luminaire ratings; 0 without sources.
-/// @param scene  With valid texture indices.
+/// Returns the largest channel of textured exitances and luminaire ratings; 0 without sources. Requires valid texture
+/// indices.
 float brightest_source(const Scene& scene);
 
 }  // namespace interflect::detail

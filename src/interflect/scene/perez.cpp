@@ -1,6 +1,4 @@
-// Sky: Perez et al., "All-weather model for sky luminance distribution", Solar Energy 50 (1993).
-// Efficacies: Perez et al., "Modeling daylight availability and irradiance components from direct and global
-// irradiance", Solar Energy 44 (1990).
+// Sky: Perez et al., Solar Energy 50 (1993). Efficacies: Perez et al., Solar Energy 44 (1990).
 
 #include <fmt/format.h>
 

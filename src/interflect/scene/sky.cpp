@@ -54,22 +54,22 @@ double SkyModel::horizontal_integral(double sun_cosine) const {
 
 SkyModel cie_standard_sky(int type) {
     constexpr std::array<SkyModel, 16> types = {{
-        {4, -0.7f, 0, -1, 0},            // overcast, steep gradation
-        {4, -0.7f, 2, -1.5f, 0.15f},     // the same, brighter towards the sun
-        {1.1f, -0.8f, 0, -1, 0},         // overcast, moderate gradation
-        {1.1f, -0.8f, 2, -1.5f, 0.15f},  // the same, brighter towards the sun
-        {0, -1, 0, -1, 0},               // uniform
-        {0, -1, 2, -1.5f, 0.15f},        // partly cloudy, uniform gradation
-        {0, -1, 5, -2.5f, 0.3f},         // the same, with a brighter circumsolar region
-        {0, -1, 10, -3, 0.45f},          // the same, with a distinct solar corona
-        {-1, -0.55f, 2, -1.5f, 0.15f},   // partly cloudy, with the sun behind clouds
-        {-1, -0.55f, 5, -2.5f, 0.3f},    // the same, with a brighter circumsolar region
-        {-1, -0.55f, 10, -3, 0.45f},     // white-blue, with a distinct solar corona
-        {-1, -0.32f, 10, -3, 0.45f},     // clear, low turbidity
-        {-1, -0.32f, 16, -3, 0.3f},      // clear, polluted
-        {-1, -0.15f, 16, -3, 0.3f},      // cloudless, turbid, with a broad solar corona
-        {-1, -0.15f, 24, -2.8f, 0.15f},  // white-blue, turbid, with a broad solar corona
-        {0, -1, 0, -1, 0, 2},            // traditional overcast
+        {4, -0.7f, 0, -1, 0},  // 1: steep overcast
+        {4, -0.7f, 2, -1.5f, 0.15f},
+        {1.1f, -0.8f, 0, -1, 0},
+        {1.1f, -0.8f, 2, -1.5f, 0.15f},
+        {0, -1, 0, -1, 0},  // 5: uniform
+        {0, -1, 2, -1.5f, 0.15f},
+        {0, -1, 5, -2.5f, 0.3f},  // 7: partly cloudy
+        {0, -1, 10, -3, 0.45f},
+        {-1, -0.55f, 2, -1.5f, 0.15f},
+        {-1, -0.55f, 5, -2.5f, 0.3f},
+        {-1, -0.55f, 10, -3, 0.45f},
+        {-1, -0.32f, 10, -3, 0.45f},  // 12: clear, low turbidity
+        {-1, -0.32f, 16, -3, 0.3f},
+        {-1, -0.15f, 16, -3, 0.3f},
+        {-1, -0.15f, 24, -2.8f, 0.15f},
+        {0, -1, 0, -1, 0, 2},  // 16: traditional overcast
     }};
     if (type < 1 || type > static_cast<int>(types.size()))
         throw InputError(fmt::format("there is no CIE sky of type {}; expected 1 to {}", type, types.size()));

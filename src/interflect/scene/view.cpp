@@ -64,7 +64,7 @@ const View& find_view(const Scene& scene, const std::string& name) {
 }
 
 View overview(const Scene& scene) {
-    constexpr float margin = 0.06f;  // of the box; keeps the camera out of walls
+    constexpr float margin = 0.06f;  // of the box; clear of walls
     constexpr float wide = 60;       // [degrees]
     const Imath::Box3f box = core_bounds(scene);
     View view;

@@ -6,11 +6,11 @@
 
 namespace interflect::detail {
 
-/// Describes a fault; empty if valid. Eye and look-at must be within farthest_coordinate and define a direction; `up`
-/// must not be 0 or along it; fov in (0, 180); extent in [0, farthest_coordinate].
+/// Describes a fault; "" if valid. Eye and look-at must be within farthest_coordinate and define a direction; `up` must
+/// not be 0 or along it; fov in (0, 180); extent in [0, farthest_coordinate].
 std::string view_fault(const View& view);
 
-/// @throws InputError that lists the available views.
+/// @throws InputError listing the available views.
 const View& find_view(const Scene& scene, const std::string& name);
 
 /// Returns the default view from inside an upper corner of core_bounds() to its middle.

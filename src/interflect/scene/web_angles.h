@@ -22,7 +22,7 @@ struct WebAxes {
     }
 };
 
-/// Integrals over [a, b] [radians] of sin t times a linear function that is 1 at one end and 0 at the other.
+/// Integrals over [a, b] [rad] of sin t times a linear function that is 1 at one end and 0 at the other.
 struct BandWeights {
     double at_a, at_b;
     BandWeights(double a, double b) {

@@ -16,7 +16,6 @@
 
 namespace interflect::detail {
 
-/// Scene, method and state of a Solver.
 struct Run {
     /// @param caster  Of this scene. @throws InputError as Solver does.
     Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster, const SolveOptions& options);

@@ -51,8 +51,7 @@ struct PlanOptions {
     std::uint64_t seed = 1;
 };
 
-/// Creates a nearly square grid of rooms, connected by a random spanning tree of doorways and `extra_doors`. Opposite
-/// doorways of a room are aligned or do not overlap.
+/// Creates a nearly square grid of rooms, connected by a random spanning tree of doorways and `extra_doors`.
 FloorPlan make_floor_plan(const PlanOptions& options);
 
 }  // namespace interflect::detail::building

@@ -10,10 +10,9 @@ namespace interflect::detail::building {
 
 namespace {
 
-/// Corners: low and high end at the floor, then high and low end at the top.
+/// Low and high end at the floor, then high and low end at the top.
 using DoorFrame = std::array<std::uint32_t, 4>;
 
-/// Returns the ends and doorway edges of two opposite walls, ascending.
 std::vector<float> dividing_lines(const FloorPlan& plan, const Room& room, Side side) {
     const Interval& extent = room.along(side);
     std::vector<float> lines{extent.low, extent.high};

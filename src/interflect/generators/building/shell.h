@@ -12,8 +12,7 @@ struct Finish {
 };
 
 /// Adds rooms and the insides of doorways as one closed surface of inward faces without T-vertices, as objects
-/// "room-0.shell" and so on. A doorway belongs to its first room.
-/// @param finishes  One per room.
+/// "room-0.shell" and so on. A doorway belongs to its first room. @param finishes  One per room.
 void add_shell(Scene& scene, const FloorPlan& plan, std::span<const Finish> finishes);
 
 }  // namespace interflect::detail::building

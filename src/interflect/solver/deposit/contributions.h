@@ -46,7 +46,7 @@ class ContributionSums {
     void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
         for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
     }
-    /// Frees collected memory, unless the forest is small: clearing new pages is slower than the additions.
+    /// Frees collected memory. Small forests keep it: clearing new pages is slower than the additions.
     void release(std::size_t begin, std::size_t end) {
         if (elements_ <= most_kept) return;
         sums_.release(begin, end);
@@ -57,8 +57,8 @@ class ContributionSums {
       public:
         explicit ScatterBuffer(ContributionSums& sums) : sums_(&sums) {}
 
-        /// @param contribution  Payload of one ray. @param of_groups  Its power by light group; empty: 0.
-        /// @return Index of the source.
+        /// Returns the index of the source.
+        /// @param contribution  Of one ray. @param of_groups  Its power by light group; empty: 0.
         std::uint32_t add_source(const Contribution& contribution, std::span<const std::int64_t> of_groups = {}) {
             contributions_.push_back(contribution);
             group_contributions_.insert(group_contributions_.end(), of_groups.begin(), of_groups.end());
@@ -73,11 +73,10 @@ class ContributionSums {
             bin.deposits[bin.count++] = {element, source & (most_sources - 1), power, importance};
             if (bin.count == bin.deposits.size()) flush(region);
         }
-        /// Invalidates the indices of sources.
         void release_sources() {
             if (contributions_.size() >= enough_sources) flush_all();
         }
-        /// Invalidates the indices of sources.
+        /// Invalidates the indices of sources, as does release_sources().
         void flush_all() {
             for (std::size_t region = 0; region < regions; ++region) flush(region);
             contributions_.clear();

@@ -11,7 +11,7 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution, st
     const std::uint32_t payload = buffer_.add_source(contribution, of_groups);
     sources_in_task_.push_back({source, 0, transmitted});
     const auto source_in_task = static_cast<std::uint32_t>(sources_in_task_.size() - 1);
-    bool needs_path = refines_;  // one path serves all rays of a leaf
+    bool needs_path = refines_;  // one path per leaf
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
             count_escaped(contribution);
@@ -82,8 +82,8 @@ void Descent::begin(std::uint32_t payload, std::uint32_t source_in_task, const R
     sources_.begin(pairs_, i, path_, rays_[i].reflectance);
 }
 
-/// Takes one step with all rays in flight. Divides rejected pairs at the larger end (Eq. 14, 15, Prikryl et al. 2000).
-/// An accepted pair fixes the receiver of power; if importance is for leaves, the ray continues to its leaf.
+/// Divides rejected pairs at the larger end (Eq. 14, 15, Prikryl et al. 2000). An accepted pair fixes the receiver of
+/// power; if importance is for leaves, the ray continues to its leaf.
 void Descent::advance() {
     Lanes some;
     for (const std::uint32_t i : open()) look_up_receiver(i);
@@ -99,7 +99,6 @@ void Descent::advance() {
     Lanes on_their_way;
     const auto others = open_lanes_if(on_their_way, [&](std::size_t i) { return pairs_.goes_on[i] != 0; });
     for (const std::uint32_t i : arrived) deposit_ray(i);
-    // Frees the lanes of arrived rays.
     std::copy(arrived.begin(), arrived.end(), std::copy(others.begin(), others.end(), open_.begin()));
     open_count_ = others.size();
     pairs_.go_down();
@@ -144,7 +143,7 @@ void Descent::subdivide_on_demand(std::size_t i) {
 
 void Descent::deposit_ray(std::size_t i) {
     const auto& [payload, patch, source_in_task, start, reflectance] = rays_[i];
-    std::uint32_t leaf = pairs_.receiver[i];  // importance and start points belong to the mesh before the step
+    std::uint32_t leaf = pairs_.receiver[i];  // in the mesh before the step
     while (leaf >= old_size_) leaf = forest_.parent(leaf);
     const std::uint32_t power_receiver = refines_ ? pairs_.of_power[i] : leaf;
     const std::uint32_t importance_receiver = step_.importance_at_patches ? patch : leaf;

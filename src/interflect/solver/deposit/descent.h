@@ -53,15 +53,15 @@ class Descent {
         pairs_.next.fill(none);
     }
 
-    /// @param source       Leaf, or old_size + luminaire part (Emission).
-    /// @param contribution Payload of each ray. @param of_groups  Its power by light group.
+    /// @param source       Leaf, or old_size + luminaire part.
+    /// @param contribution Of each ray. @param of_groups  Its power by light group.
     /// @param origins      On the leaf's patch; of luminaire parts: any values.
     /// @param transmitted  Transmittance before the hits; scales found importance.
     void deposit(std::uint32_t source, const Contribution& contribution, std::span<const std::int64_t> of_groups,
                  std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
                  float transmitted = 1);
     void prefetch(const Hit& hit) const;
-    /// Finishes all rays in flight. Call at the end of each task.
+    /// Call at the end of each task.
     void finish_batch();
     void deposit_at(std::uint32_t leaf, const Contribution& contribution, std::span<const std::int64_t> of_groups) {
         buffer_.add(leaf, buffer_.add_source(contribution, of_groups), true, false);
@@ -71,7 +71,6 @@ class Descent {
         ++escaped_.rays;
     }
     const std::vector<StartPoint>& start_points() const { return start_points_; }
-    /// Flushes all contributions.
     Escaped finish();
 
   private:

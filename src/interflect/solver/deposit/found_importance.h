@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// Importance that rays find at their hit points, summed by source. Its mean over a leaf's rays estimates the leaf's
-/// transported importance (Eq. 7, Prikryl et al. 2000).
+/// Importance at the hit points of rays, summed by source. Its mean over a leaf's rays estimates the leaf's transported
+/// importance (Eq. 7, Prikryl et al. 2000).
 class FoundImportance {
   public:
     FoundImportance(double most_per_ray, std::int64_t rays, std::size_t sources)

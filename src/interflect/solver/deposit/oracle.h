@@ -20,7 +20,7 @@ struct ElementProxy {
 };
 
 /// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j) for a disk, times
-/// both cosines. These are at least 2 f, because parts of close elements face each other more directly.
+/// both cosines. The cosines are at least 2 f, because parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
     // Branch-free, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };
@@ -38,17 +38,17 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
 
 /// Refinement test, based on the state before the step.
 struct Oracle {
-    bool refines = false;  ///< False: leaves exchange light.
+    bool refines = false;
     double threshold = 0;  ///< P_eps, times psi_max if by_importance [lm or W].
     bool by_importance = false;
-    float min_area = 0;  ///< Elements below four times this area are not divided [m^2].
+    float min_area = 0;  ///< Minimum area of children [m^2].
     /// Limit at the end of a step; collect() drops the excess.
     std::size_t max_elements = std::numeric_limits<std::size_t>::max();
 
     /// psi before the step; empty unless by_importance.
     std::vector<float> importance;
 
-    /// Evaluates Eq. 14, or Eq. 15 if by_importance, Prikryl et al. 2000.
+    /// Evaluates Eq. 14, or Eq. 15 if by_importance.
     /// @param reflected  Largest channel of rho_i B_j [lm/m^2 or W/m^2]. @param psi  psi_i; 1 unless by_importance.
     bool accepts(const ElementProxy& shooter, const ElementProxy& receiver, float reflected, float psi) const {
         const double power = static_cast<double>(reflected) * receiver.area;

@@ -20,17 +20,17 @@ struct alignas(64) RayPairs {
         V3f operator[](std::size_t i) const { return {x.data()[i], y.data()[i], z.data()[i]}; }
     };
 
-    // The hit patch (PatchGeometry::Shape) and hit point.
+    // The hit patch (PatchGeometry::Shape) and point.
     Vectors origin, edge_u, edge_v, twist;
     Numbers is_triangle;
     Floats hit_u, hit_v;
     // Receiver: the current element around the hit.
-    Numbers receiver, children;  // children: index of the first, if any
+    Numbers receiver, children;  // children: first one, if any
     Floats u, v, size;           // its cell
     Vectors normal;
     Floats area, importance;  // psi_i
     // Shooter: the current element around the origin.
-    Numbers shooter, lowest_shooter;  // in SourcePaths; lowest: the ray's leaf or a new element
+    Numbers shooter, lowest_shooter;  // in SourcePaths; lowest: leaf or new element
     Vectors shooter_centre, shooter_normal;
     Floats shooter_area, shooter_least_cosine;
     Floats reflected;   // largest channel of rho_i B_j
@@ -38,7 +38,7 @@ struct alignas(64) RayPairs {
     Numbers of_power;   // receiver of power, final if settled
     Numbers on_demand;  // an end lacks children
     Numbers goes_on;
-    Numbers next;  // first of the children to descend to, if any
+    Numbers next;  // first child to descend to, if any
 
     /// Settles pairs that the oracle accepts or that are too small to divide.
     void evaluate_oracle(const Oracle& oracle);

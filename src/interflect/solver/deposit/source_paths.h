@@ -23,7 +23,6 @@ class SourcePaths {
     SourcePaths(ElementForest& forest, const TransportStep& step) : forest_(forest), step_(step) {}
 
     Path append_leaf(std::uint32_t leaf);
-    /// For one ray of a luminaire part (Emission).
     Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void clear() { sources_.clear(); }
 
@@ -41,14 +40,14 @@ class SourcePaths {
         return (shooter > receiver) & (number < lowest);
     }
 
-    /// Selects the largest shooter not larger than the receiver, or the lowest. Larger ones would give the same power.
+    /// Selects the largest shooter not larger than the receiver, or the lowest. Larger ones give the same power.
     void choose(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
         while (number < pairs.lowest_shooter[i] && sources_[number].area > pairs.area[i]) ++number;
         take(pairs, i, number, reflectance);
     }
 
-    /// Replaces the lowest shooter by its child at the ray's origin. @return  False if indivisible.
+    /// Continues at the child of the lowest shooter. @return  False if indivisible.
     bool subdivide(RayPairs& pairs, std::size_t i, const Parameters& start, const Rgb& reflectance, bool may_grow);
 
   private:
@@ -74,7 +73,7 @@ class SourcePaths {
     std::vector<Shooter> sources_;
 };
 
-/// Returns the first child, if any. Creates it on demand if the forest may grow.
+/// Returns the first child, if any; creates it if the forest may grow.
 inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t element, bool may_grow) {
     const std::uint32_t child = forest.first_child(element);
     return child == none && may_grow ? forest.subdivide(element) : child;

@@ -11,7 +11,6 @@
 
 namespace interflect::detail {
 
-/// The rays of a plan and their receivers.
 struct TransportStep : RayPlan {
     explicit TransportStep(RayPlan plan = {}) : RayPlan(std::move(plan)) {}
 
@@ -19,7 +18,7 @@ struct TransportStep : RayPlan {
     const Radiosity& light_for_oracle() const { return known_light.empty() ? light : known_light; }
     bool importance_at_patches = false;
     Oracle oracle;
-    /// Random walks complete the transport of this power (Walks).
+    /// See Walks.
     bool completes_by_walks = false;
     /// Nonzero for leaves that reflect where they receive (StartPoints); may be empty.
     std::span<const std::uint8_t> reflecting_where_received;

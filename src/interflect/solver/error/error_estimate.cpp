@@ -48,7 +48,6 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
     });
 }
 
-/// Extrapolates the variation among siblings to finer levels.
 double error_within_leaves(const RiskCheck& check) {
     if (!(check.weight > 0)) return 0;
     const bool is_known = check.signal > 0 && check.signal_of_parents > 0;
@@ -59,8 +58,7 @@ double error_within_leaves(const RiskCheck& check) {
     return sum / check.weight;
 }
 
-/// Returns the squared error of sibling differences: measured if the bias is strongly negative (docs/method.md,
-/// Errors).
+/// Measured if the bias is strongly negative (docs/method.md, Errors).
 double error_of_variations(const RiskCheck& check, double noise, double bias) {
     const double expected = noise + bias;
     const bool is_reliable = bias > -noise / 2;

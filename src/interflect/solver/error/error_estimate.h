@@ -21,7 +21,7 @@ struct ErrorEstimate {
     double total() const;
 };
 
-/// Estimates the error; infinite until two iterations have been compared, or if the relevant surfaces are dark.
+/// Returns infinite errors until two iterations have been compared, or if the relevant surfaces are dark.
 ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure);
 inline ErrorEstimate estimate_error(const SolverState& state) { return estimate_error(state, default_measure(state)); }
 

@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns the mean of y z over siblings (docs/method.md, Errors), an unbiased estimate of their signal.
+/// Returns the mean of y z over siblings (docs/method.md, Errors).
 double measured_signal(const SolverState& state, const Estimate& fresh, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t parent = forest.parent(first);
@@ -29,7 +29,6 @@ double measured_signal(const SolverState& state, const Estimate& fresh, std::uin
     return product / area;
 }
 
-/// Measures the error of earlier iterations with the next one (docs/method.md, Errors).
 RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t roots = forest.patch_count();

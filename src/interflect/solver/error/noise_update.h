@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Updates the noise model and RiskCheck with an iteration that has not been merged yet.
+/// Updates the noise model and RiskCheck with an iteration before its merge.
 void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays);
 
 }  // namespace interflect::detail

@@ -12,10 +12,9 @@ namespace interflect::detail {
 // Shares of variance that pictures show: pixels are means over their squares. 1 for ErrorMeasure::surfaces.
 
 float shown_of_patch(const SolverState& state, ErrorMeasure measure, std::uint32_t patch);
-/// Returns the share for the siblings `first` ... `first` + 3.
 float shown_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first);
-/// Returns the share for the descendants of a leaf, by level. Assumes variation along one side only, as at gradients
-/// and shadow edges.
+/// Returns the share for the descendants of a leaf, by level. Assumes variation along one side only, as at shadow
+/// edges.
 std::array<float, finer_levels> shown_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf);
 
 }  // namespace interflect::detail

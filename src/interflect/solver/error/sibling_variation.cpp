@@ -9,7 +9,7 @@ namespace {
 
 /// Siblings are under-sampled below this fraction of their parent's rays.
 constexpr float under_sampled = 0.125f;
-/// Maximum expected decay of the signal per level, as at an edge.
+/// Expected decay of the signal per level at an edge.
 constexpr float highest_expected_decay = 0.5f;
 
 }  // namespace
@@ -45,7 +45,7 @@ SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first
         variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
     SiblingVariation variation{spread / area, variance / area};
-    // With few rays, shrinkage leaves more noise than any plausible signal. The parent's siblings bound the signal.
+    // With few rays, shrinkage leaves more noise than plausible signal. The parent's siblings bound the signal.
     const std::uint32_t parent = forest.parent(first);
     if (uses_shrinkage(state) && state.history[first] < under_sampled * state.history[parent])
         variation.assumed = parent < forest.patch_count()
@@ -60,12 +60,12 @@ AddedError added_error(const SolverState& state, std::uint32_t first) {
     if (!variation.is_known()) return {};  // the siblings equal their parent
     if (!uses_shrinkage(state)) return {variation.noise, 0};
     const float kept = variation.shrinkage(), noise = kept * kept * variation.noise;
-    // Largest variance of four non-negative numbers; else rays with a large weight would dominate.
+    // Largest variance of four non-negative numbers; bounds the effect of rays with a large weight.
     const float mean = luminance(state.solution.irradiance[state.forest->parent(first)]), most = 3 * mean * mean;
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }
 
-/// Computes the Wiener filter with each sibling's own noise (docs/method.md, Shrinkage).
+/// Applies a Wiener filter (docs/method.md, Shrinkage).
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const SiblingVariation variation = sibling_variation(state, first);

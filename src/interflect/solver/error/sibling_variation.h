@@ -25,24 +25,22 @@ struct SiblingVariation {
     float signal() const { return is_under_sampled() ? assumed : spread - noise; }
     /// Factor of the differences (Wiener filter), in [0, 1].
     float shrinkage() const;
-    /// Mean square error after shrinkage, in addition to the parent's. Unbiased (Stein 1981, in three dimensions
-    /// because the four differences sum to zero).
+    /// Mean square error after shrinkage, in addition to the parent's. Unbiased (Stein 1981, in three dimensions: the
+    /// four differences sum to zero).
     float risk() const;
 };
 
-/// Returns the variation among the siblings `first` ... `first` + 3.
 SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first);
 
 bool uses_shrinkage(const SolverState& state);
 
-/// Mean square errors of siblings in addition to their parent's.
 struct AddedError {
     float noise = 0, bias = 0;
 };
 AddedError added_error(const SolverState& state, std::uint32_t first);
 
-/// Factors of the differences of four siblings from their parent, and the noise variance that remains in each, relative
-/// to its area-weighted mean.
+/// Factors of the differences of four siblings from their parent, and the remaining noise variance of each, relative to
+/// the mean.
 struct Shrinkage {
     std::array<float, 4> kept, noise;
 };

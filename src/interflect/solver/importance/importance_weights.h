@@ -27,15 +27,15 @@ struct PartImportance {
 /// Importance for sampling rays of power; empty if the method does not use it.
 struct ImportanceWeights {
     std::vector<float> elements;
-    std::vector<float> nearby;               ///< Mean over each patch's neighbourhood (Neighbourhoods); may be empty.
+    std::vector<float> nearby;               ///< By patch; may be empty.
     std::vector<float> parts, parts_nearby;  ///< By luminaire part.
 };
 /// @param found  By luminaire part.
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
-/// Smooths importance for sampling (docs/method.md, One step of transport): mixes in the share `from_parent` of the
-/// parent's result, then applies the exponent. The paper uses (0, 1).
+/// Smooths importance for sampling (docs/method.md, One step of transport). The paper uses `from_parent` 0 and
+/// `exponent` 1.
 std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
                                      double exponent);
 

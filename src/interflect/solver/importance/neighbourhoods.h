@@ -8,8 +8,7 @@
 
 namespace interflect::detail {
 
-/// Binary tree of patches, split along the longest axis of their centres. Its nodes are neighbourhoods. 4 bytes per
-/// patch.
+/// Binary tree of patches, split along the longest axis of their centres. Its nodes are neighbourhoods.
 class Neighbourhoods {
   public:
     Neighbourhoods() = default;

@@ -22,9 +22,8 @@ class IterationMethod {
     virtual IterationPlan plan(SolverState& state);
     /// Traces and merges rays that carry importance alone (Eq. 7, 8). @throws Interrupted
     virtual void update_importance(SolverState&, IterationPlan&) {}
-    /// Traces the rays of an iteration. @param plan  Receives their number. @throws Interrupted
+    /// @param plan  Receives the number of rays. @throws Interrupted
     virtual Estimate trace(SolverState& state, IterationPlan& plan) = 0;
-    /// Merges the estimate with the running mean (Eq. 6).
     virtual void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) = 0;
     /// Refines the mesh between iterations; Eq. 14 and 15 refine it during trace().
     virtual void refine(SolverState&) {}

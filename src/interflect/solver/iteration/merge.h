@@ -14,8 +14,7 @@ void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<R
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
            const IterationPlan& plan);
 
-/// Merges estimates that are not shot again; means may be negative. Siblings are averaged over their own rays;
-/// NoiseModel::shares() divides the difference from their parent's mean.
+/// Merges independent estimates (docs/method.md, A run); means may be negative.
 void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                        const IterationPlan& plan);
 
@@ -24,7 +23,6 @@ void merge(const SolverState& state, GroupLight& mean, const GroupLight& receive
 void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
                        const IterationPlan& plan);
 
-/// Averages escaped power like irradiance (Eq. 6).
 void merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan);
 
 /// Adds the rays of an iteration. New elements keep only `inherited_weight` of their history.

@@ -29,7 +29,6 @@ struct LineFinder {
     const Panes& panes;
     std::uint64_t key;
 
-    /// @param importance  Payload of each ray. @param sun  See OutdoorLine.
     void keep_escaping(std::span<const Ray> rays, std::span<const double> importance, std::uint32_t sun,
                        std::vector<OutdoorLine>& lines) const {
         std::vector<Hit> hits(rays.size());
@@ -167,9 +166,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     constexpr std::size_t most_lines = 4096, fewest_lines = 16;
     static_assert(most_targets % most_places == 0);
     constexpr double share_of_rest = 0.05;  // minimum share of the weight for another place
-    // See docs/method.md, Light sources that are not surfaces.
+    // docs/method.md, Light sources that are not surfaces
     constexpr double worthwhile_share = 0.4;
-    // Relative to the scene.
     constexpr float widest_target = 1.0f / 16;
     std::vector<Weighed> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / most_lines);
@@ -251,7 +249,7 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 }  // namespace
 
 std::int64_t aim_outdoor_light(SolverState& state) {
-    // Many, because a small window transmits little importance.
+    // Many rays: a small window transmits little importance.
     constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());

@@ -17,12 +17,12 @@ struct OutdoorLine {
     double importance;  ///< Importance-weighted power received per unit of brightness.
 };
 
-/// Finds boxes in which lines converge, such as windows. A line belongs to the last box that it crosses.
+/// Finds boxes in which lines converge, such as windows.
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box);
 
-/// Aims outdoor light at places important to the views: finds targets and estimates the importance of luminaire parts.
-/// @return  Rays traced; 0 without full importance or outdoor light.
+/// Finds targets and the importance of luminaire parts. Returns the traced rays; 0 without full importance or outdoor
+/// light.
 std::int64_t aim_outdoor_light(SolverState& state);
 
 }  // namespace interflect::detail

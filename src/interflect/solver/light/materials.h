@@ -13,7 +13,7 @@
 namespace interflect::detail {
 
 /// Reflectance, exitance and transmittance by patch and, with textures, by element. Refers to the scene. Covered
-/// emitters keep the exitance of their uncovered share (RayCaster), so no place emits twice.
+/// emitters keep the exitance of their uncovered share (RayCaster).
 class Materials {
   public:
     /// Ignores coincident faces.
@@ -60,7 +60,7 @@ struct CoveredEmission {
     std::int64_t wholly = 0, partly = 0;
     RgbD power{0, 0, 0};  ///< [lm or W]
 };
-/// @throws InputError if the ray caster is of another scene.
+/// @throws InputError for a ray caster of another scene.
 CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
 /// Returns Radiosity by element. With textures, inner elements have the mean of their children.

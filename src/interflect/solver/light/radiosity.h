@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Radiosity B = M + rho H [lm/m^2 or W/m^2], computed on demand. Refers to its arguments.
+/// B = M + rho H [lm/m^2 or W/m^2], computed on demand. Refers to its arguments.
 class Radiosity {
   public:
     Radiosity() = default;
@@ -46,7 +46,7 @@ class Radiosity {
     bool emits_ = false;
 };
 
-/// Returns the power of an element [lm or W]; with textures, the sum over its leaves.
+/// Returns the power of an element [lm or W]; with textures, the sum over the leaves.
 inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::uint32_t e) {
     const std::uint32_t first_child = light.has_textures() ? forest.first_child(e) : none;
     if (first_child == none) return RgbD(light.of(forest, e)) * static_cast<double>(forest.area(e));

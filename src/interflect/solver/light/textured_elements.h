@@ -16,7 +16,7 @@ struct MeanSurface {
     Rgb transmittance{0, 0, 0};
 };
 
-/// Mean surfaces of textured elements: 36 bytes for each, and 1 byte for any element.
+/// Mean surfaces of textured elements.
 class TexturedElements {
   public:
     /// @param exitance_share  By patch; empty: 1.

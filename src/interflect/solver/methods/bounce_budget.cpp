@@ -9,14 +9,13 @@ namespace {
 
 /// Random walks replace the remaining bounces if the next one would get fewer rays.
 constexpr double fewest_rays_of_bounce = 2;
-/// They also do if less than this share remains: each bounce takes time for every element.
+/// Random walks also replace bounces below this share of a pass: each bounce takes time for every element.
 constexpr double least_share_left = 0.05;
-/// Minimum number of random walks; fewer make small passes noisy. Rays beyond the plan are not counted.
+/// Fewer make small passes noisy. Rays beyond the plan are not counted.
 constexpr std::int64_t fewest_walks = 32;
 /// Value of bounces() until measured.
 constexpr double assumed_bounces = 2;
-/// Expected ratio of unshot power between bounces: first; after an increase, while light spreads towards the view;
-/// maximum.
+/// Expected ratio of unshot power between bounces: first; after an increase; maximum.
 constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, highest_decay = 0.99;
 
 }  // namespace

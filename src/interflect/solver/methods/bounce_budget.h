@@ -6,8 +6,8 @@ namespace interflect::detail {
 
 /// Rays of one bounce.
 struct BounceRays {
-    std::int64_t started = 0;   ///< To start.
-    std::int64_t expected = 0;  ///< Traced rays, including random walks.
+    std::int64_t started = 0;
+    std::int64_t expected = 0;  ///< Including random walks.
 };
 
 /// Distributes the rays of a pass over its bounces.
@@ -19,9 +19,8 @@ class BounceBudget {
 
     /// @param unshot  Relative to the first bounce.
     BounceRays next(double unshot);
-    /// Whether next() has returned the last bounce.
     bool has_ended() const { return is_last_ || left_ == 0; }
-    /// Unshot power summed over the bounces, relative to the first, extrapolated by a geometric series.
+    /// Returns unshot power summed over the bounces, relative to the first; the rest is a geometric series.
     double bounces() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
 
   private:

@@ -13,7 +13,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// Rays of importance, or its share of combined rays.
 std::int64_t share_of_importance(const SolverState& state, std::int64_t rays) {
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     return std::llround(state.options.experimental.alpha * static_cast<double>(rays));

@@ -41,7 +41,7 @@ Estimate darkness(const SolverState& state) {
     return dark;
 }
 
-/// Adds a bounce to the sum. May move its variance, but not its irradiance, which the next bounce reflects.
+/// May move the variance of `received`, but not its irradiance, which the next bounce reflects.
 void add(Estimate& sum, Received& received) {
     sum.escaped_power += received.escaped_power;
     accumulate(sum.groups, received.groups);
@@ -81,15 +81,15 @@ struct Passes::Pass {
     ImportanceWeights weights;
     /// See leaves_reflecting_where_received(). Empty while the oracle refines.
     std::vector<std::uint8_t> reflecting_where_received = {};
-    bool emits = true;             ///< Whether the next bounce shoots the emitted power: only the first does.
+    bool emits = true;             ///< Whether the next bounce shoots emitted power.
     std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
     StartPoints start_points = {};
-    double first_power = 0, first_weighted_power = 0;  ///< PowerPlan::power and weighted_power of the first bounce.
+    double first_power = 0, first_weighted_power = 0;  ///< First bounce.
     Estimate sum = {};
 };
 
-/// @param oracle_refines  Whether the oracle (Eq. 14, 15) refines the mesh during the pass. @throws Interrupted
+/// @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
     state.payloads = {};  // reported for the last pass only
     Pass pass{rays, oracle_refines, BounceBudget(rays, bounces_),
@@ -109,7 +109,6 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     return std::move(sum);
 }
 
-/// Traces one bounce (Eq. 1, Prikryl et al. 2000) and adds it to the pass.
 /// @return  False if no unshot light or no rays are left.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     Solution& solution = state.solution;
@@ -123,7 +122,7 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     if (pass.emits) pass.first_power = bounce.power, pass.first_weighted_power = bounce.weighted_power;
     const double weight =
         unshot_weight(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
-    // If random walks complete the bounce, rays.expected includes the expected rays after their first.
+    // Includes the expected rays of random walks after their first.
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(weight) : BounceRays();
     if (rays.expected == 0) return false;
 

@@ -9,12 +9,11 @@
 
 namespace interflect::detail {
 
-/// Iterations that are passes (docs/method.md, A run): each shoots emitted power, then received power, bounce by bounce
-/// until little is left ('incremental shooting', Neumann et al. 1995). A pass is an unbiased estimate on the current
-/// mesh, independent of earlier passes.
+/// Iterations that are passes ('incremental shooting', Neumann et al. 1995; docs/method.md, A run): unbiased estimates
+/// on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
-    /// Estimates importance, then makes the initial mesh (Eq. 14, 15) by two small passes. Their light is not averaged.
+    /// Estimates importance, then makes the initial mesh by two small passes (Eq. 14, 15), which are not averaged.
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
@@ -25,11 +24,11 @@ class Passes : public IterationMethod {
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
-    /// Calls prepare() and computes the irradiance of one pass, as the start of another IterationMethod.
+    /// Starts another IterationMethod with prepare() and one pass.
     void make_first_estimate(SolverState& state);
 
   protected:
-    /// Traces the rays of a bounce, unless random walks complete it: then run_step() is called. @throws Interrupted
+    /// Traces the rays of a bounce, unless random walks complete it. @throws Interrupted
     virtual Received trace_step(SolverState& state, TransportStep step) { return run_step(state, std::move(step)); }
 
   private:
@@ -41,7 +40,7 @@ class Passes : public IterationMethod {
 
     /// BounceBudget::bounces() of the last pass; 0: unknown.
     double bounces_ = 0;
-    bool needs_importance_ = false;  // the views have changed: the next iteration starts with find_importance()
+    bool needs_importance_ = false;  // the next iteration starts with find_importance()
     ViewChange view_change_;
 };
 

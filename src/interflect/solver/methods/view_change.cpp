@@ -11,7 +11,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// Probabilities with which power rays start on elements.
 std::vector<float> power_sampling(const SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
     const ImportanceWeights weights =
@@ -29,7 +28,8 @@ std::vector<float> patch_importance(const SolverState& state) {
 }
 
 /// Returns the ratio of the new to the old variance per ray, weighted by importance. Payloads are proportional to power
-/// over q. @param importance  By patch.
+/// over q.
+/// @param importance  By patch.
 float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
                   const std::vector<float>& new_q) {
     constexpr double largest = 256;

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Sampling and importance before the views changed, to convert the history of the averaged light to rays of the new
+/// Sampling and importance before the views changed. Converts the history of the averaged light to rays of the new
 /// views with the same noise.
 class ViewChange {
   public:
@@ -15,7 +15,7 @@ class ViewChange {
     /// Call before the views change.
     void record(const SolverState& state);
     void clear() { old_q_.clear(), old_importance_.clear(); }
-    /// Factor of each patch's history, given the importance of the new views.
+    /// Returns a factor per patch.
     std::vector<float> history_factor(const SolverState& state) const;
 
     void archive(StateArchive& archive);

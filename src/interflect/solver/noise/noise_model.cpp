@@ -12,7 +12,7 @@ namespace {
 /// Decay of earlier iterations, because mesh and sampling change.
 constexpr double memory = 0.75;
 constexpr double largest_scale = 100;
-/// Contributions at which measured and equal noise shares of siblings weigh alike.
+/// Contributions at which measured and equal shares weigh alike.
 constexpr float few_arrivals = 16;
 
 }  // namespace
@@ -58,7 +58,6 @@ void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::sp
                     difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
                 const double w = weight(e);
                 const std::size_t n = rarity(forest, mean, e);
-                // Expected from independent rays.
                 const float independent = (rays * per_ray_[e] + m * rays * fresh.variance[e]) / (rays + m);
                 sum.observed[n] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
                 sum.independent[n] += w * static_cast<double>(share_of_own(forest, e) * independent);

@@ -15,8 +15,7 @@
 namespace interflect::detail {
 
 /// Noise of the mean irradiance: the variance for independent rays, times a factor measured from differences between
-/// iterations (docs/method.md, Errors). Elements with similar numbers of rays share a factor, so one ray with a large
-/// weight does not affect elements with many rays.
+/// iterations (docs/method.md, Errors).
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
@@ -33,12 +32,12 @@ class NoiseModel {
     std::array<float, 4> shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
                                 float rays) const;
 
-    /// Initialises new elements (index >= first), which receive a quarter of the rays on a quarter of the area.
+    /// A new element receives a quarter of the rays on a quarter of the area.
     void grow(const ElementForest& forest, std::uint32_t first);
 
-    /// Adds an iteration that has not been merged yet.
+    /// Call before the iteration is merged.
     /// @param history  Rays in the mean; 0: the difference from the parent is unknown.
-    /// @param weight   Weight of the squared error; inner elements have the sum of their leaves.
+    /// @param weight   Of the squared error; inner elements have the sum of their leaves.
     void add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 

@@ -12,18 +12,18 @@ inline constexpr std::size_t finer_levels = 6;
 /// Products of the mean and an independent iteration, summed over siblings. Their expected values are squared errors
 /// and differences without noise.
 struct RiskCheck {
-    double weight = 0;             ///< Total weight of iterations; 0: no data.
+    double weight = 0;             ///< 0: no data.
     double expected = 0;           ///< Squared errors after shrinkage by SiblingVariation::risk().
-    double measured = 0;           ///< The same, measured later.
+    double measured = 0;           ///< The same, by the later iteration.
     double signal = 0;             ///< Squared differences of the leaves from their parents.
     double signal_of_parents = 0;  ///< The same of the parents.
     /// Share of `signal` that pictures show if the descendants of leaves vary alike, by level.
     std::array<double, finer_levels> within{};
 
     RiskCheck& operator+=(const RiskCheck& o) { return add(1, o, 1); }
-    /// Earlier iterations decay by 1 - share / 2. @param share  In [0, 1]; less for short iterations.
+    /// @param share  In [0, 1]; less for short iterations.
     void add(const RiskCheck& fresh, double share) { add(1 - share / 2, fresh, share); }
-    /// Correction of expected errors; 1 without data.
+    /// Returns 1 without data.
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }
 
   private:

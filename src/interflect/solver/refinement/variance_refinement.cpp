@@ -18,16 +18,16 @@ namespace {
 
 /// Expected ratio of squared differences of children and siblings: 1/4 for linear irradiance, 1/2 at an edge.
 constexpr float expected_decay = 0.3f;
-/// The same relative to squared irradiance, for a root.
+/// Relative to squared irradiance, for a root.
 constexpr float assumed_square = 0.04f;
-/// Minimum expected signal (true variation) relative to the children's noise, which shrinkage suppresses at first.
+/// Minimum expected signal relative to the children's noise, which shrinkage suppresses at first.
 constexpr float least_signal = 0.12f;
-/// Minimum reduction of the total squared error for which a leaf is split.
+/// Reduction of the total squared error by a split.
 constexpr double negligible_gain = 2e-7;
-/// Minimum share of the pictures' light, reflected from wrong places, for which a leaf is split.
+/// Share of the pictures' light that a leaf reflects from wrong places.
 constexpr double negligible_misplacement = 3e-7;
-/// Leaves above this share of the pictures' light reflect where they receive (docs/method.md, A run). Light behind a 1
-/// cm slit is then within 6%.
+/// Leaves above this share reflect where they receive (docs/method.md, A run). Light behind a 1 cm slit is then within
+/// 6%.
 constexpr double tolerable_misplacement = 3e-5;
 /// Relative weight of errors on invisible surfaces, whose effect on the view is blurred.
 constexpr double unseen_shape = 0.02;
@@ -66,7 +66,7 @@ class VarianceOracle {
     }
 
   private:
-    /// Mean squared differences of the children from their leaf.
+    /// Mean squared differences from the leaf.
     struct Expected {
         float signal, noise;
     };
@@ -87,7 +87,7 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    /// Times importance.
+    /// Returns [lm or W, times importance].
     double misplaced_power(std::uint32_t leaf, float signal) const {
         const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);

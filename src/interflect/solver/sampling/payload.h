@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// Payload of one ray of each source. Leaf s: power A_s B_s / (N q_s), importance A_s rho_s psi_s / (N q_s). Luminaire
-/// part (Emission): its power / (N q_s).
+/// Payload of one ray. Leaf s: power A_s B_s / (N q_s), importance A_s rho_s psi_s / (N q_s). Luminaire part: its power
+/// / (N q_s).
 class Payload {
   public:
     Payload(const Materials& materials, const ElementForest& forest, const RayPlan& plan, double q_sum)
@@ -62,7 +62,7 @@ class PayloadHistogram {
     PayloadHistogram& operator+=(const PayloadHistogram& other);
 
     double largest_over_mean() const;  ///< 1 without power.
-    /// Returns the power, relative to the mean, that a share of the rays exceeds; accurate to 19%.
+    /// Returns the power that a share of the rays exceeds, relative to the mean; accurate to 19%.
     double quantile_over_mean(double share) const;
 
     void archive(StateArchive& archive) {
@@ -79,7 +79,6 @@ class PayloadHistogram {
     std::int64_t count_ = 0;
 };
 
-/// Sums over all rays of a step.
 struct PayloadTotals {
     RgbD power{0, 0, 0};  ///< [lm or W]
     double square = 0;    ///< Squared luminance of power.

@@ -17,7 +17,7 @@ struct SamplingWeights {
     Radiosity light;                              ///< B [lm/m^2 or W/m^2].
     Importance reflected_importance;              ///< psi of Eq. 8 [1/m^2].
     std::span<const float> importance_weight;     ///< psi of Eq. 9 or 10 by element [1/m^2]
-    std::span<const float> nearby = {};           ///< Mean of each patch's neighbourhood (Neighbourhoods).
+    std::span<const float> nearby = {};           ///< Mean of each patch's neighbourhood.
     const Emission* emission = nullptr;           ///< Luminaires that shoot, or null.
     std::span<const float> part_importance = {};  ///< psi of Eq. 10 by luminaire part; empty: unknown.
     std::span<const float> part_nearby = {};      ///< Mean over the parts of the emitter.
@@ -37,7 +37,7 @@ struct SamplingWeights {
     }
 };
 
-/// Shares of rays for these weights (Eq. 11). A weight that is 0 everywhere leaves its share to the others.
+/// Shares of rays (Eq. 11). A weight that is 0 everywhere leaves its share to the others.
 struct MixtureWeights {
     double power = 0, weighted_power = 0, importance = 0;
     double power_nearby = 0;

@@ -9,7 +9,7 @@
 namespace interflect::detail {
 
 /// Systematic allocation of N rays to sources, in order: N q_s / sum q for source s, rounded up or down, exact in the
-/// mean over `offset`. Stores 16 bytes per 256 sources and recomputes the rest.
+/// mean over `offset`.
 class RayAllocation {
   public:
     /// @param q       Weights >= 0, not normalised; must outlive this.
@@ -36,8 +36,8 @@ class RayAllocation {
 
     std::size_t block_count() const { return blocks_.size(); }
     static std::size_t block_of(std::size_t source) { return source / block_sources; }
-    /// Calls body(s, first, next) for the sources of a block, with rays [first, next), until it returns false. @return
-    /// The last result.
+    /// Calls body(s, first, next) for the sources of a block, with rays [first, next), until it returns false. Returns
+    /// the last result.
     template <class Body>
     bool for_each_in_block(std::size_t block, const Body& body) const {
         const std::size_t begin = block * block_sources, end = std::min(q_.size(), begin + block_sources);

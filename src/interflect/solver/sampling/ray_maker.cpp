@@ -21,7 +21,7 @@ struct CosSin {
     float cosine, sine;
 };
 
-/// (cos, sin) of 2 pi t for t in [0, 1], to 3e-7. Vectorises, unlike the C library.
+/// Returns (cos, sin) of 2 pi t for t in [0, 1], to 3e-7. Vectorises.
 inline CosSin cos_sin_of_turn(float turn) {
     // Nearest quarter turn, then Taylor series on [-pi/4, pi/4].
     const float quadrant = std::floor(4 * turn + 0.5f);

@@ -27,10 +27,8 @@ struct SampleStreams {
     std::uint64_t allocations = 0;
 };
 
-/// Generates rays from consecutive samples. Origins are uniform on the cell, `offset` above the patch. Directions have
-/// density cos(theta) / pi.
+/// Generates rays. Origins are uniform on the cell, `offset` above the patch. Directions have density cos(theta) / pi.
 /// @param key     Of the point sequence (fill_points).
-/// @param rays    Output; its size is the number of rays.
 /// @param starts  Origins to sample (StartPoints::of); empty: uniform.
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
                 std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins,
@@ -38,7 +36,7 @@ void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, Poin
 
 /// Rays batch.rays[begin ... end - 1] of one source.
 struct SourceRays {
-    std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part (Emission).
+    std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part.
     std::uint32_t begin, end;
 };
 

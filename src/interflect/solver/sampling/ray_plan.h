@@ -15,15 +15,15 @@ namespace interflect::detail {
 
 /// Rays of a step: sampling distribution and payload.
 struct RayPlan {
-    /// Weight >= 0 by element (0 for inner ones), then by part of `emission`. All 0: no rays.
+    /// >= 0 by element (0 for inner ones), then by part of `emission`. All 0: no rays.
     std::vector<float> q;
-    std::int64_t rays = 0;               ///< N > 0.
-    Radiosity light;                     ///< Radiosity to shoot; empty: rays carry no power.
-    const Emission* emission = nullptr;  ///< Luminaires that shoot, or null.
-    GroupRadiosity groups;               ///< Light groups received separately.
-    /// True: rays carry B_s over the sum of its channels. False: B_s A_s / (N q_s), unbiased.
+    std::int64_t rays = 0;  ///< N > 0.
+    Radiosity light;        ///< Empty: rays carry no power.
+    const Emission* emission = nullptr;
+    GroupRadiosity groups;  ///< Light groups received separately.
+    /// Rays carry B_s over the sum of its channels, not B_s A_s / (N q_s).
     bool equal_payloads = false;
-    Importance importance;                      ///< Importance psi to shoot; empty: rays carry none.
+    Importance importance;                      ///< psi [1/m^2]; empty: rays carry no importance.
     const StartPoints* start_points = nullptr;  ///< Origins of `light`; null: uniform.
 
     std::size_t part_count() const { return emission ? emission->part_count() : 0; }
@@ -31,18 +31,16 @@ struct RayPlan {
     bool carries_importance() const { return !importance.empty(); }
 };
 
-/// A plan for power, with the sums over leaves of P_s (Eq. 3) and of P_s psi_s (Eq. 9, 10; 0 if not used).
+/// A plan for power, with the sums over leaves of P_s (Eq. 3) and P_s psi_s (Eq. 9, 10; 0 if not used).
 struct PowerPlan {
     RayPlan plan;
     double power = 0, weighted_power = 0;
-    std::int64_t non_finite_leaves = 0;  ///< Leaves with non-finite radiosity, not shot.
+    std::int64_t non_finite_leaves = 0;  ///< Not shot.
 };
 
-/// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000). The method selects q: by
-/// power (Eq. 3), direct importance, or total or indirect importance (Eq. 9, 10). Further shares are sampled by power
-/// alone (beta) and by neighbourhood importance.
+/// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000; docs/method.md, One step of
+/// transport). The plan refers to `so_far`, `emission` and `light`.
 /// @param emission  Shot if `light` emits.
-/// @param light     Radiosity to shoot. The plan refers to `so_far`, `emission` and `light`.
 PowerPlan plan_power(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);
 

@@ -18,7 +18,7 @@ std::uint32_t spread_bits(float x) {
     return (bits | bits << 1) & 0x55555555u;
 }
 
-/// Morton code: successive points are close, so samples stay stratified.
+/// Morton code: successive points are close, which stratifies samples.
 std::uint32_t position_on_curve(const Parameters& p) { return spread_bits(p.u) | spread_bits(p.v) << 1; }
 
 bool is_before(const StartPoint& a, const StartPoint& b) {

@@ -11,16 +11,16 @@ namespace interflect::detail {
 /// Point of a leaf that received power.
 struct StartPoint {
     std::uint32_t leaf;
-    float power;    ///< Sum of the channels [any unit]; cumulative over the leaf in StartPoints.
+    float power;    ///< Sum of the channels; cumulative over the leaf in StartPoints.
     Parameters at;  ///< On the leaf's patch.
 };
 
-/// Origins of reflected light. Uniform reflection from a partly lit leaf is biased. Leaves with points here start rays
-/// at them, in proportion to received power.
+/// Origins of reflected light, at which leaves start rays in proportion to received power. Uniform reflection from a
+/// partly lit leaf is biased.
 class StartPoints {
   public:
     StartPoints() = default;
-    /// The order is irrelevant. Cost: O(n log n) on all threads, 16 bytes per point.
+    /// Accepts any order. Cost: O(n log n) on all threads.
     explicit StartPoints(std::vector<StartPoint> points);
 
     /// Returns the points of a leaf; empty: uniform origins. Cost: O(log n).

@@ -8,8 +8,8 @@
 
 namespace interflect::detail {
 
-/// Copies of the data that an iteration changes, to discard an interrupted one. The repeated iteration then has the
-/// bits of an uninterrupted run. 12 bytes per element.
+/// Copies of the data that an iteration changes. After restore(), the repeated iteration has the bits of an
+/// uninterrupted run.
 class IterationStart {
   public:
     explicit IterationStart(const SolverState& state);

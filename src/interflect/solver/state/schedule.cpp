@@ -12,9 +12,9 @@ namespace {
 
 /// Rays of an iteration relative to the rays averaged before.
 constexpr double growth = 0.5;
-/// Maximum rays of an iteration: one or two seconds, so a run can stop soon.
+/// One or two seconds, so a run can stop soon.
 constexpr std::int64_t largest_iteration = 1 << 24;
-/// Rays of the first iteration: some per patch, but a small share of the budget.
+/// Some per patch, but a small share of the budget.
 constexpr std::int64_t first_rays_per_patch = 4, fewest_first_rays = 50'000, budget_over_first_rays = 8;
 
 }  // namespace
@@ -37,7 +37,7 @@ void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
     averaged_rays_ = power_rays;
 }
 
-/// Rays that fit into the remaining time at the current speed; 0 if too few to be useful.
+/// Returns the rays for the remaining time at the current speed; 0 if too few to be useful.
 std::int64_t Schedule::affordable_rays(double seconds) {
     constexpr double share_of_time = 0.85;    // of the remaining time; speed varies
     constexpr double least_share = 1.0 / 32;  // of the rays averaged before

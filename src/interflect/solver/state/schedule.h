@@ -8,40 +8,36 @@
 
 namespace interflect::detail {
 
-/// Plan of an iteration and its traced rays.
 struct IterationPlan {
     std::int64_t rays = 0;                ///< Planned, and the weight in the mean; 0: the run is over.
-    std::int64_t traced = 0;              ///< Traced rays; initially the planned ones.
+    std::int64_t traced = 0;              ///< Initially the planned rays.
     bool warms_up = false;                ///< Not averaged: the next iteration replaces it.
     bool is_final = false;                ///< Ends the run, even with fewer traced rays.
-    std::uint32_t old_elements = 0;       ///< Elements before the iteration.
+    std::uint32_t old_elements = 0;       ///< Before the iteration.
     std::int64_t importance_rays = 0;     ///< Rays that carry importance alone.
     std::int64_t rays_for_new_views = 0;  ///< Additional rays after a change of views.
     /// ViewChange::history_factor(); empty: 1.
     std::vector<float> history_factor = {};
 };
 
-/// Ray counts of the iterations, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000. By default,
-/// iterations grow with the rays averaged before, so early ones on coarse meshes soon have little weight.
+/// Ray counts of the iterations, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Rays of each pass before the first iteration: at most an eighth of all.
+    /// Returns the rays of each pass before the first iteration: at most an eighth of all.
     std::int64_t start_rays() const;
     /// Records these passes. Power rays are the first term of the average.
     void began_with(std::int64_t power_rays, std::int64_t other_rays);
-    /// Plans the next iteration, to end within the time limit.
-    /// @param seconds  Since the run began.
+    /// Plans an iteration that ends within the time limit. @param seconds  Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
-    /// Counts the rays of an iteration.
     void done(const IterationPlan& plan);
     /// Makes iterations small again.
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
-    /// Replaces SolveOptions::limits. The size of the first iterations does not change.
+    /// Keeps the size of the first iterations.
     void set_limits(const Limits& limits);
     void archive(StateArchive& archive);
 
@@ -59,7 +55,7 @@ class Schedule {
     std::int64_t averaged_at_restart_ = 0;
     int finished_ = 0;
     bool is_over_ = false;
-    double planned_at_ = 0;           // [s], of the last iteration
+    double planned_at_ = 0;           // [s]
     std::int64_t planned_after_ = 0;  // rays traced before it
 };
 

@@ -27,7 +27,7 @@
 
 namespace interflect::detail {
 
-/// Limits of SolverState::targets. 20 halvings at each place reach from 10 km to 1 cm.
+/// 20 halvings at each place reach from 10 km to 1 cm.
 inline constexpr int most_places = 4, most_targets = 80;
 
 /// State of a run that persists between iterations.
@@ -40,7 +40,7 @@ struct SolverState {
     const Scene* lit = &scene;  // with dimmed sources
     Materials materials;
     std::vector<Imath::Box3f> targets;  // of outdoor light, for the current views
-    Emission emission;                  // of the luminaires
+    Emission emission;
     const RayCaster& ray_caster;
     const SourceGroups groups;
     Solution solution;
@@ -58,7 +58,7 @@ struct SolverState {
     RiskCheck risk_check;
     PayloadHistogram payloads;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
-    std::int64_t rays_of_other_views = 0;  // rays averaged before the views changed
+    std::int64_t rays_of_other_views = 0;  // averaged before the views changed
     RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
     double escaped_power_rays = 0;         // rays in this mean
 
@@ -73,32 +73,31 @@ struct SolverState {
     double seconds_of_this_call() const {
         return std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
     }
-    /// Duration of all work, including earlier calls [s].
+    /// Includes earlier calls [s].
     double seconds() const { return earlier_seconds + seconds_of_this_call(); }
 
     /// @throws std::runtime_error if the data are inconsistent.
     void archive(StateArchive& archive);
 };
 
-/// Uses the exitances of `lit`, which must outlive the state.
+/// `lit` must outlive the state.
 void set_sources(SolverState& state, const Scene& lit);
 
 /// Also resets the importance of luminaire parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
-/// Computes the view importance of every element. Resets the indirect importance.
+/// Resets the indirect importance.
 void compute_view_importance(SolverState& state);
 
-/// Returns the radiosity of each light group. Refers to its arguments.
+/// Refers to its arguments.
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);
 
 /// Returns the power of surfaces and luminaires [lm or W].
 RgbD radiated_power(const SolverState& state);
 
-/// Whether variance refines the mesh between iterations.
 bool refines_by_variance(const SolveOptions& options);
 
-/// Evaluates ElementFloor at an element [m^2].
+/// Evaluates ElementFloor [m^2].
 float min_area(const SolverState& state, std::uint32_t element);
 float pixel_area(const SolverState& state, std::uint32_t element);
 

@@ -19,11 +19,11 @@ namespace interflect::detail {
 /// Results of a step by element. Inner elements have the mean of their children.
 struct Received {
     std::vector<Rgb> irradiance;  ///< [lm/m^2 or W/m^2]
-    /// Variance of its luminance for independent rays (Poisson).
+    /// Variance of its luminance, for independent rays (Poisson).
     std::vector<float> variance;
     GroupLight groups;              ///< `irradiance` by light group.
     std::vector<float> importance;  ///< Per area; empty if not carried.
-    /// Sum of rho psi at the hits of each luminaire part's rays; empty without importance.
+    /// Sum of rho psi at the hits of each part's rays; empty without importance.
     std::vector<PartImportance> part_importance;
     StartPoints start_points;  ///< Hit points on leaves in reflecting_where_received.
     PayloadHistogram payloads;
@@ -33,17 +33,15 @@ struct Received {
 };
 
 /// Converts the contributions of a step to received values and zeroes them. Sorts new elements and drops those beyond
-/// the oracle's limit, whose parents receive the contributions.
-/// @param old_size    Size of the forest before the step.
+/// the oracle's limit, whose parents receive the contributions. Reuses buffers of the step.
 /// @param importance  Found by the rays, or null.
-/// @param step        Its buffers are reused.
 Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_size, const RayAllocation& allocation,
                  const PayloadTotals& payload, const ContributionUnits& units, const FoundImportance* importance,
                  ContributionSums& sums);
 
 Received nothing_received(const TransportStep& step, std::size_t elements);
 
-/// Variance of area-weighted means of independent elements, from the leaves up.
+/// Computes the variance of area-weighted means of independent elements.
 inline void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {
         double sum = 0, area = 0;  // squared areas exceed the range of a float

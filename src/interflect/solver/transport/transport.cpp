@@ -28,9 +28,9 @@ std::uint64_t walk_key(const SampleStreams& streams) {
     return mix(mix(streams.seed, purpose), streams.allocations);
 }
 
-/// Rays per task: enough to amortise the cost of a task, few enough for the second-level cache.
+/// Amortises the cost of a task; fits the second-level cache.
 constexpr std::size_t batch_rays = 1024;
-/// Number of hits between the prefetch of an element and its deposit.
+/// Hits between the prefetch of an element and its deposit.
 constexpr std::size_t rays_ahead = 32;
 
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
@@ -48,8 +48,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Returns the `visits` of ContributionUnits for random walks: their expected number, at most 1 / (1 - rho), times 2^12
-/// for chance and panes. The expected sum of power then still has 2^49 of the 2^61 units of FixedPoint.
+/// Returns the `visits` of ContributionUnits: their expected number, at most 1 / (1 - rho), times 2^12 for chance and
+/// panes. The expected sum of power then still has 2^49 of the 2^61 units of FixedPoint.
 double most_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
@@ -90,8 +90,7 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Creates the sums of importance found by the rays of each leaf and luminaire part. Returns nothing if the step
-/// carries no importance, or if it deposits importance at patches and no luminaire shoots.
+/// Returns nullopt if the step carries no importance, or if it deposits importance at patches and no luminaire shoots.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -147,7 +146,6 @@ void deposit(const TransportStep& step, const StepData& data, Batch& batch) {
     descent.finish_batch();
 }
 
-/// Completes the light of a batch by random walks.
 /// @param first_ray  Of the batch; key of the random numbers.
 void walk(const TransportStep& step, const StepData& data, const Walks& walks, std::uint64_t first_ray, Batch& batch) {
     Walkers& walkers = batch.walkers;
@@ -166,7 +164,7 @@ void walk(const TransportStep& step, const StepData& data, const Walks& walks, s
     walks.follow(first_ray, walkers, batch.descent);
 }
 
-/// Joins the points of all threads in any order; StartPoints sorts them.
+/// StartPoints sorts the points.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
@@ -214,7 +212,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     received.start_points = start_points_of(start_points);
     received.escaped_rays = escaped.rays;
     received.escaped_power = data.units.power.to_colour(escaped.power);
-    // Each line is sampled from one box. Rays of other boxes along it miss the scene, with this power on average.
+    // Rays along lines of other boxes miss the scene, with this power on average.
     if (step.emission) {
         received.shot_power -= step.emission->repeated_power();
         received.escaped_power -= step.emission->repeated_power();

@@ -14,21 +14,19 @@
 namespace interflect::detail {
 
 /// Estimates one bounce of power (Eq. 1, Prikryl et al. 2000) and importance (Eq. 7). A ray starts on leaf s with
-/// probability q_s / sum q, uniformly and cosine-distributed, or as its luminaire emits. It deposits its Payload: power
-/// at element i and importance at the hit leaf. Without refinement, i is this leaf; with refinement, an element of a
-/// pair that the oracle accepts. Unbiased on a fixed mesh if q > 0 wherever the payload is nonzero.
+/// probability q_s / sum q, uniformly and cosine-distributed, or as its luminaire emits. It deposits its Payload:
+/// importance at the hit leaf, power at the same leaf or, with refinement, at the element of a pair that the oracle
+/// accepts. Unbiased on a fixed mesh if q > 0 wherever the payload is nonzero.
 ///
-/// Rays carry B_s, not the paper's B_j (docs/method.md, One step of transport), so shot = received + escaped exactly.
+/// Rays carry B_s, not the paper's B_j (docs/method.md, One step of transport): shot = received + escaped exactly.
 /// @param forest   Grows if the oracle refines; old indices stay valid.
 /// @param sums     Zero before and after; has the capacity of the forest.
 /// @param streams  Advanced. The same streams give the same bits for any number of threads.
 /// @throws Interrupted if `stop` is due before the last ray; forest, streams and sums are then unchanged.
-///
-/// Cost: O(N (log(patches) + levels)) time. Memory: `sums`, 40 bytes per element, while rays are traced; afterwards the
-/// results.
+/// Cost: O(N (log(patches) + levels)).
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, ContributionSums& sums, const StopRequest& stop);
-/// The same with its own sums, without a stop request.
+/// Uses its own sums, without a stop request.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 

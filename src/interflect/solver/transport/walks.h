@@ -33,18 +33,18 @@ struct Walkers {
 };
 
 /// Random walks that complete a pass (TransportStep::completes_by_walks). Survival includes the transmittance of
-/// crossed panes: rays that deposit several times would otherwise multiply the particles.
+/// crossed panes: otherwise rays with several deposits would multiply the particles.
 class Walks {
   public:
     /// @param elements  Size of the forest before the step; newer elements receive through their ancestors.
     Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
           const TransportStep& step, const ContributionUnits& units, std::uint32_t elements, std::uint64_t key);
 
-    /// Adds a particle at a hit. The caller appends its filtered power by light group to `received_groups`.
+    /// The caller appends the particle's filtered power by light group to `received_groups`.
     /// @param power          Before any pane.
     /// @param transmittance  Of the panes before the hit.
     void add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const;
-    /// Traces the particles until they are absorbed or escape. @param task  Key of the random numbers.
+    /// @param task  Key of the random numbers.
     void follow(std::uint64_t task, Walkers& walkers, Descent& descent) const;
 
   private:

@@ -14,7 +14,7 @@ namespace interflect::detail {
 namespace {
 
 struct Polygon {
-    static constexpr std::size_t capacity = 8;  // clipping at the horizon adds one corner
+    static constexpr std::size_t capacity = 8;  // clipping adds one corner
 
     std::array<V3d, capacity> corner;
     std::size_t count = 0;
@@ -89,7 +89,6 @@ std::uint64_t place(const ElementForest& forest, std::uint32_t e) {
     return std::uint64_t{forest.patch(e)} << 32 | forest.path(e);
 }
 
-/// Unoccluded, over an element's points.
 struct FormFactors {
     double mean = 0;
     double spread = 0;  // largest minus smallest, extrapolated to the edges
@@ -123,7 +122,7 @@ struct LinesOfSight {
     std::uint64_t seed;
     std::int64_t& rays;
 
-    /// Samples visibility from `points` of the smaller element, weighted by unoccluded light.
+    /// Samples visibility, weighted by unoccluded light.
     void sample(std::uint32_t small, std::uint32_t large, const Quadrature& points, Exchange& exchange) {
         const PatchGeometry& geometry = forest.geometry(forest.patch(large));
         const V3f normal_x = forest.geometry(forest.patch(small)).normal(), normal_y = geometry.normal();
@@ -145,7 +144,7 @@ struct LinesOfSight {
             const float kernel = cosines / (std::numbers::pi_v<float> * d.length2() + disk);
             const double along_line = points.weight[k] * static_cast<double>(kernel);
             all += along_line;
-            // Tests both directions: the back of a one-sided face stops no ray, and rays hit only one of two coincident
+            // Both directions: the back of a one-sided face stops no ray, and rays hit only one of two coincident
             // faces.
             Rgb line = transmittance(small, x, normal_x, large, y);
             if (line != Rgb(0)) line = smaller(line, transmittance(large, y, normal_y, small, x));
@@ -157,7 +156,7 @@ struct LinesOfSight {
         exchange.variation = all > 0 ? largest_channel(most - least) : 0;
     }
 
-    /// Transmittance of the panes between two points; 0 if another surface blocks the ray.
+    /// Returns the transmittance of panes; 0 if another surface blocks the ray.
     Rgb transmittance(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
         const V3f origin = from + normal * ray_caster.ray_offset(forest.patch(source));
         const Ray ray{origin, (to - origin).normalized()};
@@ -183,7 +182,7 @@ double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V
     double sum = 0;
     for (std::size_t i = 0; i < seen.count; ++i) {
         const V3d &r = seen.corner[i], &s = seen.corner[(i + 1) % seen.count];
-        const V3d across = s.cross(r);  // s x r: polygons facing x are counter-clockwise from x
+        const V3d across = s.cross(r);  // polygons facing x are counter-clockwise from x
         const double length = across.length();
         if (length > 0) sum += std::atan2(length, r.dot(s)) * normal.dot(across) / length;
     }

@@ -18,7 +18,7 @@ using V3d = Imath::V3d;
 
 /// Unoccluded form factor from a differential area at x to a convex polygon: Lambert's edge sum (1760; Baum et al.
 /// 1989), clipped to the horizon. 0 if x is behind the polygon.
-/// @param normal   Unit normal at x.
+/// @param normal   Unit length.
 /// @param polygon  Three to seven corners [m], counter-clockwise from the lit side.
 double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V3d> polygon);
 
@@ -31,7 +31,7 @@ struct Exchange {
     float area = 0;
     /// Area times the range of form factors from its points [m^2].
     float spread_over_a = 0, spread_over_b = 0;
-    /// Transmitted share of `area`, the mean over lines of sight.
+    /// Transmitted share of `area`, a mean over lines of sight.
     Rgb transmittance{0, 0, 0};
     /// Range of the transmittance over lines of sight.
     float variation = 0;
@@ -40,9 +40,9 @@ struct Exchange {
 /// Points per side of the smaller element, each with one line of sight.
 enum class Effort { quick = 2, thorough = 4 };
 
-/// Estimator of the exchange between elements; thread-safe. Lambert's form factor to the larger element is integrated
-/// over the smaller by Gaussian quadrature. A sampled line is free if rays from each end first hit the other, apart
-/// from panes.
+/// Estimates the exchange between elements; thread-safe. Lambert's form factor to the larger element is integrated over
+/// the smaller by Gaussian quadrature. A line of sight is free if rays from each end first hit the other, apart from
+/// panes.
 class ExchangeEstimator {
   public:
     ExchangeEstimator(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t seed)
@@ -51,7 +51,7 @@ class ExchangeEstimator {
     /// Whether each extends above the other's plane by more than rounding.
     bool face_each_other(const ElementPair& pair) const;
 
-    /// @param rays  Incremented by the traced rays, at most 2 effort^2.
+    /// @param rays  Incremented by the traced rays.
     Exchange estimate(const ElementPair& pair, Effort effort, std::int64_t& rays) const;
 
   private:

@@ -24,8 +24,8 @@ namespace {
 
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
-/// Average deposits per line at which a patch's sums overflow. Normally one; more through panes and the backs of
-/// one-sided faces.
+/// Average deposits per line at which a patch's sums overflow. Normally one; more through panes and backs of one-sided
+/// faces.
 constexpr double lines_headroom = 0x1p8;
 
 struct LineDomain {
@@ -41,7 +41,7 @@ struct LineDomain {
         constexpr float margin = 1.0001f;  // for rounding
         radius = margin * std::sqrt(square);
     }
-    /// Area of the sphere's cross-section [m^2].
+    /// [m^2]
     double cross_section() const {
         return std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
     }
@@ -53,11 +53,11 @@ struct LineSegment {
     bool is_mutual;  ///< Whether `back` also sees `front`: false through the back of a one-sided face.
 };
 
-/// Active lines of a task; one object per thread.
+/// One object per thread.
 struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, looking_back;
-    /// Distance within which a patch coincides with the last crossed one [m]; initially infinite.
+    /// Distance within which a patch coincides with the last one [m]; initially infinite.
     std::vector<float> slack;
     std::vector<std::uint32_t> crossed;
     std::vector<Hit> hits, seen;
@@ -81,8 +81,8 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
     }
 }
 
-/// Advances each line to the next patch that faces it, and traces back from there. Drops lines that hit no patch, or
-/// the same one again by rounding.
+/// Advances each line to the next patch that faces it, and traces back from there. Drops lines that escape, or hit the
+/// same patch again by rounding.
 void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
     constexpr float offsets_apart = 4;  // of coincident patches; see RayCaster::ray_offset()
     bundle.segments.clear();
@@ -94,7 +94,7 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
         if (patch == none || patch == bundle.crossed[i]) continue;
         const V3f direction = bundle.lines[i].direction;
         const PatchGeometry& geometry = forest.geometry(patch);
-        // Projects the hit onto the patch: its error may exceed the ray offset.
+        // The error of the hit may exceed the ray offset.
         const V3f x = geometry.point(geometry.parameters_of(bundle.lines[i].origin + distance * direction));
         const V3f offset = ray_caster.ray_offset(patch) * geometry.normal();
         const std::size_t kept = bundle.segments.size();
@@ -116,7 +116,6 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
     }
 }
 
-/// Integer sums, independent of the order of deposits.
 class LineSums {
   public:
     /// @param power_per_radiosity  Power along a segment per unit of radiosity [m^2].
@@ -144,7 +143,7 @@ class LineSums {
         add_concurrently(started_[segment.back], 1);
         carry(segment.back, segment.front, Rgb(1));
     }
-    /// Deposits light behind panes, in one direction because a pane may be one-sided.
+    /// Deposits light in one direction, because a pane may be one-sided.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
         carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
     }
@@ -159,15 +158,14 @@ class LineSums {
             r.variance.push_back(static_cast<float>(square_.to_number(squares_[i]) / (area * area)));
             r.escaped_power += lost;
             r.shot_power += arrived + lost;
-            if (channel_sum(radiosity_[i]) > 0)
-                r.escaped_rays += escaped_rays_[i];  // excludes rays of dark walls into the open
+            if (channel_sum(radiosity_[i]) > 0) r.escaped_rays += escaped_rays_[i];  // excludes rays of dark walls
         }
         return r;
     }
     const std::vector<std::int64_t>& started() const { return started_; }
 
   private:
-    /// @param to  Receiver, or `none`. @param factor  1 for mutual exchange, else 2, times the transmittance.
+    /// @param to  May be `none`. @param factor  1 for mutual exchange, else 2, times the transmittance.
     void carry(std::uint32_t from, std::uint32_t to, const Rgb& factor) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(factor) * power_per_radiosity_;
         if (to == none) {
@@ -187,8 +185,7 @@ class LineSums {
     std::vector<std::int64_t> squares_, started_, escaped_rays_;
 };
 
-/// Passes with global lines (Sbert 1993, 1997); see docs/method.md. Constant on patches. Cost: O(N h log(patches)) for
-/// N lines in a sphere of radius R, with h = sum A / (4 pi R^2).
+/// Passes with global lines (Sbert 1993, 1997; docs/method.md).
 class GlobalLines final : public Passes {
   public:
     explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {
@@ -202,7 +199,7 @@ class GlobalLines final : public Passes {
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.forest;
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
-        // Each bounce has its own lines: products of dependent bounces would be biased.
+        // Products of dependent bounces would be biased.
         const std::uint64_t key = mix(mix(state.options.seed, line_purpose), state.streams.allocations);
         PerThread<LineBundle> bundles;
         std::atomic<bool> is_cut_short{false};

@@ -53,7 +53,7 @@ double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double 
     return area_a * area_b / (std::numbers::pi * gap * gap);
 }
 
-/// Returns received light or importance per area. @param area_of  Link::area or Link::mean_area.
+/// @param area_of  Link::area or Link::mean_area.
 template <class T>
 std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, const std::vector<T>& leaving,
                       T (Link::*area_of)() const) {
@@ -83,7 +83,7 @@ std::vector<Rgb> present_radiosity(SolverState& state) {
     return b;
 }
 
-/// Area-weighted |new - old|, relative to the area-weighted new value.
+/// Area-weighted |new - old|, relative to the new value.
 class RelativeChange {
   public:
     void add(double area, double before, double now) {
@@ -216,7 +216,7 @@ struct RadiosityRange {
     }
 };
 
-/// Returns the error bound of the exchange [m^2], including partial occlusion.
+/// Returns [m^2], including partial occlusion.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
     if (transmittance == 0) return exchange.area * bound_if_blocked;
@@ -225,8 +225,8 @@ double error_bound(const Exchange& exchange, float spread) {
 
 }  // namespace
 
-/// Returns the links whose error bound exceeds the threshold. Each end has a bound as receiver, with the other end's
-/// radiosity, and one as source, with the range of its own radiosity.
+/// Each end has an error bound as receiver, with the other end's radiosity, and one as source, with the range of its
+/// own radiosity.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const Solution& solution = state_.solution;
     const std::vector<Rgb> b = radiosity(state_.materials, forest_, solution.irradiance);

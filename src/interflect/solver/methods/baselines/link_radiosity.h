@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Default limit of links: 4.5 GiB.
+/// 4.5 GiB of links.
 inline constexpr std::size_t most_links = std::size_t{1} << 27;
 
 struct Link {
@@ -32,12 +32,11 @@ struct LinkCandidate {
 struct RefinementCandidate;
 
 /// Hierarchical radiosity (Hanrahan et al. 1991), a deterministic solver of Eq. 1, Prikryl et al. 2000. A sweep gathers
-/// one bounce over the links between elements and ends with push-pull. Only visibility is sampled.
+/// one bounce over the links and ends with push-pull. Only visibility is sampled.
 ///
 /// Four links to the children of one end replace a link if its error bound exceeds epsilon times the reference power
-/// (oracle_threshold.h). The bound is rho_i B_j A_i times the variation of F_ij over an element (Smits et al. 1992),
-/// including partial occlusion. With importance, psi is transported backwards over the same links, and bounds are
-/// weighted by psi_i / psi_max (Eq. 15).
+/// (oracle_threshold.h). The bound is rho_i B_j A_i times the variation of F_ij over an element, including partial
+/// occlusion. With importance, it is weighted by psi_i / psi_max (Eq. 15; Smits et al. 1992).
 ///
 /// The run ends when light has settled and no link needs refinement. It stays within limits.rays (except for the first
 /// links), max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
@@ -51,7 +50,7 @@ class LinkedElements : public IterationMethod {
     void prepare(SolverState& state) override;
     bool is_fulfilled(const SolverState& state) const override;
     IterationPlan plan(SolverState& state) override;
-    /// Refines links if light has settled, then gathers one bounce. @throws InputError like prepare().
+    /// Refines links if light has settled, then gathers one bounce. @throws InputError as prepare().
     Estimate trace(SolverState& state, IterationPlan& plan) override;
     void merge(SolverState&, const Estimate&, const IterationPlan&) override {}  // a sweep replaces the light
     void finish(SolverState& state) const override;

@@ -21,7 +21,7 @@
 
 namespace interflect::detail {
 
-/// Paths per task; enough for long Embree batches.
+/// Enough for long Embree batches.
 inline constexpr std::size_t paths_per_task = 4096;
 /// Maximum copies of a particle at a hit.
 inline constexpr double most_copies = 8;
@@ -43,15 +43,14 @@ constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uin
 }
 
 /// Source of particles: light, or importance (Eq. 7). Entries by patch; `emitted` and `density` continue with luminaire
-/// parts (Emission). A patch first emits its reflected view importance.
+/// parts (Emission).
 struct WalkSource {
-    std::vector<Rgb> emitted;      ///< Initial power of a source: W [lm or W], or rho V.
+    std::vector<Rgb> emitted;      ///< W [lm or W], or reflected view importance rho V.
     std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
-    std::vector<float> density;    ///< Particles per unit of leaving power, times a constant; >= 0.
+    std::vector<float> density;    ///< Particles per unit of leaving power, up to a factor; >= 0.
     bool is_grey = false;          ///< Panes transmit the mean of their channels.
 };
 
-/// Integer sums, independent of the order of deposits.
 struct PathSums {
     FixedPoint unit;
     std::vector<FixedPoint::Value> received;
@@ -65,7 +64,7 @@ struct PathSums {
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
 
-    /// Upper bound of the expected received power: emitted power / (1 - rho).
+    /// Returns emitted power / (1 - rho).
     static double most_expected(const WalkSource& payload) {
         double power = 0, rho = 0;
         for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
@@ -165,7 +164,6 @@ class PathBatch {
         allocation_->for_each_source(begin, end, emit_some);
     }
 
-    /// Deposits power at first hits and, filtered, behind panes.
     void score(Wavefront& w) {
         FixedPoint::Value escaped{};
         std::int64_t escaped_rays = 0;
@@ -195,8 +193,8 @@ class PathBatch {
         add_concurrently(sums_.escaped_rays, escaped_rays);
     }
 
-    /// Applies Russian roulette and splitting: reflected power continues as copies, n on average, each with 1/n of the
-    /// power. Below the limit of n, a copy carries the power of a particle emitted there.
+    /// Applies Russian roulette and splitting: reflected power continues as n copies on average. Below the limit of n,
+    /// a copy carries the power of a particle emitted there.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;

@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum weight of the patches that a step shoots, relative to the largest.
+/// Minimum weight of a shooting patch, relative to the largest.
 constexpr float share_of_largest = 0.5f;
 /// The last step shoots the rest: below this unshot share, or if a step would get fewer rays.
 constexpr double negligible_rest = 0.01;
@@ -146,7 +146,7 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     return !is_last;
 }
 
-/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995); see docs/method.md. Constant on patches.
+/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995; docs/method.md).
 class ProgressiveRefinement final : public IterationMethod {
   public:
     void prepare(SolverState& state) override {

@@ -63,7 +63,7 @@ BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t ray
     return arrived;
 }
 
-/// Returns the importance that guides particles (Eq. 10, or Eq. 9 on request).
+/// Returns psi of Eq. 10, or of Eq. 9 on request.
 std::vector<float> leading_importance(const Solution& so_far) {
     switch (importance_use(so_far)) {
         case ImportanceUse::off:
@@ -100,7 +100,7 @@ WalkSource light(const SolverState& state) {
     payload.density = particle_density(state.solution, payload.emitted);
     for (std::size_t i = 0; i < state.emission.part_count(); ++i) {
         payload.emitted.emplace_back(state.emission.power(i));
-        payload.density.push_back(1);  // the mean: their importance is unknown
+        payload.density.push_back(1);  // the mean: importance is unknown
     }
     return payload;
 }
@@ -168,7 +168,7 @@ Estimate RandomWalks::trace(SolverState& state, IterationPlan& plan) {
 
 void RandomWalks::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
     if (estimate.irradiance.empty()) return;
-    const bool shows_error = plan.rays >= state.schedule.start_rays();  // a remainder of the rays is too small
+    const bool shows_error = plan.rays >= state.schedule.start_rays();  // a remainder is too small
     if (shows_error) estimate_noise(state, estimate, plan.rays);
     const double before = state.history[0], now = before + static_cast<double>(plan.rays);
     const double tau = plan.warms_up ? 1 : static_cast<double>(plan.rays) / now;  // Eq. 6
