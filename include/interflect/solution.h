@@ -49,7 +49,7 @@ struct Solution {
     /// Parts of H by light group, [group][element]; they sum to H. Empty without light groups.
     std::vector<std::vector<Rgb>> groups;
     /// Part of H that comes straight from sources, by light group as `groups`, or in one entry without groups; their sum
-    /// is at most H. Empty for methods that do not keep it apart (those without passes).
+    /// is at most H. Empty for methods that do not keep it apart, which make no passes.
     std::vector<std::vector<Rgb>> direct;
     std::vector<std::string> group_names;  ///< As in source_groups(scene).
     /// Remaining scale factor of each group's sources: 1, except in files of Solver::save(), whose scene is not dimmed.
@@ -79,6 +79,7 @@ struct Leaf {
     std::array<Imath::V3d, 4> vertices{};
     float area = 0;                  ///< [m^2]
     Rgb irradiance{0, 0, 0};         ///< H [lm/m^2 or W/m^2].
+    Rgb direct{0, 0, 0};             ///< Part of H straight from sources; 0 if Solution::direct is empty [as H].
     float importance = 0;            ///< psi, all bounces; 0 without a view [1/m^2].
     float standard_error = 0;        ///< As Solution::standard_error.
     float discretisation_error = 0;  ///< As Solution::discretisation_error.
@@ -121,7 +122,7 @@ struct SolvedScene {
 ///         negative, not finite or not one per element. Every written file is therefore readable.
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution);
 
-/// Reads files of write_solution() and of format versions 2 to 4.
+/// Reads files of write_solution() and of format versions 2 to 5.
 /// @throws InputError for a file that is missing, damaged or of another kind.
 SolvedScene read_solution(const std::filesystem::path& path);
 

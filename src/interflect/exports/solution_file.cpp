@@ -28,8 +28,9 @@ using namespace detail;
 
 namespace {
 
-/// Version 3 adds origin, contacts and surfaces of patches; 4 checksums, options and result; 5 all iterations.
-constexpr int format_version = 5, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
+/// Version 3 adds origin, contacts and surfaces of patches; 4 checksums, options and result; 5 all iterations; 6
+/// direct light.
+constexpr int format_version = 6, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
               first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 
@@ -139,6 +140,10 @@ void require_valid(const Solution& solution) {
         const auto* numbers = reinterpret_cast<const float*>(of_group.data());
         require_none(fault_of({numbers, 3 * of_group.size()}, 3, forest, "irradiance by a light group"));
     }
+    for (const std::vector<Rgb>& part : solution.direct) {
+        const auto* numbers = reinterpret_cast<const float*>(part.data());
+        require_none(fault_of({numbers, 3 * part.size()}, 3, forest, "direct irradiance"));
+    }
     if (!is_finite(solution.emitted_power)) require_none("the emitted power is not finite");
 }
 
@@ -181,6 +186,14 @@ void read_history(const Hdf5Reader& file, Solution& solution) {
 
 std::string group_dataset(std::size_t group) { return fmt::format("/solution/groups/{}", group); }
 
+std::string direct_dataset(std::size_t part) { return fmt::format("/solution/direct/{}", part); }
+
+void read_direct(const Hdf5Reader& file, Solution& solution) {
+    if (!file.has("/solution/direct")) return;
+    for (std::size_t part = 0; part < std::max<std::size_t>(1, solution.groups.size()); ++part)
+        solution.direct.push_back(grouped<Rgb>(file.read<float>(direct_dataset(part), 3)));
+}
+
 void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
     Solution& solution = solved.solution;
     const std::size_t named = solved.scene.light_groups.size();  // other sources may form one more group
@@ -212,6 +225,7 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
             solution.*n.values = file.read<float>(n.dataset);
     }
     read_groups(file, solved);
+    read_direct(file, solution);
     if (version >= first_with_history) read_history(file, solution);
     IterationReport& last = solution.iterations.back();
     last.elements = solution.forest->size();
@@ -262,12 +276,14 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
     for (FileRange& range : write_textures(file, scene)) ranges.push_back(std::move(range));
     for (std::size_t g = 0; g < solution.groups.size(); ++g)
         ranges.push_back(write(group_dataset(g).c_str(), flattened(solution.groups[g]), 3));
+    for (std::size_t part = 0; part < solution.direct.size(); ++part)
+        ranges.push_back(write(direct_dataset(part).c_str(), flattened(solution.direct[part]), 3));
     return ranges;
 }
 
 constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
 /// Increase whenever an array of the state changes.
-constexpr int state_version = 3;
+constexpr int state_version = 4;
 
 std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {
     Json arrays = Json::array();

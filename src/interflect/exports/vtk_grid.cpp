@@ -73,6 +73,12 @@ void VtkGrid::visit_cell_data(const Sink& sink) const {
     };
     add("illuminance", [&](std::uint32_t e) { return luminance(solution_.irradiance[e]); });
     add("irradiance", [&](std::uint32_t e) { return solution_.irradiance[e]; });
+    if (!solution_.direct.empty())
+        add("direct_irradiance", [&](std::uint32_t e) {
+            Rgb sum(0);
+            for (const std::vector<Rgb>& part : solution_.direct) sum += part[e];
+            return sum;
+        });
     for (std::size_t g = 0; g < solution_.groups.size(); ++g)
         add(fmt::format("irradiance_of_group_{}", g), [&](std::uint32_t e) { return solution_.groups[g][e]; });
     add("radiosity", [&](std::uint32_t e) { return leaving[e]; });

@@ -24,6 +24,7 @@ std::vector<Leaf> leaves(const Scene& scene, const Solution& solution) {
         } else {
             leaf.vertices = {corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
         }
+        for (const std::vector<Rgb>& part : solution.direct) leaf.direct += part[e];
         if (has_importance) leaf.importance = solution.view_importance[e] + solution.indirect_importance[e];
         if (!solution.standard_error.empty()) leaf.standard_error = solution.standard_error[e];
         if (!solution.discretisation_error.empty()) leaf.discretisation_error = solution.discretisation_error[e];
