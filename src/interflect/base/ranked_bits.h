@@ -24,7 +24,6 @@ class RankedBits {
     bool operator[](std::uint32_t number) const {
         return number / 64 < words_.size() && (words_[number / 64].bits >> number % 64 & 1u);
     }
-    /// Returns the number of smaller members.
     std::uint32_t rank(std::uint32_t number) const {
         const Word& word = words_[number / 64];
         const std::uint64_t lower = (std::uint64_t{1} << number % 64) - 1;

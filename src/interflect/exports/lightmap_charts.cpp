@@ -28,7 +28,7 @@ struct BorderEdge {
     V3f inwards;  // unit vector in the plane
 };
 
-/// Keeps joints within objects.
+/// Omits joints between objects.
 Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     Joints joints = smooth.seams;
     std::vector<std::uint32_t> first(smooth.edges.count, none);
@@ -50,19 +50,19 @@ class Neighbourhood {
   public:
     Neighbourhood(const Scene& scene, const Joints& joints)
         : scene_(scene), neighbours_(scene.patches.size()), surface_(flat_surfaces(scene)) {
-        std::vector<Intervals> inner(4 * scene.patches.size());
+        std::vector<Intervals> shared(4 * scene.patches.size());
         for (const auto& joint : joints) {
             const std::uint32_t p = joint.edge[0] / 4, q = joint.edge[1] / 4;
-            if (side(p) != side(q)) continue;
+            if (surface_side(p) != surface_side(q)) continue;
             neighbours_[p].push_back(q);
             neighbours_[q].push_back(p);
-            for (std::size_t k = 0; k < 2; ++k) inner[joint.edge[k]].emplace_back(joint.from[k], joint.to[k]);
+            for (std::size_t k = 0; k < 2; ++k) shared[joint.edge[k]].emplace_back(joint.from[k], joint.to[k]);
         }
-        for (std::uint32_t edge = 0; edge < inner.size(); ++edge)
-            if (static_cast<int>(edge % 4) < scene.patches[edge / 4].vertex_count()) add_border(edge, inner[edge]);
+        for (std::uint32_t edge = 0; edge < shared.size(); ++edge)
+            if (static_cast<int>(edge % 4) < scene.patches[edge / 4].vertex_count()) add_border(edge, shared[edge]);
     }
 
-    std::uint64_t side(std::uint32_t p) const {
+    std::uint64_t surface_side(std::uint32_t p) const {
         const bool is_back = scene_.patches[p].other_side < p;
         return std::uint64_t{surface_[p]} << 1 | static_cast<std::uint64_t>(is_back);
     }
@@ -72,17 +72,17 @@ class Neighbourhood {
   private:
     using Intervals = std::vector<std::pair<float, float>>;
 
-    void add_border(std::uint32_t edge, Intervals inner) {
+    void add_border(std::uint32_t edge, Intervals shared) {
         constexpr float rounding = 1e-5f;
         const Patch& patch = scene_.patches[edge / 4];
         const int corner = static_cast<int>(edge % 4);
         const V3f& start = scene_.vertices[patch.vertices[corner]];
         const V3f along = scene_.vertices[patch.vertices[(corner + 1) % patch.vertex_count()]] - start;
         const V3f inwards = PatchGeometry(scene_, patch).normal().cross(along).normalized();
-        std::sort(inner.begin(), inner.end());
-        inner.emplace_back(1.0f, 1.0f);
+        std::sort(shared.begin(), shared.end());
+        shared.emplace_back(1.0f, 1.0f);
         float end = 0;
-        for (const auto& [low, high] : inner) {
+        for (const auto& [low, high] : shared) {
             if (low > end + rounding) border_.push_back({edge / 4, start + end * along, start + low * along, inwards});
             end = std::max(end, high);
         }
@@ -100,18 +100,19 @@ float distance(const V3f& x, const BorderEdge& edge) {
     return (x - edge.a - t * along).length();
 }
 
-bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float width) {
-    constexpr float opposite = -0.5f;
-    if (!(e.inwards.dot(f.inwards) < opposite)) return false;
-    const V3f middles = (f.a + f.b) / 2 - (e.a + e.b) / 2;
-    const float rounding = 1e-3f * width;
-    if (e.inwards.dot(middles) > rounding || f.inwards.dot(middles) < -rounding) return false;
+bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float gap) {
+    constexpr float opposite_cosine = -0.5f;
+    if (!(e.inwards.dot(f.inwards) < opposite_cosine)) return false;
+    const V3f between_middles = (f.a + f.b) / 2 - (e.a + e.b) / 2;
+    const float rounding = 1e-3f * gap;
+    // The gap is outside both patches.
+    if (e.inwards.dot(between_middles) > rounding || f.inwards.dot(between_middles) < -rounding) return false;
     // Edges that only touch at a corner enclose no gap.
     const V3f along = (e.b - e.a).normalized();
     const float length = (e.b - e.a).length(), s = along.dot(f.a - e.a), t = along.dot(f.b - e.a);
     const float overlap = std::min(length, std::max(s, t)) - std::max(0.0f, std::min(s, t));
     if (!(overlap > rounding)) return false;
-    return std::min({distance(e.a, f), distance(e.b, f), distance(f.a, e), distance(f.b, e)}) < width;
+    return std::min({distance(e.a, f), distance(e.b, f), distance(f.a, e), distance(f.b, e)}) < gap;
 }
 
 void add_conflicts(std::span<const BorderEdge> border, float gap, ChartConflicts& conflicts) {
@@ -132,16 +133,16 @@ void add_conflicts(std::span<const BorderEdge> border, float gap, ChartConflicts
     }
 }
 
-ChartConflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbourhood, double width) {
+ChartConflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbourhood, double gap) {
     std::vector<BorderEdge> border = neighbourhood.border();
-    const auto side = [&](const BorderEdge& edge) { return neighbourhood.side(edge.patch); };
+    const auto side = [&](const BorderEdge& edge) { return neighbourhood.surface_side(edge.patch); };
     std::stable_sort(border.begin(), border.end(),
                      [&](const BorderEdge& a, const BorderEdge& b) { return side(a) < side(b); });
     ChartConflicts conflicts(scene.patches.size());
     for (auto first = border.begin(); first != border.end();) {
         const auto end =
             std::find_if(first, border.end(), [&](const BorderEdge& edge) { return side(edge) != side(*first); });
-        add_conflicts(std::span<const BorderEdge>(first, end), static_cast<float>(width), conflicts);
+        add_conflicts(std::span<const BorderEdge>(first, end), static_cast<float>(gap), conflicts);
         first = end;
     }
     return conflicts;
@@ -149,20 +150,20 @@ ChartConflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbour
 
 std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>& shown,
                                      const Neighbourhood& neighbourhood, const ChartConflicts& conflicts) {
-    std::vector<std::uint32_t> chart(scene.patches.size(), none);
+    std::vector<std::uint32_t> piece_of(scene.patches.size(), none);
     std::vector<FlatPatches> pieces;
-    for (std::uint32_t seed = 0; seed < chart.size(); ++seed) {
-        if (chart[seed] != none || !shown[seed]) continue;
+    for (std::uint32_t seed = 0; seed < piece_of.size(); ++seed) {
+        if (piece_of[seed] != none || !shown[seed]) continue;
         const auto number = static_cast<std::uint32_t>(pieces.size());
         std::vector<std::uint32_t> group{seed};
-        chart[seed] = number;
+        piece_of[seed] = number;
         for (std::size_t i = 0; i < group.size(); ++i)
             for (const std::uint32_t next : neighbourhood.neighbours(group[i])) {
-                const auto is_here = [&](std::uint32_t other) { return chart[other] == number; };
-                if (chart[next] != none || !shown[next] ||
+                const auto is_here = [&](std::uint32_t other) { return piece_of[other] == number; };
+                if (piece_of[next] != none || !shown[next] ||
                     std::any_of(conflicts[next].begin(), conflicts[next].end(), is_here))
                     continue;
-                chart[next] = number;
+                piece_of[next] = number;
                 group.push_back(next);
             }
         pieces.push_back(projected(scene, group));

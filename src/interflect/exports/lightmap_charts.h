@@ -11,16 +11,16 @@ namespace interflect::detail {
 
 /// Patches in a plane, and their rectangle in a lightmap. Its border runs through the outermost texel centres.
 struct LightmapChart {
-    FlatPatches patches;  ///< From texel (0, 0) along columns and rows [m].
+    FlatPatches patches;  ///< Coordinates along columns and rows from texel (0, 0) [m].
     Imath::V2d size;      ///< [m]
     int columns = 2, rows = 2;
-    int page = 0, left = 0, top = 0;  ///< Position of texel (0, 0).
+    int page = 0, left = 0, top = 0;  ///< Place of texel (0, 0), set by pack_charts().
 
     Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
 };
 
-/// Makes charts from kept_layouts(). Unfolds other smooth surfaces (unfolded()), split at discontinuities of light and
-/// at gaps narrower than two texels.
+/// Makes charts of the `shown` patches: from kept_layouts(), and of other smooth surfaces, unfolded() and split at
+/// creases, contacts and gaps narrower than two texels.
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings = nullptr);
 

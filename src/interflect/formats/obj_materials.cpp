@@ -49,8 +49,7 @@ bool has_transparency(const StoredImage& image) {
     return false;
 }
 
-/// Returns the maximum argument count. -o, -s and -t take numbers.
-std::size_t option_words(std::string_view option) {
+std::size_t most_arguments(std::string_view option) {
     if (option == "-mm") return 2;
     return option == "-o" || option == "-s" || option == "-t" ? 3 : 1;
 }
@@ -118,7 +117,8 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
     while (words.size() > 1 && words[0].starts_with('-')) {
         warn("texture-option", "option of a texture map is ignored", where);
         std::size_t taken = 1;
-        const std::size_t most = std::min(1 + option_words(words[0]), words.size() - 1);
+        const std::size_t most = std::min(1 + most_arguments(words[0]), words.size() - 1);
+        // A single argument may be any word; several are optional numbers.
         while (taken < most && (most == 2 || parse_number(words[taken]))) ++taken;
         words = words.subspan(taken);
     }
@@ -187,8 +187,8 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
 bool ObjMaterials::is_readable(const fs::path& texture, std::string_view key, const Definition& definition) {
     std::error_code ignored;
     const std::string extension = lower_case_extension(texture);
-    const bool is_photograph = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
-    const bool is_known = is_photograph || (key == map_of_colours && (extension == ".exr" || extension == ".hdr"));
+    const bool is_png_or_jpeg = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+    const bool is_known = is_png_or_jpeg || (key == map_of_colours && (extension == ".exr" || extension == ".hdr"));
     if (is_known && fs::exists(texture, ignored)) return true;
     warn("missing-texture",
          fmt::format("texture ({}) that is missing, or no {}, is left out", key,
@@ -245,12 +245,12 @@ void ObjMaterials::cut_out(const Definition& definition, Material& material) {
     for (std::size_t i = 0; i < mask.pixel_count(); ++i) {
         const float stored =
             has_alpha ? mask.value(i, 3) : (mask.value(i, 0) + mask.value(i, 1) + mask.value(i, 2)) / 3;
-        const float there = definition.opacity * std::min(stored, 1.0f);
+        const float covered = definition.opacity * std::min(stored, 1.0f);
         Rgb colour = texel_at(colours, texel_centre(reflectance, i));
         for (int c = 0; c < 3; ++c) colour[c] = std::min(colour[c], 1.0f);
-        reflectance.texels.push_back(colour * there);
-        opening.texels.emplace_back(1 - there);
-        coverage.texels.emplace_back(there);
+        reflectance.texels.push_back(colour * covered);
+        opening.texels.emplace_back(1 - covered);
+        coverage.texels.emplace_back(covered);
     }
     material.reflectance_texture = add_texture(std::move(reflectance));
     material.transmittance = Rgb(1);

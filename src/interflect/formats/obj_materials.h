@@ -19,7 +19,7 @@ class ObjMaterials {
     /// Adds a default material.
     ObjMaterials(Model& model, const ReadOptions& options);
 
-    /// @throws InputError, std::invalid_argument
+    /// @throws InputError; std::invalid_argument if forbidden by the options.
     void read(const std::filesystem::path& path, const Location& where);
     void read_text(std::string_view text, const std::filesystem::path& path);
     /// Returns an index into Model::materials; 0, with a warning, if unknown.
@@ -33,13 +33,13 @@ class ObjMaterials {
         std::filesystem::path texture;  // map_Kd
         std::filesystem::path mask;     // map_d
         Location where;
-        std::uint32_t material = none;  // once used
+        std::uint32_t material = none;  // set by find()
     };
     void read_line(std::span<const std::string_view> words, Definition& definition, const Location& where);
     std::filesystem::path texture_path(std::span<const std::string_view> words, const Location& where);
     std::uint32_t convert(const std::string& name, const Definition& definition);
     std::uint32_t texture(const Definition& definition);
-    /// White if unreadable.
+    /// White if missing.
     Texture read_colours(const Definition& definition);
     StoredImage read_mask(const Definition& definition);
     bool is_readable(const std::filesystem::path& texture, std::string_view key, const Definition& definition);

@@ -39,7 +39,6 @@ std::string material_name(const Material& material) {
     return name;
 }
 
-/// Splits "room.desk.leg".
 std::vector<std::string> object_path(const std::string& dotted_name) {
     std::vector<std::string> path;
     if (dotted_name.empty()) return path;

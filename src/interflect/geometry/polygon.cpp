@@ -21,8 +21,8 @@ namespace {
 using Imath::V3d;
 using Loop = std::vector<std::uint32_t>;
 
-/// Smaller heights are noise: float roundings of three vertices and their differences.
-constexpr double noise_in_roundings = 4;
+/// Noise of heights in float epsilons: roundings of three vertices and their differences.
+constexpr double height_noise = 4;
 
 V3d position(const Scene& scene, std::uint32_t vertex) { return V3d(scene.vertices[vertex]); }
 
@@ -46,7 +46,7 @@ V3d doubled_area(const Scene& scene, const Loop& loop) {
 struct OutlinePlane {
     V3d normal{0};        ///< Unit length; zero without area.
     double size = 0;      ///< Diagonal of the bounding box [m].
-    double rounding = 0;  ///< Smaller heights are noise [m].
+    double rounding = 0;  ///< Noise of heights [m].
     bool degenerate = true;
     bool self_crossing = false;  ///< Degenerate only because opposite areas cancel.
 
@@ -60,10 +60,10 @@ struct OutlinePlane {
             largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
         }
         size = box.size().length();
-        rounding = noise_in_roundings * std::numeric_limits<float>::epsilon() * largest;
-        const V3d area = doubled_area(scene, outline);
-        degenerate = area.length() <= rounding * size;
-        normal = area.normalized();
+        rounding = height_noise * std::numeric_limits<float>::epsilon() * largest;
+        const V3d doubled = doubled_area(scene, outline);
+        degenerate = doubled.length() <= rounding * size;
+        normal = doubled.normalized();
         self_crossing = degenerate && width(scene, outline) > rounding;
     }
 
@@ -80,12 +80,12 @@ struct OutlinePlane {
     }
 };
 
-bool is_convex_planar_quadrilateral(const Scene& scene, const Loop& loop, const OutlinePlane& frame) {
+bool is_convex_planar_quadrilateral(const Scene& scene, const Loop& loop, const OutlinePlane& plane) {
     if (loop.size() != 4 || !is_planar(scene, {loop[0], loop[1], loop[2], loop[3]})) return false;
     for (std::size_t i = 0; i < 4; ++i) {
         const V3d x = position(scene, loop[i]);
         const V3d in = x - position(scene, loop[(i + 3) % 4]), out = position(scene, loop[(i + 1) % 4]) - x;
-        const bool turns_left = in.cross(out).dot(frame.normal) > frame.rounding * std::max(in.length(), out.length());
+        const bool turns_left = in.cross(out).dot(plane.normal) > plane.rounding * std::max(in.length(), out.length());
         if (!turns_left) return false;
     }
     return true;
@@ -118,18 +118,18 @@ class PatchAdder {
 
 class Triangulation {
   public:
-    Triangulation(Scene& scene, const OutlinePlane& frame, std::uint32_t origin)
-        : scene_(scene), frame_(frame), origin_(position(scene, origin)) {}
+    Triangulation(Scene& scene, const OutlinePlane& plane, std::uint32_t origin)
+        : scene_(scene), plane_(plane), origin_(position(scene, origin)) {}
 
     /// Returns three corners per triangle; empty if the tessellator failed.
     std::vector<std::uint32_t> operator()(std::span<const Loop> loops);
 
   private:
     // Tessellator coordinates: unit size, relative to the first vertex.
-    V3d local(const V3d& x) const { return (x - origin_) / frame_.size; }
-    V3d global(const V3d& x) const { return origin_ + x * frame_.size; }
+    V3d local(const V3d& x) const { return (x - origin_) / plane_.size; }
+    V3d global(const V3d& x) const { return origin_ + x * plane_.size; }
 
-    std::uint32_t combined(const V3d& x, void* const* neighbours, const GLfloat* weights);
+    std::uint32_t combined_vertex(const V3d& x, void* const* neighbours, const GLfloat* weights);
 
     static void emit(void* vertex, void* self) {
         static_cast<Triangulation*>(self)->corners_.push_back(*static_cast<std::uint32_t*>(vertex));
@@ -137,28 +137,28 @@ class Triangulation {
     static void combine(const GLdouble* x, void* const* neighbours, const GLfloat* weights, void** out,
                         void* self_pointer) {
         auto* self = static_cast<Triangulation*>(self_pointer);
-        self->handles_.push_back(self->combined(self->global(V3d(x[0], x[1], x[2])), neighbours, weights));
+        self->handles_.push_back(self->combined_vertex(self->global(V3d(x[0], x[1], x[2])), neighbours, weights));
         *out = &self->handles_.back();
     }
     static void fail(GLenum, void* self) { static_cast<Triangulation*>(self)->failed_ = true; }
     static void ignore_edge_flag(GLboolean, void*) {}
 
     Scene& scene_;
-    const OutlinePlane& frame_;
+    const OutlinePlane& plane_;
     V3d origin_;
     std::deque<std::uint32_t> handles_;  // for GLU's pointers; addresses stay valid
     std::vector<std::uint32_t> corners_;
     bool failed_ = false;
 };
 
-std::uint32_t Triangulation::combined(const V3d& x, void* const* neighbours, const GLfloat* weights) {
+std::uint32_t Triangulation::combined_vertex(const V3d& x, void* const* neighbours, const GLfloat* weights) {
     std::vector<std::uint32_t> vertices;
     std::vector<float> weights_of_vertices;
     for (int i = 0; i < 4; ++i) {
         if (!neighbours[i]) continue;
         vertices.push_back(*static_cast<std::uint32_t*>(neighbours[i]));
         weights_of_vertices.push_back(weights[i]);
-        if ((position(scene_, vertices.back()) - x).length() <= frame_.rounding) return vertices.back();
+        if ((position(scene_, vertices.back()) - x).length() <= plane_.rounding) return vertices.back();
     }
     return add_vertex(scene_, V3f(x), interpolated(scene_, vertices, weights_of_vertices));
 }
@@ -169,7 +169,7 @@ std::vector<std::uint32_t> Triangulation::operator()(std::span<const Loop> loops
     if (!tessellator) throw std::bad_alloc();
     GLUtesselator* const t = tessellator.get();
     gluTessProperty(t, GLU_TESS_WINDING_RULE, GLU_TESS_WINDING_ODD);
-    gluTessNormal(t, frame_.normal.x, frame_.normal.y, frame_.normal.z);
+    gluTessNormal(t, plane_.normal.x, plane_.normal.y, plane_.normal.z);
     gluTessCallback(t, GLU_TESS_VERTEX_DATA, callback(&emit));
     gluTessCallback(t, GLU_TESS_COMBINE_DATA, callback(&combine));
     gluTessCallback(t, GLU_TESS_ERROR_DATA, callback(&fail));
@@ -199,16 +199,16 @@ PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_
     for (const Loop& loop : loops) clean.push_back(without_repeats(scene, loop));
     if (clean.empty()) return PolygonResult::degenerate;
     const Loop& outline = clean[0];
-    const OutlinePlane frame(scene, outline);
-    if (frame.degenerate) return frame.self_crossing ? PolygonResult::self_crossing : PolygonResult::degenerate;
+    const OutlinePlane plane(scene, outline);
+    if (plane.degenerate) return plane.self_crossing ? PolygonResult::self_crossing : PolygonResult::degenerate;
 
     PatchAdder patches(scene, material, object, two_sided);
     if (clean.size() == 1 && outline.size() == 3) {
         patches.add(outline[0], outline[1], outline[2]);
-    } else if (clean.size() == 1 && is_convex_planar_quadrilateral(scene, outline, frame)) {
+    } else if (clean.size() == 1 && is_convex_planar_quadrilateral(scene, outline, plane)) {
         patches.add(outline[0], outline[1], outline[2], outline[3]);
     } else {
-        const std::vector<std::uint32_t> corners = Triangulation(scene, frame, outline[0])(clean);
+        const std::vector<std::uint32_t> corners = Triangulation(scene, plane, outline[0])(clean);
         for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
             const Loop triangle(corners.begin() + static_cast<std::ptrdiff_t>(i),
                                 corners.begin() + static_cast<std::ptrdiff_t>(i + 3));

@@ -15,10 +15,10 @@ enum class PolygonResult {
 };
 
 /// Adds triangles and convex planar quadrilaterals (planarity.h) as one patch, and triangulates others. Keeps the
-/// vertex order; merges consecutive vertices at one position. Omits patches below smallest_face_area, and triangles
-/// whose height is below the noise of float rounding.
-/// @param loops      Outline, counter-clockwise from the front, then holes in any direction (even-odd rule). A seam may
-///     join outline and hole. Crossings become new vertices with interpolated attributes.
+/// vertex order; merges consecutive vertices at one position. Omits patches below smallest_face_area, and degenerate
+/// triangles.
+/// @param loops      Outline, counter-clockwise from the front, then holes in any direction (even-odd rule). Doubled
+///     edges may join outline and hole. Crossings become new vertices with interpolated attributes.
 /// @param two_sided  Adds a back after each front, in reverse order from the same vertex.
 PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
                           std::uint32_t object, bool two_sided);

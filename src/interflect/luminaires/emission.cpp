@@ -17,7 +17,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Returns the scene's box, enlarged: rays that start on it start outside the scene.
+/// Rays from it start outside the scene.
 Imath::Box3f box_around(const Scene& scene) {
     constexpr float margin = 1e-3f;  // relative to the diagonal
     Imath::Box3f box;

@@ -28,12 +28,10 @@ class KnownLight {
     int level(std::uint32_t patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
     const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
-    /// Returns rho H / pi.
     Rgb reflected_radiance(const Place& place) const;
 
-    /// Returns whether A / d^2 <= 0.25 sr.
     bool is_far(const Place& place, float distance2) const {
-        constexpr float largest_angle = 0.25f;
+        constexpr float largest_angle = 0.25f;  // [sr]
         return forest_.area(place.leaf) <= largest_angle * distance2;
     }
 

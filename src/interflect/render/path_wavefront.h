@@ -182,11 +182,10 @@ class PathWavefront {
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
     /// Returns the density of the path's own direction [1/sr], per path.
     float direction_density(const Path& path, const V3f& direction) const;
-    /// Returns the weight of light found by the path's own direction, against shadow rays to it. Densities in [1/sr].
+    /// Returns the MIS weight of light found by the path's own direction. Densities in [1/sr].
     float direction_weight(float direction_density, float light_density) const;
     std::uint32_t shadow_rays_at(std::uint32_t vertex) const;
     const Sequence& sequence(const Path& path) const { return sequences_[path.index / s_.batch_size]; }
-    /// Returns the index of the path's points in its sequence.
     std::uint32_t point_index(const Path& path) const {
         return sequence(path).first + path.index % static_cast<std::uint32_t>(s_.batch_size);
     }

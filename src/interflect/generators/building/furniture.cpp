@@ -126,17 +126,17 @@ void add_drawers(const Solids& solids, std::uint32_t wood, const Palette& palett
 }
 
 void build_workstation(const Solids& solids, const Palette& palette, RandomSequence& random) {
-    constexpr float half_width = .8f - gap, depth = .78f, under = .71f, top = .735f, side = .025f;
+    constexpr float half_width = .8f - gap, depth = .78f, underside = .71f, top = .735f, side = .025f;
     const std::uint32_t wood = random.pick(std::span(palette.woods));
-    solids.box({-half_width, gap, under}, {half_width, depth, top}, wood);
+    solids.box({-half_width, gap, underside}, {half_width, depth, top}, wood);
     for (const float x : {-half_width, half_width - side})
-        solids.box({x, .03f, gap}, {x + side, depth - .03f, under - gap}, wood);
-    solids.box({-half_width + side + gap, .05f, .30f}, {half_width - side - gap, .07f, under - gap}, wood);
+        solids.box({x, .03f, gap}, {x + side, depth - .03f, underside - gap}, wood);
+    solids.box({-half_width + side + gap, .05f, .30f}, {half_width - side - gap, .07f, underside - gap}, wood);
     add_drawers(solids.at({.54f, .10f, 0}), wood, palette);
 
     add_monitor(solids.at({random.between(-.1f, .1f), .22f, top}), palette);
-    solids.at({random.between(-.08f, .08f), .60f, top}, random.between(-.1f, .1f))
-        .box({-.22f, -.07f, gap}, {.22f, .07f, .02f}, palette.plastic);
+    const Solids keyboard = solids.at({random.between(-.08f, .08f), .60f, top}, random.between(-.1f, .1f));
+    keyboard.box({-.22f, -.07f, gap}, {.22f, .07f, .02f}, palette.plastic);
     add_desk_lamp(solids.at({.60f, .20f, top}, random.between(-.5f, .5f)), palette);
     add_mug(solids.at({random.between(.45f, .65f), random.between(.45f, .65f), top}), palette, random);
     add_pile(solids.at({-.58f, .22f, top}, random.between(-.15f, .15f)), 3, .025f, palette, random);
@@ -148,14 +148,14 @@ void build_workstation(const Solids& solids, const Palette& palette, RandomSeque
 
 void build_cabinet(const Solids& solids, const Palette& palette, RandomSequence& random) {
     constexpr float half_width = .45f - gap, depth = .44f, height = 1.15f, door = .02f;
-    constexpr float front = depth - door - gap;  // of the body
-    solids.box({-half_width + .02f, gap, gap}, {half_width - .02f, front - .03f, .06f}, palette.plastic);
-    solids.box({-half_width, gap, .06f + gap}, {half_width, front - gap, height}, palette.lacquer);
-    for (const float x : {-1.f, 1.f}) {
-        const float inner = x * gap / 2, outer = x * half_width;
-        solids.box({std::min(inner, outer), front, .08f}, {std::max(inner, outer), front + door - gap, height},
+    constexpr float door_rear = depth - door - gap;
+    solids.box({-half_width + .02f, gap, gap}, {half_width - .02f, door_rear - .03f, .06f}, palette.plastic);
+    solids.box({-half_width, gap, .06f + gap}, {half_width, door_rear - gap, height}, palette.lacquer);
+    for (const float side : {-1.f, 1.f}) {
+        const float inner = side * gap / 2, outer = side * half_width;
+        solids.box({std::min(inner, outer), door_rear, .08f}, {std::max(inner, outer), door_rear + door - gap, height},
                    palette.lacquer);
-        solids.box({x * .05f - .008f, front + door, .65f}, {x * .05f + .008f, front + door + .012f, .80f},
+        solids.box({side * .05f - .008f, door_rear + door, .65f}, {side * .05f + .008f, door_rear + door + .012f, .80f},
                    palette.metal);
     }
     add_books(solids, {-.40f, .05f, height + gap}, {.05f, .34f, height + .36f}, binders, palette, random);
@@ -164,16 +164,16 @@ void build_cabinet(const Solids& solids, const Palette& palette, RandomSequence&
 }
 
 void build_table(const Solids& solids, const Palette& palette, RandomSequence& random) {
-    constexpr float half_x = .8f, half_y = .42f, under = .70f, top = .73f, reach = .62f;
+    constexpr float half_x = .8f, half_y = .42f, underside = .70f, top = .73f, chair_distance = .62f;
     const std::uint32_t wood = random.pick(std::span(palette.woods));
     const std::uint32_t fabric = random.pick(std::span(palette.fabrics));
     const Solids middle = solids.at({0, table.depth / 2, 0});
-    middle.box({-half_x, -half_y, under}, {half_x, half_y, top}, wood);
-    add_legs(middle, half_x - .05f, half_y - .05f, .06f, under - gap, wood);
+    middle.box({-half_x, -half_y, underside}, {half_x, half_y, top}, wood);
+    add_legs(middle, half_x - .05f, half_y - .05f, .06f, underside - gap, wood);
     for (const float x : {-.4f, .4f})
         for (const float side : {-1.f, 1.f}) {
             const float turn = random.between(-.25f, .25f) + (side > 0 ? 3.1416f : 0);
-            const V3f place(x + random.between(-.04f, .04f), side * (reach + random.between(0, .1f)), 0);
+            const V3f place(x + random.between(-.04f, .04f), side * (chair_distance + random.between(0, .1f)), 0);
             add_chair(middle.at(place, turn), wood, fabric);
         }
     for (const float x : {-.5f, 0.f, .5f}) {

@@ -8,8 +8,8 @@
 
 namespace interflect::detail::building {
 
-/// Local x points right, y to the front and z up; the origin is the middle of the back, on the floor. Parts are at
-/// least `gap` inside |x| < width / 2, 0 < y < depth and z > 0.
+/// From the back, x points right, y to the front and z up; the origin is the middle of the back, on the floor. Parts
+/// are at least `gap` inside |x| < width / 2, 0 < y < depth and z > 0.
 struct Furniture {
     std::string_view name;
     float width, depth;  ///< [m]
@@ -27,7 +27,7 @@ extern const Furniture picture;  ///< Reserves the floor below.
 extern const Furniture cartons;
 extern const Furniture waste_bin;
 
-/// Adds a luminaire of 1.2 m (x) by 0.6 m (y), emitting downwards; the origin is its centre on the ceiling.
+/// Adds a luminaire of 1.2 m (x) by 0.6 m (y); the origin is its centre on the ceiling.
 void add_luminaire(const Solids& solids, const Palette& palette, RandomSequence& random);
 
 }  // namespace interflect::detail::building

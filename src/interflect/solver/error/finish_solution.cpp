@@ -14,7 +14,6 @@ namespace interflect::detail {
 
 namespace {
 
-/// Clamps direct light to the range from 0 to all light.
 void limit_direct(const Solution& solution, GroupLight& direct) {
     for (std::size_t g = 0; g < direct.size(); ++g) {
         const std::vector<Rgb>& all = solution.groups.empty() ? solution.irradiance : solution.groups[g];

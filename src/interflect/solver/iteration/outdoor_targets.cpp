@@ -19,7 +19,7 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t rays_at_once = 1024;
-constexpr std::uint64_t purpose = 0x61696d;  // distinct from other streams
+constexpr std::uint64_t aiming_stream = 0x61696d;
 
 struct LineFinder {
     const SolverState& state;
@@ -57,23 +57,23 @@ struct LineFinder {
         std::vector<OutdoorLine> lines;
         if (state.emission.has_sky()) {
             // Directions have density cos(theta) / pi: irradiance is pi times the mean radiance.
-            std::vector<double> of_radiance;
-            of_radiance.reserve(importance.size());
-            for (const double i : importance) of_radiance.push_back(i * std::numbers::pi);
-            keep_escaping(batch.rays, of_radiance, none, lines);
+            std::vector<double> importance_per_radiance;
+            importance_per_radiance.reserve(importance.size());
+            for (const double i : importance) importance_per_radiance.push_back(i * std::numbers::pi);
+            keep_escaping(batch.rays, importance_per_radiance, none, lines);
         }
         for (std::uint32_t sun = 0; sun < state.emission.sun_count(); ++sun) {
             std::vector<Ray> rays;
-            std::vector<double> of_irradiance;
+            std::vector<double> importance_per_irradiance;
             for (std::size_t r = 0; r < batch.rays.size(); ++r) {
                 const auto words = random_words(mix(key, sun), begin + r);
                 const V3f towards = -state.emission.sun_direction(sun, unit_float(words[0]), unit_float(words[1]));
                 const float cosine = normals[r].dot(towards);
                 if (!(cosine > 0)) continue;
                 rays.push_back({batch.rays[r].origin, towards});
-                of_irradiance.push_back(importance[r] * static_cast<double>(cosine));
+                importance_per_irradiance.push_back(importance[r] * static_cast<double>(cosine));
             }
-            keep_escaping(rays, of_irradiance, sun, lines);
+            keep_escaping(rays, importance_per_irradiance, sun, lines);
         }
         return lines;
     }
@@ -93,7 +93,7 @@ std::vector<OutdoorLine> thinned(const std::vector<OutdoorLine>& lines) {
 
 std::vector<OutdoorLine> outdoor_lines(const SolverState& state, std::int64_t rays) {
     const RayPlan plan = plan_importance(state.materials, state.solution, importance_of(state.solution), rays);
-    const std::uint64_t key = mix(state.streams.seed, purpose);
+    const std::uint64_t key = mix(state.streams.seed, aiming_stream);
     const SampleStreams streams(state.streams.points, key);
     const RayMaker maker(*state.forest, state.ray_caster, plan, streams);
     if (!(maker.allocation().q_sum() > 0)) return {};
@@ -110,47 +110,48 @@ std::vector<OutdoorLine> outdoor_lines(const SolverState& state, std::int64_t ra
     return thinned(lines);
 }
 
-struct Weighed {
+struct WeightedLine {
     Ray light;
     double weight;
 };
-double weight_of(const std::vector<Weighed>& lines) {
+double weight_of(const std::vector<WeightedLine>& lines) {
     return std::accumulate(lines.begin(), lines.end(), 0.0,
-                           [](double sum, const Weighed& l) { return sum + l.weight; });
+                           [](double sum, const WeightedLine& l) { return sum + l.weight; });
 }
-std::vector<Weighed> crossing(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
-    std::vector<Weighed> found;
+std::vector<WeightedLine> crossing(const std::vector<WeightedLine>& lines, const Imath::Box3f& box) {
+    std::vector<WeightedLine> found;
     std::copy_if(lines.begin(), lines.end(), std::back_inserter(found),
-                 [&](const Weighed& line) { return line_crosses(box, line.light); });
+                 [&](const WeightedLine& line) { return line_crosses(box, line.light); });
     return found;
 }
 
-double centred_weight(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
-    const float farthest = (box.size() / 2).length2();
+/// Weights decrease from the centre to the corners.
+double centred_weight(const std::vector<WeightedLine>& lines, const Imath::Box3f& box) {
+    const float largest_square = (box.size() / 2).length2();
     double sum = 0;
-    for (const Weighed& line : lines) {
+    for (const WeightedLine& line : lines) {
         if (!line_crosses(box, line.light)) continue;
-        const float distance = line.light.direction.cross(box.center() - line.light.origin).length2();
-        sum += line.weight * std::max(0.0, 1 - static_cast<double>(distance / farthest));
+        const float square = line.light.direction.cross(box.center() - line.light.origin).length2();
+        sum += line.weight * std::max(0.0, 1 - static_cast<double>(square / largest_square));
     }
     return sum;
 }
 
 /// Returns the half of a box, along its long axes, with the largest centred weight.
-Imath::Box3f best_half(const std::vector<Weighed>& lines, const Imath::Box3f& box) {
+Imath::Box3f best_half(const std::vector<WeightedLine>& lines, const Imath::Box3f& box) {
     const V3f size = box.size();
     const float widest = std::max({size.x, size.y, size.z});
-    const auto places = [&](int axis) { return size[axis] > widest / 2 ? 3 : 1; };
+    const auto positions = [&](int axis) { return size[axis] > widest / 2 ? 3 : 1; };
     Imath::Box3f best = box;
     double most = -1;
-    for (int i = 0; i < places(0); ++i)
-        for (int j = 0; j < places(1); ++j)
-            for (int k = 0; k < places(2); ++k) {
+    for (int i = 0; i < positions(0); ++i)
+        for (int j = 0; j < positions(1); ++j)
+            for (int k = 0; k < positions(2); ++k) {
                 Imath::Box3f part = box;
-                const V3f place(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k));
+                const V3f position(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k));
                 for (int axis = 0; axis < 3; ++axis) {
-                    if (places(axis) == 1) continue;
-                    part.min[axis] = box.min[axis] + place[axis] * size[axis] / 4;
+                    if (positions(axis) == 1) continue;
+                    part.min[axis] = box.min[axis] + position[axis] * size[axis] / 4;
                     part.max[axis] = part.min[axis] + size[axis] / 2;
                 }
                 const double weight = centred_weight(lines, part);
@@ -164,31 +165,30 @@ Imath::Box3f best_half(const std::vector<Weighed>& lines, const Imath::Box3f& bo
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box) {
     constexpr std::size_t most_lines = 4096, fewest_lines = 16;
-    static_assert(most_targets % most_places == 0);
-    constexpr double share_of_rest = 0.05;  // minimum share of the weight for another place
-    // docs/method.md, Light sources that are not surfaces
-    constexpr double worthwhile_share = 0.4;
-    constexpr float widest_target = 1.0f / 16;
-    std::vector<Weighed> rest;
+    static_assert(most_targets % most_chains == 0);
+    constexpr double share_of_rest = 0.05;      // minimum weight for another chain
+    constexpr double worthwhile_share = 0.4;    // evenly spread lines: 0.25
+    constexpr float widest_target = 1.0f / 16;  // of the diagonal; the scene's box resolves wider ones
+    std::vector<WeightedLine> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / most_lines);
     for (std::size_t i = 0; i < lines.size(); i += stride)
         if (weights[i] > 0) rest.push_back({lines[i].light, weights[i]});
     const double all = weight_of(rest);
     std::vector<Imath::Box3f> targets;
-    for (int place = 0; place < most_places && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
-         ++place) {
-        // Smallest target that most lines cross.
+    for (int chain = 0; chain < most_chains && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
+         ++chain) {
+        // Start from the last target that most lines cross.
         Imath::Box3f box = scene_box;
-        std::vector<Weighed> inside = rest;
+        std::vector<WeightedLine> inside = rest;
         for (const Imath::Box3f& target : targets) {
-            std::vector<Weighed> in_target = crossing(rest, target);
+            std::vector<WeightedLine> in_target = crossing(rest, target);
             if (weight_of(in_target) > weight_of(rest) / 2) box = target, inside = std::move(in_target);
         }
         std::vector<Imath::Box3f> halves;
         std::size_t worthwhile = 0;
-        for (int level = 0; level < most_targets / most_places && inside.size() >= fewest_lines; ++level) {
+        for (int level = 0; level < most_targets / most_chains && inside.size() >= fewest_lines; ++level) {
             box = best_half(inside, box);
-            std::vector<Weighed> in_half = crossing(inside, box);
+            std::vector<WeightedLine> in_half = crossing(inside, box);
             halves.push_back(box);
             if (in_half.size() >= fewest_lines && weight_of(in_half) >= worthwhile_share * weight_of(inside))
                 worthwhile = halves.size();
@@ -198,9 +198,9 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
             break;
         halves.resize(worthwhile);
         targets.insert(targets.end(), halves.begin(), halves.end());
-        std::vector<Weighed> others;
+        std::vector<WeightedLine> others;
         std::copy_if(rest.begin(), rest.end(), std::back_inserter(others),
-                     [&](const Weighed& line) { return !line_crosses(halves.back(), line.light); });
+                     [&](const WeightedLine& line) { return !line_crosses(halves.back(), line.light); });
         rest = std::move(others);
     }
     return targets;
@@ -208,8 +208,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// Light along each line over the square root of its source's total. Lines of a sun are parallel: only the dimmer sky
-/// can locate a window along them.
+/// Returns light along lines over the square root of their source's total. This raises the dimmer sky, which alone
+/// locates windows along a sun's parallel lines.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -225,9 +225,9 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
     return weights;
 }
 
-/// Adds a mean line to each box, so no part starts at zero.
+/// Returns light per power; a mean line in each box keeps all parts above zero.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
-    constexpr double rays_of_lines = 8;
+    constexpr double rays_of_lines = 8;  // prior weight
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);
     double all = 0;
     for (const OutdoorLine& line : lines)
@@ -240,8 +240,8 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const double power = channel_sum(emission.power(i)), of_box = power_of_box[emission.box(i)];
         if (!(power > 0)) continue;
-        const double anywhere = all / static_cast<double>(lines.size()) / of_box;
-        parts[i] = {rays_of_lines * (weights[i] / power + anywhere), rays_of_lines};
+        const double of_mean_line = all / static_cast<double>(lines.size()) / of_box;
+        parts[i] = {rays_of_lines * (weights[i] / power + of_mean_line), rays_of_lines};
     }
     return parts;
 }
@@ -249,7 +249,7 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 }  // namespace
 
 std::int64_t aim_outdoor_light(SolverState& state) {
-    // Many rays: a small window transmits little importance.
+    // Many rays: a small window transmits little importance. `all` is the run's limit.
     constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());

@@ -14,15 +14,14 @@ namespace interflect::detail {
 struct OutdoorLine {
     Ray light;          ///< From the surface point, in the direction of the light.
     std::uint32_t sun;  ///< Index of the sun; `none` for skies.
-    double importance;  ///< Importance-weighted power received per unit of brightness.
+    double importance;  ///< Importance-weighted power received per PartAlong::brightness.
 };
 
-/// Finds boxes in which lines converge, such as windows.
+/// Finds nested boxes in which weighted lines converge, such as windows.
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box);
 
-/// Finds targets and the importance of luminaire parts. Returns the traced rays; 0 without full importance or outdoor
-/// light.
+/// Sets targets and part importance. Returns the traced rays; 0 without full importance or outdoor light.
 std::int64_t aim_outdoor_light(SolverState& state);
 
 }  // namespace interflect::detail

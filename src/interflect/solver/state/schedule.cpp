@@ -69,7 +69,6 @@ IterationPlan Schedule::next(double seconds) {
     // An interruption would lose a long iteration, so a short one comes first.
     const bool counts_iterations = options_.experimental.iterations > 0 || options_.experimental.warm_up > 0;
     if (finished_ == 0 && rays > largest_iteration && !counts_iterations) rays = first_rays_;
-    // Absorbs a remainder of less than half an iteration.
     if (left < rays + rays / 2) rays = left;
     if (std::isfinite(options_.limits.time)) rays = std::min(rays, affordable_rays(seconds));
     if (rays <= 0) return {};

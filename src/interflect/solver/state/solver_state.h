@@ -27,8 +27,8 @@
 
 namespace interflect::detail {
 
-/// 20 halvings at each place reach from 10 km to 1 cm.
-inline constexpr int most_places = 4, most_targets = 80;
+/// 20 halvings in each chain reach from 10 km to 1 cm.
+inline constexpr int most_chains = 4, most_targets = 80;
 
 /// State of a run that persists between iterations.
 struct SolverState {

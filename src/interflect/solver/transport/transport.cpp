@@ -24,8 +24,8 @@ namespace interflect::detail {
 namespace {
 
 std::uint64_t walk_key(const SampleStreams& streams) {
-    constexpr std::uint64_t purpose = 0x77616c6b;  // distinct from other streams
-    return mix(mix(streams.seed, purpose), streams.allocations);
+    constexpr std::uint64_t walk_stream = 0x77616c6b;
+    return mix(mix(streams.seed, walk_stream), streams.allocations);
 }
 
 /// Amortises the cost of a task; fits the second-level cache.

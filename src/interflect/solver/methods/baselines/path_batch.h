@@ -64,7 +64,6 @@ struct PathSums {
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
 
-    /// Returns emitted power / (1 - rho).
     static double most_expected(const WalkSource& payload) {
         double power = 0, rho = 0;
         for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
