@@ -91,7 +91,10 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
                                      options.refinement.max_elements, scene.patches.size(), scene.name));
     const std::size_t there_is = usable_memory();
     const std::size_t bytes = memory > 0 ? std::min(memory, there_is) : there_is;
-    const MemoryNeed need = memory_need(scene, ray_caster);
+    MemoryNeed need = memory_need(scene, ray_caster);
+    if (options.keep_direct)
+        need.per_element +=
+            MemoryNeed::per_element_of_direct_light * std::max<std::size_t>(1, source_groups(scene).size());
     require_memory(need.with(scene.patches.size()), scene.name);
     options.refinement.max_elements = std::min(options.refinement.max_elements, elements_within(need, bytes, scene));
     return options;

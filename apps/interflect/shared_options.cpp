@@ -306,6 +306,9 @@ void SolverOptions::add_to(CLI::App& app) {
         ->type_name("NUMBER")
         ->default_str("1")
         ->group(solver_group);
+    app.add_flag("--keep-direct", solve_.keep_direct,
+                 "Keep the light that comes straight from sources apart, in the solution file")
+        ->group(solver_group);
     app.add_option("--stats", stats, "Write what each iteration did to this file, as JSON lines")
         ->type_name("FILE")
         ->group(solver_group);

@@ -45,6 +45,7 @@ struct Method {
     bool is_stochastic = true;                      ///< Its noise is measured and decreases with the rays.
     bool takes_luminaires = true;                   ///< Supports light sources that are not surfaces.
     bool separates_groups = false;                  ///< Keeps the light of each light group separate.
+    bool separates_direct = false;                  ///< Supports SolveOptions::keep_direct.
     bool follows_dimming = false;                   ///< Can continue with dimmed groups, see Solver::set_dimming().
 };
 
@@ -128,6 +129,7 @@ struct SolveOptions {
     /// Limits of the whole run. An iteration cut short by Limits::time is discarded; results then depend on speed.
     Limits limits{.rays = 20'000'000};
     std::uint64_t seed = 1;
+    bool keep_direct = false;  ///< Keeps direct light apart, in Solution::direct; 24 bytes per element and light group.
     RefinementOptions refinement = {};
     ImportanceOptions importance = {};
     ExperimentalOptions experimental = {};

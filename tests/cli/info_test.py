@@ -184,7 +184,7 @@ class Solution(CommandTest):
         (self.folder / "bad.h5").write_bytes(content)
         for arguments in (("info", "bad.h5"), ("render", "bad.h5", "-o", "out.png")):
             message = self.interflect(*arguments, exit_code=BAD_INPUT).stderr
-            self.assertIn("the file is damaged: the checksum of /solution/direct differs", message)
+            self.assertIn("the file is damaged: the checksum of /solution/indirect_importance differs", message)
 
 
 class Views(CommandTest):

@@ -102,6 +102,7 @@ std::vector<Case> cases() {
         o.experimental.warm_up = 1;
         o.experimental.rays_per_iteration = 10'000;
     });
+    add("ihsrr_direct", "ihsrr", [](SolveOptions& o) { o.keep_direct = true; });
     add("ihsrr_one_bounce_si", "ihsrr", [](SolveOptions& o) {
         o.experimental.one_bounce = true;
         o.experimental.separate_iterations = true;

@@ -17,6 +17,7 @@ SolveOptions unusual_options() {
     o.limits.rays = 12345;
     o.limits.time = 2.5;
     o.limits.until = 0.02;
+    o.keep_direct = true;
     o.experimental.points = PointSet::random;
     o.experimental.one_bounce = true;
     o.experimental.warm_up = 3;
@@ -47,6 +48,7 @@ TEST(SolveReport, HasEveryOption) {
     const SolveOptions o = unusual_options();
     EXPECT_EQ(read.limits.rays, o.limits.rays);
     EXPECT_EQ(read.limits.time, o.limits.time);
+    EXPECT_EQ(read.keep_direct, o.keep_direct);
     EXPECT_EQ(read.limits.until, o.limits.until);
     EXPECT_EQ(read.experimental.points, o.experimental.points);
     EXPECT_EQ(read.experimental.one_bounce, o.experimental.one_bounce);
@@ -83,6 +85,7 @@ TEST(SolveReport, HasNullForLimitsThatWereNotGiven) {
     read_options(json, read);
     EXPECT_EQ(read.limits.rays, o.limits.rays);
     EXPECT_EQ(read.limits.time, o.limits.time);
+    EXPECT_EQ(read.keep_direct, o.keep_direct);
     EXPECT_EQ(read.limits.until, o.limits.until);
 }
 

@@ -31,6 +31,7 @@ SolveOptions options_of(const std::string& method, std::int64_t rays, std::uint6
     SolveOptions options{.method = find_method(method)};
     options.limits.rays = rays;
     options.seed = seed;
+    options.keep_direct = options.method.separates_direct;
     if (options.method.importance != ImportanceUse::off) options.views = {{into_the_corner}};
     return options;
 }

@@ -14,12 +14,14 @@ struct MemoryNeed {
     std::size_t patches = 0;     ///< Without elements.
     std::size_t rest = 0;        ///< Program, threads, hits of camera rays.
 
-    /// Arrays of the solver [bytes]. Measured: 128 to 130 for 0.7 to 2.2 million elements.
-    std::size_t per_element = 144;
+    /// Arrays of the solver [bytes]. Measured: 98 to 109 for 0.7 to 3 million elements.
+    std::size_t per_element = 128;
     /// Three colours, and an index per four siblings [bytes].
     static constexpr std::size_t per_textured_element = 37;
-    /// Bytes: H, its direct part, unshot light, and both of the pass, 12 each; contributions 24 or received light 12.
-    static constexpr std::size_t per_element_and_group = 84;
+    /// Bytes: H, unshot light and pass result, 12 each; contributions 24 or received light 12.
+    static constexpr std::size_t per_element_and_group = 60;
+    /// With SolveOptions::keep_direct, per light group [bytes].
+    static constexpr std::size_t per_element_of_direct_light = 24;
 
     std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
     std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }

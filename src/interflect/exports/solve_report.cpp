@@ -117,6 +117,7 @@ void for_each_option(Options& options, const Access& access) {
     access.field_or_null("rays", limits.rays, std::numeric_limits<std::int64_t>::max());
     access.field_or_null("time", limits.time, infinity);
     access.field_or_null("until", limits.until, 0.0);
+    access.field("keep_direct", options.keep_direct);
     auto& refinement = options.refinement;
     access.choice("refinement_criterion", refinement.criterion, criteria);
     access.field("min_area", refinement.min_area);
@@ -144,6 +145,7 @@ void for_each_option(Options& options, const Access& access) {
 }
 
 Json with_present_names(Json json) {
+    if (!json.contains("keep_direct")) json["keep_direct"] = false;
     if (json.contains("time")) return json;
     json["time"] = json.at("seconds");
     json["refinement_criterion"] = json.at("refinement");

@@ -50,6 +50,9 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
                         o.method.name));
     require(o.method.separates_groups || scene.light_groups.empty(),
             fmt::format("light groups: {} keeps all light together; choose another method", o.method.name));
+    require(!o.keep_direct || (o.method.separates_direct && !o.experimental.one_bounce),
+            fmt::format("keep_direct: {} knows no direct light; expected a method of passes: srr, isrr, hsrr, ihsrr",
+                        o.experimental.one_bounce ? "one bounce per iteration" : o.method.name));
     require_no_faults(faults, "cannot solve", scene);
     require_sources_of_groups(scene);
 }

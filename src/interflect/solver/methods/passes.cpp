@@ -37,7 +37,7 @@ double unshot_weight(const PowerPlan& bounce, double first_power, double first_w
 Estimate darkness(const SolverState& state) {
     Estimate dark{std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f)};
     dark.groups.assign(state.groups.size(), dark.irradiance);
-    dark.direct.assign(std::max<std::size_t>(1, state.groups.size()), dark.irradiance);
+    if (state.options.keep_direct) dark.direct.assign(std::max<std::size_t>(1, state.groups.size()), dark.irradiance);
     return dark;
 }
 
@@ -47,7 +47,6 @@ void add(Estimate& sum, Received& received) {
     accumulate(sum.groups, received.groups);
     if (sum.irradiance.empty()) {
         sum.irradiance = received.irradiance;
-        sum.direct = received.groups.empty() ? GroupLight{received.irradiance} : received.groups;
         sum.variance = std::move(received.variance);
         return;
     }
@@ -138,6 +137,8 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     state.power_rays += rays.expected - for_importance;
     state.payloads += received.payloads;
     grow_pass(*state.forest, old_elements, pass);
+    if (pass.emits && state.options.keep_direct)
+        pass.sum.direct = received.groups.empty() ? GroupLight{received.irradiance} : received.groups;
     add(pass.sum, received);
     if (carries_importance)  // at once: the oracle uses it in the next bounces
         detail::merge(state, solution.indirect_importance, received.importance, IterationPlan{.rays = rays.expected});
