@@ -23,11 +23,12 @@ WORK = program.ROOT / "out/experiments/cache/pictures"
 TABLE = program.ROOT / "experiments/results/pictures.csv"
 SIZE = "--size 960x540"
 OFFICE_VIEW = "--eye 3.7037,0.0788,2.2690 --look-at 1.0023,8.9229,-1.1130"
-SCENES = {  # name: file, view, paths per pixel of each reference
-    "office-graz": (f"{program.SCENES}/office-graz.mgf", OFFICE_VIEW, 128),
-    "office": ("scenes/office.mgf", "--view desk", 128),
-    "nine rooms": ("maze:9:furniture", "--view room-4", 128),
-    "sun-window": (None, None, 256),
+PATHS, GATHERED_FROM_40M = "path", "gather --rays 40M"
+SCENES = {  # name: file, view, paths per pixel of each reference, its shading
+    "office-graz": (f"{program.SCENES}/office-graz.mgf", OFFICE_VIEW, 128, PATHS),
+    "office": ("scenes/office.mgf", "--view desk", 128, PATHS),
+    "nine rooms": ("maze:9:furniture", "--view room-4", 128, PATHS),
+    "sun-window": (None, None, 256, GATHERED_FROM_40M),  # few paths find the sunlit spot
 }
 PROCESSORS = 2
 SMOOTH, HYBRID, GATHERED = ("--shading smooth", "--shading hybrid --no-mirrors --denoise", "--shading gather --no-mirrors --denoise")
@@ -49,12 +50,12 @@ def processor_seconds() -> float:
 
 class Scene:
     def __init__(self, command: program.Program, name: str):
-        file, view, paths = SCENES[name]
+        file, view, paths, shading = SCENES[name]
         if file is None:
             scene = AUDIT_SCENES[name]()
             file, view = str(scene.write(WORK, name, scene.text)), scene.view()
         self.file, self.view = file, view
-        self.reference = Reference(command, WORK, f"{name.replace(' ', '-')}-", f"{file} {view} {SIZE}", paths)
+        self.reference = Reference(command, WORK, f"{name.replace(' ', '-')}-", f"{file} {view} {SIZE}", paths, shading)
         good = WORK / f"{name.replace(' ', '-')}-good.exr"
         if not good.is_file():
             program.run(command, f"render {file} {view} {SIZE} {HYBRID} --rays 40M --samples 128 -o {good}".split())

@@ -218,6 +218,32 @@ std::array<NamedFile, 3> outputs_of(const RenderArguments& options) {
         {{"--output", options.output}, {"--stats", options.solver.stats}, {"--error-image", options.path.error_image}}};
 }
 
+/// Whether coarser pictures may precede the final one: not in formats for numbers, pipes and devices.
+bool takes_previews(const RenderArguments& options) {
+    constexpr std::size_t fewest_pixels = 1 << 16;  // smaller pictures take less than a second
+    if (!is_for_people(options) || options.shown != Shown::light || options.size.pixels() < fewest_pixels) return false;
+    std::error_code unknown;
+    const auto status = std::filesystem::status(options.output, unknown);
+    return options.output != "-" && (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status));
+}
+
+/// Writes a picture of the light so far, with few samples, which a better one replaces.
+void write_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                   const RenderArguments& options) {
+    constexpr int preview_samples = 4;
+    RenderOptions few = options.render;
+    few.samples = std::min(few.samples, preview_samples);
+    few.shading = Shading::smooth;
+    const Rendering rendering = interflect::render(scene, solution, ray_caster, view, few, {{}, &stop_flag()});
+    if (rendering.interrupted) return;
+    const Picture picture = picture_of(rendering.image, rendering.non_finite_pixels, options);
+    PendingFile output(options.output);
+    write_image(
+        output, picture.image,
+        {view, picture.quantity, scene.name, INTERFLECT_VERSION, solution.options.seed, picture.exposure.value_or(0)});
+    spdlog::info("{}: picture so far; a better one will replace it", options.output.string());
+}
+
 /// Draws the light of a solution; solves a scene first.
 void run_solution(RenderArguments& options, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
@@ -234,13 +260,22 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     StatsFile stats(options.solver.threads, options.solver.stats);
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
-    if (!solved_before) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
 
     options.render.width = options.size.width;
     options.render.height = options.rows();
     options.render.irradiance = options.shows_irradiance();
     options.render.samples = options.samples.value_or(options.render.samples);
     options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
+
+    constexpr double seconds_to_preview = 1;
+    const auto preview = [&](const Solution& so_far) {
+        if (takes_previews(options)) write_preview(solved.scene, so_far, ray_caster, view, options);
+    };
+    if (!solved_before)
+        solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory, {},
+                                    {.after = seconds_to_preview, .use = preview});
+    if (traces_paths(options.shading) && !is_stop_requested()) preview(solved.solution);
+
     // A signal that ended the solver would end gathering before its first ray.
     const bool needs_paths = options.path.layers || !options.path.error_image.empty();
     const bool gathers = traces_paths(options.shading) && (needs_paths || !is_stop_requested());

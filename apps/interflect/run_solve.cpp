@@ -110,16 +110,16 @@ void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster) {
 }
 
 Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory,
-                   const Checkpoints& checkpoints) {
+                   const Checkpoints& checkpoints, const EarlyLight& early_light) {
     warn_of_covered_emission(scene, ray_caster);
     const SolveOptions options = within_limits(scene, ray_caster, asked_for, memory);
     const std::shared_ptr<void> unowned;  // both outlive the solver
     return run_to_end(Solver(std::shared_ptr<const Scene>(unowned, &scene), options,
                              std::shared_ptr<const RayCaster>(unowned, &ray_caster)),
-                      checkpoints);
+                      checkpoints, early_light);
 }
 
-Solution run_to_end(Solver solver, const Checkpoints& checkpoints) {
+Solution run_to_end(Solver solver, const Checkpoints& checkpoints, const EarlyLight& early_light) {
     {
         ProgressBar bar;
         const auto show = [&](const Progress& progress) {
@@ -130,9 +130,13 @@ Solution run_to_end(Solver solver, const Checkpoints& checkpoints) {
         const Monitor monitor{show, &stop_flag()};
         Limits limits;
         if (!checkpoints.file.empty()) limits.time = checkpoints.every;
-        for (bool is_over = false; !is_over;) {
-            const AdvanceReport report = solver.advance(limits, monitor);
-            is_over = report.is_finished || report.is_stopped;
+        Limits first = limits;
+        if (early_light.use) first.time = std::min(first.time, early_light.after);
+        AdvanceReport report = solver.advance(first, monitor);
+        if (early_light.use && !report.is_finished && !report.is_stopped) early_light.use(solver.solution());
+        checkpoints.save(solver);
+        while (!report.is_finished && !report.is_stopped) {
+            report = solver.advance(limits, monitor);
             checkpoints.save(solver);
         }
     }

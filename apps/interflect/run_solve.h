@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "apps/interflect/checkpoints.h"
 #include "apps/interflect/shared_options.h"
 #include "interflect/ray_caster.h"
@@ -11,12 +13,18 @@ namespace interflect::command {
 /// Warns about emitters covered by coincident faces, with the missing power.
 void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
+/// Use of the light of a run that takes longer, once.
+struct EarlyLight {
+    double after = 0;  ///< [s]
+    std::function<void(const Solution&)> use = {};
+};
+
 /// Solves with progress on stderr; Ctrl-C ends it early with a usable result.
 /// @param asked_for  SolverOptions::resolved(). @param memory  SolverOptions::memory.
 Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory,
-                   const Checkpoints& checkpoints = {});
+                   const Checkpoints& checkpoints = {}, const EarlyLight& early_light = {});
 
 /// Continues a run in the same way.
-Solution run_to_end(Solver solver, const Checkpoints& checkpoints);
+Solution run_to_end(Solver solver, const Checkpoints& checkpoints, const EarlyLight& early_light = {});
 
 }  // namespace interflect::command

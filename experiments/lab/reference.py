@@ -14,13 +14,16 @@ class Reference:
 
     SEEDS = (98, 99)
 
-    def __init__(self, command: program.Program, folder: Path, name: str, scene_and_view: str, paths: int):
-        """`paths` is per pixel and picture; `folder` keeps the pictures."""
+    def __init__(
+        self, command: program.Program, folder: Path, name: str, scene_and_view: str, paths: int, shading: str = "path"
+    ):
+        """`paths` is per pixel and picture; `folder` keeps the pictures. `shading` may also be "gather", with its
+        options, where path tracing finds too little of the light."""
         folder.mkdir(parents=True, exist_ok=True)
         self.files = [folder / f"{name}{paths}-{seed}.exr" for seed in self.SEEDS]
         for file, seed in zip(self.files, self.SEEDS):
             if not file.is_file():
-                options = f"--shading path --no-mirrors --samples {paths} --seed {seed} --layers"
+                options = f"--shading {shading} --no-mirrors --samples {paths} --seed {seed} --layers"
                 program.run(command, f"render {scene_and_view} {options} -o {file}".split())
         self.pictures = [luminance(read_exr(file)) for file in self.files]
         mean_picture = sum(self.pictures) / 2

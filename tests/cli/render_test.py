@@ -63,6 +63,14 @@ class Reproducibility(RenderTest):
             self.assertEqual(self.render(f"solution.{kind}", source="room.h5"), from_scene, kind)
 
 
+    def test_a_large_picture_replaces_coarser_ones(self):
+        size = ("--size", "320x240", "--samples", "4")
+        for kind, has_preview in (("png", True), ("exr", False)):
+            said = self.interflect("render", "room.mgf", "-o", f"last.{kind}", *SOLVED, *size).stderr
+            self.assertEqual("picture so far" in said, has_preview, kind)
+        self.assertNotEqual(self.bytes("last.png"), self.render("smooth.png", "--shading", "smooth", size=size))
+
+
 class Views(RenderTest):
     def picture(self, *options, source="room.mgf"):
         return self.render("picture.hdr", *options, source=source)

@@ -55,7 +55,8 @@ class PathPicture {
         std::vector<std::uint32_t> wanted(pixels_.size(), least);
         foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
         trace_round(wanted);
-        while (target > 0 && !stopped() && want_more(wanted, target, most)) trace_round(wanted);
+        if (target <= 0) return;
+        while (!stopped() && want_more(wanted, target, most)) trace_round(wanted);
         if (!stopped()) report(1);
     }
 
