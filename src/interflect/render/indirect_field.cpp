@@ -18,8 +18,7 @@ namespace {
 /// Paths of a record come in groups, whose spread tells its error.
 constexpr std::size_t paths_per_group = 16, groups_of_first_round = 4, most_groups = 64, groups_per_tile = 128;
 /// Records gather more until their standard error is this share of all irradiance, or of a share of its mean. A fit
-/// averages several records. In office-graz, an office, nine rooms and sun through a window, halving it changes the
-/// error of pixels by 1 to 3%, in 1.02 to 1.1 times the time.
+/// averages several records. Halving it changes the error of pixels by 1 to 3%, in 1.02 to 1.1 times the time.
 constexpr float accepted_error = 0.16f, share_of_mean = 0.25f;
 /// Reach of a record: relative to the harmonic mean length of its rays, and its limits in spacings of the points. More
 /// records of fewer paths are better: with 0.35 and 512 paths, errors are 1.1 to 1.8 times as large.
