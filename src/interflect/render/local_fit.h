@@ -26,8 +26,8 @@ class LocalFit {
     };
     Coefficients coefficients() const {
         // Bounds the slope of few or nearly collinear points.
-        constexpr float relative_ridge = 0.1f;
-        const float ridge = relative_ridge * (ss_ + tt_), a = ss_ + ridge, d = tt_ + ridge;
+        constexpr float ridge_share = 0.1f;
+        const float ridge = ridge_share * (ss_ + tt_), a = ss_ + ridge, d = tt_ + ridge;
         const float determinant = a * d - st_ * st_;
         const float s = determinant > 0 ? (s_ * d - t_ * st_) / determinant : 0;
         const float t = determinant > 0 ? (t_ * a - s_ * st_) / determinant : 0;
