@@ -17,9 +17,10 @@ namespace {
 
 /// Paths of a record come in groups, whose spread tells its error.
 constexpr std::size_t paths_per_group = 16, groups_of_first_round = 4, most_groups = 64, groups_per_tile = 128;
-/// Records gather more until their standard error is this share of all irradiance, or of a share of its mean. A fit
-/// averages several records. Halving it changes the error of pixels by 1 to 3%, in 1.02 to 1.1 times the time.
-constexpr float accepted_error = 0.16f, share_of_mean = 0.25f;
+/// Groups of a record: this many times the standard deviation of a group, relative to all irradiance there (in dark
+/// places, to a share of its mean), times the record's reach in spacings. With one factor for all records the squared
+/// error of the picture is least: a record's error counts for all pixels in its reach.
+constexpr float groups_per_deviation = 5, share_of_mean = 0.25f;
 /// Reach of a record: relative to the harmonic mean length of its rays, and its limits in spacings of the points. More
 /// records of fewer paths are better: with 0.35 and 512 paths, errors are 1.1 to 1.8 times as large.
 constexpr float reach_share = 0.15f, least_spacings = 4, most_spacings = 100;
@@ -136,6 +137,7 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
         const float most = most_spacings * points[i].spacing;
         r.reach = r.nearness > 0 ? reach_share * paths / r.nearness : most;
         r.reach = std::clamp(r.reach, least_spacings * points[i].spacing, most);
+        r.reach_in_spacings = r.reach / points[i].spacing;
         r.reach_elsewhere = distance_to_contact(r.position, r.reach);
         r.level = luminance(Rgb(r.gathered.mean));
         if (r.patch != none)
@@ -156,8 +158,9 @@ void IndirectField::gather_more_where_noisy(const PathScene& scene, const std::a
     std::vector<float> wanted(records_.size());
     parallel_for_ranges(records_.size(), records_at_once, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const float accepted = accepted_error * std::max(floor, records_[i].level);
-            wanted[i] = pooled_variance(records_[i]) / (accepted * accepted);
+            const Record& r = records_[i];
+            const float deviation = std::sqrt(pooled_variance(r)) / std::max(floor, r.level);
+            wanted[i] = groups_per_deviation * deviation * r.reach_in_spacings;
         }
     });
     for (std::size_t groups = groups_of_first_round; groups < most_groups && !(stop && *stop); groups *= 2) {

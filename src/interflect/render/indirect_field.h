@@ -47,6 +47,7 @@ class IndirectField {
         std::uint32_t patch = none;
         float reach = 0;            // on its own patch, which no contact crosses [m]
         float reach_elsewhere = 0;  // at most the distance to the nearest contact [m]
+        float reach_in_spacings = 0;
         float level = 0;            // luminance of all irradiance there, to which errors are relative [as H]
         float nearness = 0;         // sum of 1 / length over the first rays of its paths [1/m]
         PartStatistics gathered{};  // irradiance by groups of paths [as H]
