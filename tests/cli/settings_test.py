@@ -14,7 +14,7 @@ GROUPS = {
     "ExperimentalOptions": ("experimental", "Experimental"),
 }
 NOT_IN_FILES = {"max_elements"}  # depends on the memory of the machine
-OF_NO_GROUP = {"importance", "views"}  # options in files; the first depends on the method
+OF_NO_GROUP = {"importance", "views", "keep_direct"}  # options in files; the first depends on the method
 
 
 def members(structure: str) -> list[str]:
