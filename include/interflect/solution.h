@@ -48,8 +48,8 @@ struct Solution {
     std::vector<Rgb> irradiance;                          ///< H [lm/m^2 or W/m^2].
     /// Parts of H by light group, [group][element]; they sum to H. Empty without light groups.
     std::vector<std::vector<Rgb>> groups;
-    /// Part of H that comes straight from sources, by light group as `groups`, or in one entry without groups; their sum
-    /// is at most H. Empty without SolveOptions::keep_direct.
+    /// Part of H that comes straight from sources, by light group as `groups`, or in one entry without groups; their
+    /// sum is at most H. Empty without SolveOptions::keep_direct.
     std::vector<std::vector<Rgb>> direct;
     std::vector<std::string> group_names;  ///< As in source_groups(scene).
     /// Remaining scale factor of each group's sources: 1, except in files of Solver::save(), whose scene is not dimmed.
