@@ -16,7 +16,7 @@ namespace interflect::detail {
 namespace {
 
 /// Paths of a record come in groups, whose spread tells its error.
-constexpr std::size_t paths_per_group = 16, groups_of_first_round = 4, most_groups = 64, groups_per_tile = 128;
+constexpr std::size_t paths_per_group = 16, groups_of_first_round = 8, most_groups = 64, groups_per_tile = 128;
 /// Groups of a record: this many times the standard deviation of a group, relative to all irradiance there (in dark
 /// places, to a share of its mean), times the record's reach in spacings. With one factor for all records the squared
 /// error of the picture is least: a record's error counts for all pixels in its reach.
