@@ -73,17 +73,20 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
     ElementErrors errors;
     errors.noise.assign(forest.size(), 0);
     errors.bias.assign(forest.size(), 0);
-    for (std::uint32_t root = 0; root < forest.patch_count(); ++root) {
-        const float shown = shown_of_patch(state, measure, root);
-        const float rays = std::max(state.history[root], 1.0f);
-        errors.noise[root] = shown * state.noise.variance(forest, state.solution.irradiance, root, rays);
-    }
+    parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        for (auto root = static_cast<std::uint32_t>(begin); root < end; ++root) {
+            const float shown = shown_of_patch(state, measure, root);
+            const float rays = std::max(state.history[root], 1.0f);
+            errors.noise[root] = shown * state.noise.variance(forest, state.solution.irradiance, root, rays);
+        }
+    });
     errors.noise_of_patch = errors.noise;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
-        const auto [noise, bias] = added_error(state, first);
+        const SiblingVariation variation = sibling_variation(state, first);
+        const auto [noise, bias] = added_error(state, first, variation);
         const std::uint32_t parent = forest.parent(first);
         const float shown = shown_of_siblings(state, measure, first);
-        const Shrinkage shrinkage = shrinkage_of(state, first);
+        const Shrinkage shrinkage = shrinkage_of(state, first, variation);
         for (std::uint32_t e = first; e < first + 4; ++e) {
             const float share = shrinkage.noise[e - first];
             errors.noise[e] = share * (errors.noise[parent] + shown * noise);

@@ -51,7 +51,7 @@ void finish_solution(SolverState& state) {
     GroupLight reduced_groups = solution.groups, reduced_direct = solution.direct;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const std::uint32_t parent = forest.parent(first);
-        const Shrinkage shrinkage = shrinkage_of(state, first);
+        const Shrinkage shrinkage = shrinkage_of(state, first, sibling_variation(state, first));
         const auto differences = [&](const std::vector<Rgb>& irradiance) {
             std::array<Rgb, 4> difference;
             Rgb sum(0);

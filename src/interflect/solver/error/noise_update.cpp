@@ -40,7 +40,7 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
         if (!variation.is_known() || !(w > 0)) return;
         const double signal = measured_signal(state, fresh, first), k = variation.shrinkage();
         const double shown = shown_of_siblings(state, measure, first);
-        const AddedError expected = added_error(state, first);
+        const AddedError expected = added_error(state, first, variation);
         sum.measured += w * shown * (k * k * variation.spread + (1 - 2 * k) * signal);
         sum.expected += w * shown * static_cast<double>(expected.noise + expected.bias);
         const double of_parent = parent < roots ? 0 : measured_signal(state, fresh, first_sibling(forest, parent));

@@ -55,8 +55,7 @@ SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first
     return variation;
 }
 
-AddedError added_error(const SolverState& state, std::uint32_t first) {
-    const SiblingVariation variation = sibling_variation(state, first);
+AddedError added_error(const SolverState& state, std::uint32_t first, const SiblingVariation& variation) {
     if (!variation.is_known()) return {};  // the siblings equal their parent
     if (!uses_shrinkage(state)) return {variation.noise, 0};
     const float kept = variation.shrinkage(), noise = kept * kept * variation.noise;
@@ -66,9 +65,8 @@ AddedError added_error(const SolverState& state, std::uint32_t first) {
 }
 
 /// Applies a Wiener filter (docs/method.md, Shrinkage).
-Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first) {
+Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first, const SiblingVariation& variation) {
     const ElementForest& forest = *state.forest;
-    const SiblingVariation variation = sibling_variation(state, first);
     Shrinkage s{{1, 1, 1, 1}, state.noise.shares(forest, state.solution.irradiance, first, state.history[first])};
     if (!uses_shrinkage(state) || !variation.is_known()) return s;
     const float kept = variation.shrinkage();

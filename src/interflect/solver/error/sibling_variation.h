@@ -37,14 +37,16 @@ bool uses_shrinkage(const SolverState& state);
 struct AddedError {
     float noise = 0, bias = 0;
 };
-AddedError added_error(const SolverState& state, std::uint32_t first);
+/// @param variation  Of the siblings.
+AddedError added_error(const SolverState& state, std::uint32_t first, const SiblingVariation& variation);
 
 /// Factors of the differences of four siblings from their parent, and the remaining noise variance of each, relative to
 /// the mean.
 struct Shrinkage {
     std::array<float, 4> kept, noise;
 };
-Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first);
+/// @param variation  Of the siblings.
+Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first, const SiblingVariation& variation);
 
 /// Returns 0 if unknown.
 float signal_among_siblings(const SolverState& state, std::uint32_t e);

@@ -22,6 +22,8 @@ class Radiosity {
     bool empty() const { return irradiance_.empty(); }
     bool emits() const { return emits_; }
 
+    /// False if B is certainly 0.
+    bool may_shine(std::uint32_t e) const { return emits_ || irradiance_[e] != Rgb(0); }
     /// B, or 0 if not finite.
     Rgb of(const ElementForest& forest, std::uint32_t e) const { return of_element(forest.patch(e), e); }
     Rgb of_element(std::uint32_t patch, std::uint32_t e) const {

@@ -42,18 +42,22 @@ class VarianceOracle {
           psi_(importance_use(state.solution) == ImportanceUse::full
                    ? std::span<const float>(state.solution.indirect_importance)
                    : std::span<const float>()) {
-        const double error = estimate_error(state, measure_).total();
-        least_gain_ = std::isfinite(error) ? negligible_gain * error * error * weighted_mean_square() : 0;
         const double reference = reference_power();
         least_misplaced_power_ = negligible_misplacement * reference;
         most_misplaced_power_ = tolerable_misplacement * reference;
     }
 
-    bool splits(std::uint32_t leaf) const {
+    /// Returns the least reduction of the squared error by a split [weight times irradiance^2].
+    double least_gain() const {
+        const double error = estimate_error(state_, measure_).total();
+        return std::isfinite(error) ? negligible_gain * error * error * weighted_mean_square() : 0;
+    }
+
+    bool splits(std::uint32_t leaf, double least_gain) const {
         const auto [signal, noise] = expected_children(leaf);
         if (!(signal > least_signal * noise)) return false;
-        const bool blurs = weight(leaf) * static_cast<double>(signal) > least_gain_ &&
-                           forest_.area(leaf) >= 4 * min_area(state_, leaf);
+        const bool blurs =
+            weight(leaf) * static_cast<double>(signal) > least_gain && forest_.area(leaf) >= 4 * min_area(state_, leaf);
         const bool misplaces =
             misplaced_power(leaf, signal) > least_misplaced_power_ && forest_.area(leaf) >= 4 * state_.floor.unseen();
         return blurs || misplaces;
@@ -113,7 +117,6 @@ class VarianceOracle {
     const ElementForest& forest_;
     ErrorMeasure measure_;
     std::span<const float> psi_;                                   // indirect importance, if used
-    double least_gain_ = 0;                                        // [weight times irradiance^2]
     double least_misplaced_power_ = 0, most_misplaced_power_ = 0;  // [lm or W, times importance]
 };
 
@@ -134,10 +137,11 @@ void refine_by_variance(SolverState& state) {
     ElementForest& forest = *state.forest;
     const std::uint32_t before = forest.size();
     const VarianceOracle oracle(state);
+    const double least_gain = oracle.least_gain();
     std::vector<std::uint8_t> splits(before, 0);
     parallel_for_ranges(before, elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
-            splits[e] = forest.is_leaf(e) && state.history[e] > 0 && oracle.splits(e);
+            splits[e] = forest.is_leaf(e) && state.history[e] > 0 && oracle.splits(e, least_gain);
     });
     for (std::uint32_t e = 0; e < before && forest.size() + 4 <= state.options.refinement.max_elements; ++e)
         if (splits[e]) forest.subdivide(e);

@@ -1,19 +1,17 @@
 #include "interflect/solver/sampling/probabilities.h"
 
 #include <cmath>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "interflect/base/parallel.h"
-#include "interflect/base/stable_array.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {
 
 namespace {
 
-struct Weights {
-    double power = 0, importance = 0;
-};
 struct WeightSums {
     double power = 0, weighted_power = 0, power_nearby = 0, importance = 0;
     std::int64_t lost = 0;
@@ -28,23 +26,27 @@ struct WeightSums {
     }
 };
 
-WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, StableArray<Weights>& weights) {
+/// @param powers       Zeros; set by element. @param importances  The same; empty if not shared.
+WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, std::span<double> powers,
+                        std::span<double> importances) {
     const bool by_power = shares.power > 0 || shares.weighted_power > 0 || shares.power_nearby > 0;
     return parallel_sum(s.forest.size(), elements_at_once, WeightSums(), [&](std::size_t begin, std::size_t end) {
         WeightSums sums;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            if (importances.empty() && !s.light.may_shine(e)) continue;
             if (!s.forest.is_leaf(e)) continue;
-            Weights w;
-            if (by_power) {
-                w.power = s.power(e);
-                sums.lost += w.power == 0 && s.light.is_not_finite(s.forest, e);
+            if (!importances.empty()) {
+                const double importance = s.importance(e);
+                sums.importance += importance;
+                importances[e] = importance;
             }
-            if (shares.importance > 0) w.importance = s.importance(e);
-            sums.power += w.power;
-            sums.importance += w.importance;
-            if (shares.weighted_power > 0) sums.weighted_power += w.power * s.importance_weight[e];
-            if (shares.power_nearby > 0) sums.power_nearby += w.power * s.nearby[s.forest.patch(e)];
-            weights[e] = w;
+            if (!by_power) continue;
+            const double power = s.power(e);
+            sums.lost += power == 0 && s.light.is_not_finite(s.forest, e);
+            sums.power += power;
+            if (shares.weighted_power > 0) sums.weighted_power += power * s.importance_weight[e];
+            if (shares.power_nearby > 0) sums.power_nearby += power * s.nearby[s.forest.patch(e)];
+            powers[e] = power;
         }
         return sums;
     });
@@ -64,8 +66,8 @@ void weigh_parts(const SamplingWeights& s, const MixtureWeights& shares, WeightS
 
 Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     const ElementForest& forest = sampled.forest;
-    StableArray<Weights> weights(forest.size());  // 0 for inner elements
-    WeightSums sums = weigh_leaves(sampled, shares, weights);
+    std::vector<double> powers(forest.size()), importances(shares.importance > 0 ? forest.size() : 0);
+    WeightSums sums = weigh_leaves(sampled, shares, powers, importances);
     weigh_parts(sampled, shares, sums);
     const auto factor = [](double share, double of) { return of > 0 ? share / of : 0; };
     const double for_power = factor(shares.power, sums.power),
@@ -75,11 +77,11 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     std::vector<float> q(forest.size() + sampled.part_count());
     parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            const double importance = importances.empty() ? 0 : for_importance * importances[e];
             double by_power = for_power;
-            if (for_driven > 0) by_power += for_driven * sampled.importance_weight[e];
-            if (for_nearby > 0) by_power += for_nearby * sampled.nearby[forest.patch(e)];
-            const Weights& w = weights[e];
-            q[e] = static_cast<float>(by_power * w.power + for_importance * w.importance);
+            if (powers[e] > 0 && for_driven > 0) by_power += for_driven * sampled.importance_weight[e];
+            if (powers[e] > 0 && for_nearby > 0) by_power += for_nearby * sampled.nearby[forest.patch(e)];
+            q[e] = static_cast<float>(by_power * powers[e] + importance);
         }
     });
     for (std::size_t i = 0; i < sampled.part_count(); ++i) {

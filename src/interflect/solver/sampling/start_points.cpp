@@ -18,17 +18,15 @@ std::uint32_t spread_bits(float x) {
     return (bits | bits << 1) & 0x55555555u;
 }
 
-/// Morton code: successive points are close, which stratifies samples.
-std::uint32_t position_on_curve(const Parameters& p) { return spread_bits(p.u) | spread_bits(p.v) << 1; }
-
 bool is_before(const StartPoint& a, const StartPoint& b) {
-    if (a.leaf != b.leaf) return a.leaf < b.leaf;
-    const std::uint32_t at_a = position_on_curve(a.at), at_b = position_on_curve(b.at);
-    if (at_a != at_b) return at_a < at_b;
-    return std::tie(a.at.u, a.at.v, a.power) < std::tie(b.at.u, b.at.v, b.power);
+    return std::tie(a.leaf, a.place_on_curve, a.at.u, a.at.v, a.power) <
+           std::tie(b.leaf, b.place_on_curve, b.at.u, b.at.v, b.power);
 }
 
 }  // namespace
+
+StartPoint::StartPoint(std::uint32_t of_leaf, float of_power, const Parameters& point)
+    : leaf(of_leaf), power(of_power), at(point), place_on_curve(spread_bits(point.u) | spread_bits(point.v) << 1) {}
 
 StartPoints::StartPoints(std::vector<StartPoint> points) : points_(std::move(points)) {
     parallel_sort(points_, is_before);

@@ -11,8 +11,11 @@ namespace interflect::detail {
 /// Point of a leaf that received power.
 struct StartPoint {
     std::uint32_t leaf;
-    float power;    ///< Sum of the channels; cumulative over the leaf in StartPoints.
-    Parameters at;  ///< On the leaf's patch.
+    float power;                   ///< Sum of the channels; cumulative over the leaf in StartPoints.
+    Parameters at;                 ///< On the leaf's patch.
+    std::uint32_t place_on_curve;  ///< Of `at`, on a Morton curve.
+
+    StartPoint(std::uint32_t of_leaf, float of_power, const Parameters& point);
 };
 
 /// Origins of reflected light, at which leaves start rays in proportion to received power. Uniform reflection from a
@@ -31,7 +34,7 @@ class StartPoints {
     static Parameters choose(std::span<const StartPoint> points, float u);
 
   private:
-    std::vector<StartPoint> points_;  // by leaf, then along a Morton curve
+    std::vector<StartPoint> points_;  // by leaf, then along the curve, which stratifies samples
 };
 
 }  // namespace interflect::detail
