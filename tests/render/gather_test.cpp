@@ -87,7 +87,8 @@ TEST(Gather, SameSeedSameBits) {
     EXPECT_EQ(a.image.pixels, b.image.pixels);
 }
 
-/// The mean of 1 / density over sampled points is the sampled area: here the area in front of the point, all of it lit.
+/// The mean of 1 / density over sampled points is the sampled area: here the bright area in front of the
+/// point.
 TEST(KnownLight, SamplesWithTheStatedDensity) {
     const Scene scene = closed_box({1, 2, 3}, 2, {Material{"", Rgb(0.5f)}});
     std::vector<PatchGeometry> geometry;
@@ -96,10 +97,16 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     forest.subdivide(0);
     forest.subdivide(forest.first_child(0) + 2);
     forest.subdivide(7);
-    std::vector<Rgb> irradiance(forest.size());
-    for (std::uint32_t e = 0; e < forest.size(); ++e) irradiance[e] = Rgb(1 + static_cast<float>(e % 5));
+    std::vector<Rgb> irradiance(forest.size(), Rgb(1));
+    for (std::uint32_t patch = 0; patch < forest.patch_count(); patch += 5) irradiance[patch] = Rgb(20);
+    const std::uint32_t first = forest.first_child(7);
+    irradiance[first + 1] = Rgb(30), irradiance[first + 3] = Rgb(40);
+    pull(forest, irradiance);
     const KnownLight light(scene, geometry, forest, irradiance);
     const V3f x(0.5f, 1, 0), n(0, 0, 1);
+    double in_front = 0;  // area of the bright leaves
+    for (const std::uint32_t leaf : forest.leaves())
+        if (irradiance[leaf].x > 1 && geometry[forest.patch(leaf)].normal().z < 1) in_front += forest.area(leaf);
     constexpr int samples = 200'000;
     double sum = 0, squares = 0;
     for (int i = 0; i < samples; ++i) {
@@ -111,9 +118,19 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
         sum += area, squares += area * area;
     }
     const double mean = sum / samples, error = std::sqrt((squares / samples - mean * mean) / samples);
-    constexpr double in_front = 2 * (1.0 * 3 + 2 * 3) + 2;  // all walls except the floor
     EXPECT_GT(z_test(mean, in_front, error), false_alarm);
     EXPECT_LT(z_test(mean, 1.02 * in_front, error), false_alarm);
+}
+
+TEST(KnownLight, LeavesEvenLightToDirections) {
+    const Scene scene = closed_box({1, 2, 3}, 2, {Material{"", Rgb(0.5f)}});
+    std::vector<PatchGeometry> geometry;
+    for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
+    const ElementForest forest(scene, 1000);
+    const std::vector<Rgb> irradiance(forest.size(), Rgb(1));
+    const KnownLight light(scene, geometry, forest, irradiance);
+    EXPECT_EQ(light.sample({0.5f, 1, 0}, {0, 0, 1}, 0.5, 0.5f, 0.5f).patch, none);
+    EXPECT_EQ(light.density({0, 0, {0.5f, 0.5f}}, {0.5f, 1, 0}, {0, 0, 1}), 0);
 }
 
 /// A wall, 1 m away and evenly lit, without noise.

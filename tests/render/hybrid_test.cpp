@@ -68,8 +68,15 @@ Scene room() {
 }
 const View into_corner{"corner", {3.6, 2.7, 1.6}, {0.4, 0.3, 0.5}, {0, 0, 1}, 60};
 
+/// Faces down; black above. Without a back, path tracing would see the floor through the lamp from the ceiling, but
+/// light from the floor would not reach the ceiling.
+void add_panel(Scene& scene, const V3f& corner, float u, float v, std::uint32_t material, int divisions = 1) {
+    add_rectangle(scene, corner, {0, v, 0}, {u, 0, 0}, material, divisions, divisions);
+    add_rectangle(scene, corner, {u, 0, 0}, {0, v, 0}, add_material(scene, Rgb(0), Rgb(0)));
+}
+
 void add_lamp(Scene& scene, float side) {
-    add_rectangle(scene, {1, 1, 2.45f}, {0, side, 0}, {side, 0, 0}, add_material(scene, Rgb(0), Rgb(3000, 2800, 2000)));
+    add_panel(scene, {1, 1, 2.45f}, side, side, add_material(scene, Rgb(0), Rgb(3000, 2800, 2000)));
 }
 
 /// The room without a roof. Its faces are two-sided: light from outside would pass one-sided walls.
@@ -95,8 +102,8 @@ std::vector<LitScene> lit_scenes() {
     std::vector<LitScene> all;
     Scene lamps = room();
     add_lamp(lamps, 0.6f);
-    add_rectangle(lamps, {0.2f, 0.2f, 1}, {0.3f, 0, 0}, {0, 0.2f, 0},
-                  add_material(lamps, Rgb(0.5f), Rgb(9000)));  // near a wall
+    const std::uint32_t grey = add_material(lamps, Rgb(0.5f), Rgb(9000));
+    add_panel(lamps, {0.2f, 0.2f, 1}, 0.3f, 0.2f, grey);  // near a wall
     all.push_back({"AreaLights", lamps});
     Scene points = room();
     points.luminaires.push_back({"spot", 0, SpotLight{{3, 2, 2.3f}, {-1, -0.4f, -2}, {300, 300, 200}, 15, 30}});
@@ -117,7 +124,7 @@ std::vector<LitScene> lit_scenes() {
     all.push_back({"BehindAPane", glass});
     Scene many = room();  // more sources than UnoccludedLight sums
     const std::uint32_t bright = add_material(many, Rgb(0), Rgb(1500));
-    add_rectangle(many, {0.5f, 0.5f, 2.45f}, {0, 1.5f, 0}, {1.5f, 0, 0}, bright, 10, 10);
+    add_panel(many, {0.5f, 0.5f, 2.45f}, 1.5f, 1.5f, bright, 10);
     all.push_back({"ManySources", many});
     return all;
 }
@@ -145,18 +152,24 @@ INSTANTIATE_TEST_SUITE_P(Scenes, HybridScene, testing::ValuesIn(lit_scenes()),
                          [](const auto& test) { return test.param.name; });
 
 /// In a furnace with exitance M and reflectance rho, irradiance is H = M / (1 - rho) and indirect irradiance rho H at
-/// every point. Seen to fail when records count emitted light, or omit the reflectance.
+/// every point. Seen to fail when records count emitted light, or omit the reflectance. The error of pixels was 0.93 to
+/// 1.03% with eight seeds; 1.01 to 1.24% when paths also sampled places of usual radiosity.
 TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
     const Scene scene = closed_box({4, 3, 2.5f}, 3, {Material{"", Rgb(0.6f), Rgb(40)}});
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1'000'000}});
-    const PathOptions options{.width = 40, .height = 30, .samples = 16, .quantity = PathQuantity::irradiance};
-    const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, into_corner, options);
-    for (std::size_t i = 0; i < hybrid.image.pixels.size(); ++i) {
-        EXPECT_NEAR(hybrid.layers.reflected.direct.pixels[i].x, 40, 0.1);
-        EXPECT_NEAR(hybrid.layers.reflected.indirect.pixels[i].x, 60, 3);
+    PathOptions options{.width = 40, .height = 30, .samples = 16, .quantity = PathQuantity::irradiance};
+    for (options.seed = 1; options.seed <= 4; ++options.seed) {
+        const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, into_corner, options);
+        double squares = 0;
+        for (const Rgb& direct : hybrid.layers.reflected.direct.pixels) EXPECT_NEAR(direct.x, 40, 0.1);
+        for (const Rgb& indirect : hybrid.layers.reflected.indirect.pixels) {
+            EXPECT_NEAR(indirect.x, 60, 0.07 * 60);
+            squares += std::pow(static_cast<double>(indirect.x) / 60 - 1, 2);
+        }
+        EXPECT_LT(std::sqrt(squares / static_cast<double>(hybrid.image.pixels.size())), 0.0115);
+        EXPECT_NEAR(mean_of(hybrid.layers.reflected.indirect), 60, 0.3);
     }
-    EXPECT_NEAR(mean_of(hybrid.layers.reflected.indirect), 60, 0.3);
 }
 
 /// Without occluders, direct light is exact in every pixel.

@@ -34,6 +34,7 @@ struct TexelPlace {
     Parameters at;
     std::array<Parameters, 2> sides{};  ///< Extent of the texel along columns and rows.
     bool is_inside = false;
+    bool is_near = false;  ///< Bilinear interpolation on the patch may use the texel.
 };
 
 std::array<Parameters, 2> texel_sides(const FlatPatch& flat, const Imath::V2d& spacing) {
@@ -79,6 +80,7 @@ class NearestPatch {
         });
         constexpr float rounding = 1e-3f;  // [texels]
         nearest.is_inside = least <= rounding * rounding * texel * texel;
+        nearest.is_near = least < (1 - rounding) * (1 - rounding) * texel * texel;
         return nearest;
     }
 
@@ -244,43 +246,67 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
     return places;
 }
 
+/// Returns, for each texel of a chart, one nearby whose light it has: itself if a lookup on the surface may use it.
+std::vector<std::size_t> lit_texels(std::span<const TexelPlace> places, std::size_t columns) {
+    constexpr auto unknown = static_cast<std::size_t>(-1);
+    std::vector<std::size_t> lit(places.size(), unknown), reached;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        if (places[i].is_near) lit[i] = i, reached.push_back(i);
+    for (std::size_t next = 0; next < reached.size(); ++next) {
+        const std::size_t i = reached[next], column = i % columns;
+        const auto reach = [&](std::size_t neighbour) {
+            if (lit[neighbour] != unknown) return;
+            lit[neighbour] = lit[i];
+            reached.push_back(neighbour);
+        };
+        if (column > 0) reach(i - 1);
+        if (column + 1 < columns) reach(i + 1);
+        if (i >= columns) reach(i - columns);
+        if (i + columns < places.size()) reach(i + columns);
+    }
+    return lit;
+}
+
+/// Texels of all charts. Those that no lookup on a surface uses have the light of their neighbours.
 class LightmapTexels {
   public:
-    LightmapTexels(const LightmapOptions& options, std::size_t texels) : options_(options) {
-        places_.reserve(texels);
-        targets_.reserve(texels);
-    }
+    explicit LightmapTexels(const LightmapOptions& options) : options_(options) {}
 
     void add(const LightmapChart& chart) {
         const std::vector<TexelPlace> places = places_of(chart, options_.gutter);
         const int columns = chart.columns + 2 * options_.gutter;
+        const std::vector<std::size_t> lit = lit_texels(places, static_cast<std::size_t>(columns));
+        std::vector<std::size_t> numbers(places.size());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            numbers[i] = places_.size();
+            if (lit[i] == i) places_.push_back(places[i]);
+            texels_inside_ += places[i].is_inside;
+        }
         for (std::size_t i = 0; i < places.size(); ++i) {
             const int column = chart.left - options_.gutter + static_cast<int>(i) % columns;
             const int row = chart.top - options_.gutter + static_cast<int>(i) / columns;
-            places_.push_back(places[i]);
-            targets_.push_back({static_cast<std::size_t>(chart.page), column, row});
+            targets_.push_back({static_cast<std::size_t>(chart.page), numbers[lit[i]], column, row});
         }
     }
     void evaluate(const Scene& scene, const IrradianceSource& source, std::vector<Image>& images) const {
         const std::vector<Rgb> irradiance = source.irradiance(places_, 1 / options_.texels_per_metre);
-        for (std::size_t i = 0; i < places_.size(); ++i)
-            images[targets_[i].page].at(targets_[i].column, targets_[i].row) =
-                content_of(scene, places_[i], irradiance[i], options_.content);
+        for (const Target& target : targets_)
+            images[target.page].at(target.column, target.row) =
+                content_of(scene, places_[target.place], irradiance[target.place], options_.content);
     }
-    std::size_t texels() const { return places_.size(); }
-    std::int64_t texels_inside() const {
-        return std::count_if(places_.begin(), places_.end(), [](const TexelPlace& place) { return place.is_inside; });
-    }
+    std::size_t texels() const { return targets_.size(); }
+    std::int64_t texels_inside() const { return texels_inside_; }
 
   private:
     struct Target {
-        std::size_t page;
+        std::size_t page, place;
         int column, row;
     };
 
     const LightmapOptions& options_;
     std::vector<TexelPlace> places_;
     std::vector<Target> targets_;
+    std::int64_t texels_inside_ = 0;
 };
 
 void add(const std::vector<Image>& images, std::vector<Image>& sum) {
@@ -364,7 +390,7 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     for (const LightmapChart& chart : lightmap.charts) texels_of_charts += texels_of(chart, chosen.gutter);
     require_memory(texels, texels_of_charts, chosen, solution.groups.size());
     for (const Imath::V2i& size : sizes) lightmap.images.emplace_back(size.x, size.y);
-    LightmapTexels evaluated(chosen, static_cast<std::size_t>(texels_of_charts));
+    LightmapTexels evaluated(chosen);
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {
         const FlatPatches& patches = lightmap.charts[i].patches;
         for (std::uint32_t k = 0; k < patches.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <unordered_set>
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
@@ -20,7 +21,7 @@ constexpr std::size_t paths_per_group = 16, groups_of_first_round = 8, most_grou
 /// Groups of a record: this many times the standard deviation of a group, relative to all irradiance there (in dark
 /// places, to a share of its mean), times the record's reach in spacings. With one factor for all records the squared
 /// error of the picture is least: a record's error counts for all pixels in its reach.
-constexpr float groups_per_deviation = 5, share_of_mean = 0.25f;
+constexpr float groups_per_deviation = 7, share_of_mean = 0.25f;
 /// Reach of a record: relative to the harmonic mean length of its rays, and its limits in spacings of the points. More
 /// records of fewer paths are better: with 0.35 and 512 paths, errors are 1.1 to 1.8 times as large.
 constexpr float reach_share = 0.15f, least_spacings = 4, most_spacings = 100;
@@ -46,6 +47,20 @@ std::vector<Boxed> tree_of(const std::vector<Contact>& contacts) {
     return tree;
 }
 
+/// Divides points into the first of each cell and patch, and the others, which records of the first may cover.
+void separate(std::span<const SurfacePoint> points, std::vector<SurfacePoint>& first,
+              std::vector<SurfacePoint>& others) {
+    first.clear(), others.clear();
+    std::unordered_set<std::uint64_t> taken;
+    for (const SurfacePoint& p : points) {
+        const V3f cell = p.position / (least_spacings * p.spacing);
+        std::uint64_t key = mix(std::uint64_t{0}, p.patch);
+        for (int axis = 0; axis < 3; ++axis)
+            key = mix(key, static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(cell[axis]))));
+        (taken.insert(key).second ? first : others).push_back(p);
+    }
+}
+
 /// Random order, the same for the same seed.
 std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> order(count);
@@ -69,22 +84,30 @@ IndirectField::IndirectField(const PathScene& scene, std::span<const SurfacePoin
 
 void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop) {
     const std::vector<std::uint32_t> order = shuffled(points.size(), scene.options.seed);
-    std::vector<std::uint8_t> is_covered;
-    std::vector<SurfacePoint> uncovered;
-    for (std::size_t begin = 0, end = 0; begin < points.size() && !(stop && *stop); begin = end) {
+    for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
         end = std::min(points.size(), std::max(points_of_first_round, 2 * begin));
-        is_covered.assign(end - begin, 0);
-        parallel_for_ranges(end - begin, points_at_once, [&](std::size_t first, std::size_t last) {
-            for (std::size_t i = first; i < last; ++i) {
-                const SurfacePoint& p = points[order[begin + i]];
-                is_covered[i] = fit_at(p.position, p.normal, p.patch).weight() >= covering_weight;
-            }
-        });
-        uncovered.clear();
-        for (std::size_t i = 0; i < is_covered.size(); ++i)
-            if (is_covered[i] == 0) uncovered.push_back(points[order[begin + i]]);
-        add_records(scene, uncovered, stop);
+        std::vector<SurfacePoint> left;
+        for (std::size_t i = begin; i < end; ++i) left.push_back(points[order[i]]);
+        while (!left.empty()) {
+            if (stop && *stop) return;
+            const std::vector<SurfacePoint> uncovered = uncovered_among(left);
+            std::vector<SurfacePoint> apart;
+            separate(uncovered, apart, left);
+            add_records(scene, apart, stop);
+        }
     }
+}
+
+std::vector<SurfacePoint> IndirectField::uncovered_among(std::span<const SurfacePoint> points) const {
+    std::vector<std::uint8_t> is_covered(points.size(), 0);
+    parallel_for_ranges(points.size(), points_at_once, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i)
+            is_covered[i] = fit_at(points[i].position, points[i].normal, points[i].patch).weight() >= covering_weight;
+    });
+    std::vector<SurfacePoint> uncovered;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (is_covered[i] == 0) uncovered.push_back(points[i]);
+    return uncovered;
 }
 
 void IndirectField::gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,

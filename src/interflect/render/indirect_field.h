@@ -58,6 +58,7 @@ class IndirectField {
 
     LocalFit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
     void cover(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
+    std::vector<SurfacePoint> uncovered_among(std::span<const SurfacePoint> points) const;
     void gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,
                 const std::atomic<bool>* stop);
     void add_records(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);

@@ -9,22 +9,29 @@ namespace interflect::detail {
 
 namespace {
 
-/// Negative irradiance (noise) is not sampled.
-std::vector<float> received_power(const ElementForest& forest, std::span<const Rgb> irradiance) {
-    std::vector<float> power(forest.size(), 0.0f);
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
-        if (forest.is_leaf(e)) power[e] = std::max(0.0f, channel_sum(irradiance[e])) * forest.area(e);
-    forest.for_siblings_from_leaves([&](std::uint32_t first) {
-        power[forest.parent(first)] = power[first] + power[first + 1] + power[first + 2] + power[first + 3];
-    });
-    return power;
-}
+/// Usual radiosity, relative to its mean over all surfaces. Sampling dimmer places, too, adds noise, since directions
+/// find them well (Karlik et al. 2019): in a furnace, irradiance of 128 paths then varies by 2.6% in place of 1.8%.
+constexpr double usual_over_mean = 2;
 
-std::vector<float> reflected_power(const Scene& scene, std::span<const float> received) {
-    std::vector<float> power(scene.patches.size());
-    for (std::size_t i = 0; i < power.size(); ++i)
-        power[i] = received[i] * channel_sum(scene.materials[scene.patches[i].material].reflectance);
-    return power;
+/// Returns the power that each element reflects above the usual, sum of channels [lm or W]. Inner elements have the sum
+/// of their leaves.
+std::vector<float> excess_power(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance) {
+    const auto reflected = [&](std::uint32_t e) {
+        return channel_sum(scene.materials[scene.patches[forest.patch(e)].material].reflectance * irradiance[e]);
+    };
+    double power = 0, area = 0;
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
+        power += static_cast<double>(reflected(i)) * forest.area(i);
+        area += forest.area(i);
+    }
+    const auto usual = static_cast<float>(usual_over_mean * power / area);
+    std::vector<float> excess(forest.size(), 0.0f);
+    for (std::uint32_t e = 0; e < forest.size(); ++e)
+        if (forest.is_leaf(e)) excess[e] = std::max(0.0f, reflected(e) - usual) * forest.area(e);
+    forest.for_siblings_from_leaves([&](std::uint32_t first) {
+        excess[forest.parent(first)] = excess[first] + excess[first + 1] + excess[first + 2] + excess[first + 3];
+    });
+    return excess;
 }
 
 }  // namespace
@@ -35,8 +42,8 @@ KnownLight::KnownLight(const Scene& scene, std::span<const PatchGeometry> geomet
       geometry_(geometry),
       forest_(forest),
       irradiance_(irradiance),
-      received_(received_power(forest, irradiance)),
-      tree_(patch_lights(scene, geometry, reflected_power(scene, received_)), scene.patches.size()) {}
+      excess_(excess_power(scene, forest, irradiance)),
+      tree_(patch_lights(scene, geometry, std::span(excess_).first(scene.patches.size())), scene.patches.size()) {}
 
 KnownLight::Place KnownLight::place(std::uint32_t patch, const V3f& x) const {
     const Parameters p = geometry_[patch].parameters_of(x);
@@ -57,21 +64,21 @@ KnownLight::Place KnownLight::sample(const V3f& x, const V3f& n, double uniform,
     Cell cell;
     while (!forest_.is_leaf(e)) {
         const std::uint32_t children = forest_.first_child(e);
-        float rest = u * received_[e];
+        float rest = u * excess_[e];
         unsigned k = 0;
-        while (k < 3 && rest >= received_[children + k]) rest -= received_[children + k++];
-        while (k > 0 && !(received_[children + k] > 0)) --k;  // rounding can select an empty child
+        while (k < 3 && rest >= excess_[children + k]) rest -= excess_[children + k++];
+        while (k > 0 && !(excess_[children + k] > 0)) --k;  // rounding can select an empty child
         e = children + k;
-        u = std::clamp(rest / received_[e], 0.0f, below_one);  // uniform again
+        u = std::clamp(rest / excess_[e], 0.0f, below_one);  // uniform again
         cell = cell.child(k, geometry.is_triangle());
     }
     return {patch, e, geometry.uniform_parameters(u, v, {cell.u, cell.v}, cell.size)};
 }
 
 float KnownLight::density(const Place& place, const V3f& x, const V3f& n) const {
-    const float all = received_[place.patch];
+    const float all = excess_[place.patch];
     if (!(all > 0)) return 0;
-    return tree_.probability(place.patch, x, n) * (received_[place.leaf] / all) / forest_.area(place.leaf);
+    return tree_.probability(place.patch, x, n) * (excess_[place.leaf] / all) / forest_.area(place.leaf);
 }
 
 }  // namespace interflect::detail

@@ -12,8 +12,8 @@
 
 namespace interflect::detail {
 
-/// Light of a solution for final gathering. Samples a patch by reflected power, then an element by received power.
-/// Thread-safe.
+/// Light of a solution for final gathering. Samples bright places: an element by the reflected power that exceeds the
+/// usual radiosity. Directions must sample all light. Thread-safe.
 class KnownLight {
   public:
     /// @param irradiance  Per element; only leaves are used. Arguments must outlive this object.
@@ -35,7 +35,7 @@ class KnownLight {
         return forest_.area(place.leaf) <= largest_angle * distance2;
     }
 
-    /// Samples a point that may illuminate x on a surface with normal n; the result can lack a patch.
+    /// Samples a bright point that may illuminate x on a surface with normal n; the result can lack a patch.
     /// @param uniform  In (0, 1).
     /// @param u, v     In [0, 1).
     Place sample(const V3f& x, const V3f& n, double uniform, float u, float v) const;
@@ -47,7 +47,7 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> received_;  // [lm or W]
+    std::vector<float> excess_;  // reflected power above the usual, sum of channels [lm or W]
     LightTree tree_;
 };
 

@@ -17,22 +17,7 @@ namespace {
 constexpr std::size_t bin_count = 16;  // more have no measurable benefit
 
 V3f smaller(const V3f& a, const V3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
-V3f absolute(const V3f& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
 V3f larger(const V3f& a, const V3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
-
-float support(const V3f& half, const V3f& direction) { return half.dot(absolute(direction)); }
-
-/// Angle in [0, pi].
-struct Angle {
-    float cosine, sine;
-    static Angle of_cosine(float c) { return {c, std::sqrt(std::max(0.0f, 1 - c * c))}; }
-};
-
-/// max(0, a - b).
-Angle less(const Angle& a, const Angle& b) {
-    if (a.cosine >= b.cosine) return {1, 0};
-    return {a.cosine * b.cosine + a.sine * b.sine, a.sine * b.cosine - a.cosine * b.sine};
-}
 
 }  // namespace
 
@@ -108,11 +93,22 @@ std::vector<LightTree::Light> patch_lights(const Scene& scene, std::span<const P
     return lights;
 }
 
-LightTree::LightTree(std::vector<Light> lights, std::size_t index_count) : leaf_(index_count, none) {
+struct LightTree::BinaryNode {
+    Box box;
+    Cone cone;
+    float power;          // [W or lm]
+    std::uint32_t light;  // none: has children
+    std::uint32_t children[2];
+
+    float radius() const { return 0.5f * (box.high - box.low).length(); }
+};
+
+LightTree::LightTree(std::vector<Light> lights, std::size_t index_count)
+    : place_(index_count, none), light_count_(lights.size()) {
     if (lights.empty()) return;
-    nodes_.reserve(2 * lights.size() - 1);
-    nodes_.emplace_back();
-    build(0, lights);
+    std::vector<BinaryNode> binary;
+    binary.reserve(2 * lights.size() - 1);
+    add_node(binary, build(lights, binary), none);
 }
 
 struct LightTree::Split {
@@ -175,101 +171,122 @@ LightTree::Split LightTree::best_split(std::span<const Light> lights, const Box&
     return best;
 }
 
-void LightTree::build(std::uint32_t node, std::span<Light> lights) {
-    Box box = lights.front().box;
-    Box centres{lights.front().centre(), lights.front().centre()};
+std::uint32_t LightTree::build(std::span<Light> lights, std::vector<BinaryNode>& nodes) {
+    const Light& first = lights.front();
+    if (lights.size() == 1) {
+        nodes.push_back({first.box, first.cone, first.power, first.index, {none, none}});
+        return static_cast<std::uint32_t>(nodes.size() - 1);
+    }
+    Box box = first.box, centres{first.centre(), first.centre()};
     for (const Light& l : lights) {
         box.extend(l.box);
         centres.extend({l.centre(), l.centre()});
     }
-    const auto finish = [&](const Cone& cone, float power) {
-        LightNode& finished = nodes_[node];
-        finished.centre = 0.5f * (box.low + box.high);
-        finished.half = 0.5f * (box.high - box.low);
-        finished.radius2 = finished.half.length2();
-        finished.cone = cone;
-        finished.cone_sine = Angle::of_cosine(cone.cosine).sine;
-        finished.power = power;
-    };
-    if (lights.size() == 1) {
-        finish(lights.front().cone, lights.front().power);
-        nodes_[node].light = lights.front().index;
-        leaf_[lights.front().index] = node;
-        return;
-    }
-
     const Split split = best_split(lights, centres);
     const auto middle = std::stable_partition(
         lights.begin(), lights.end(), [&](const Light& l) { return split.bin_of(l.centre()) < split.first_above; });
     // If all centres coincide, one half is empty.
     std::size_t first_half = static_cast<std::size_t>(middle - lights.begin());
     if (first_half == 0 || first_half == lights.size()) first_half = lights.size() / 2;
+    const std::uint32_t a = build(lights.first(first_half), nodes), b = build(lights.subspan(first_half), nodes);
+    nodes.push_back({box, bounding_cone(nodes[a].cone, nodes[b].cone), nodes[a].power + nodes[b].power, none, {a, b}});
+    return static_cast<std::uint32_t>(nodes.size() - 1);
+}
 
-    const auto child = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.resize(nodes_.size() + 2);
-    nodes_[node].first_child = child;
-    nodes_[child].parent = nodes_[child + 1].parent = node;
-    build(child, lights.first(first_half));
-    build(child + 1, lights.subspan(first_half));
-    finish(bounding_cone(nodes_[child].cone, nodes_[child + 1].cone), nodes_[child].power + nodes_[child + 1].power);
+/// Replaces the widest child by its children until the node is full.
+void LightTree::add_node(const std::vector<BinaryNode>& binary, std::uint32_t root, std::uint32_t place_in_parent) {
+    std::vector<std::uint32_t> children{root};
+    while (children.size() < width) {
+        const auto widest = std::max_element(children.begin(), children.end(), [&](std::uint32_t a, std::uint32_t b) {
+            const auto extent = [&](std::uint32_t i) { return binary[i].light == none ? binary[i].radius() : -1; };
+            return extent(a) < extent(b);
+        });
+        const BinaryNode& divided = binary[*widest];
+        if (divided.light != none) break;
+        *widest = divided.children[0];
+        children.push_back(divided.children[1]);
+    }
+    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    nodes_[index].radius.fill(1);
+    nodes_[index].place_in_parent = place_in_parent;
+    for (std::uint32_t i = 0; i < children.size(); ++i) {
+        const BinaryNode& child = binary[children[i]];
+        const std::uint32_t place = index * static_cast<std::uint32_t>(width) + i;
+        Node& node = nodes_[index];
+        node.centre.set(i, 0.5f * (child.box.low + child.box.high));
+        node.half.set(i, 0.5f * (child.box.high - child.box.low));
+        node.radius[i] = std::max(child.radius(), std::numeric_limits<float>::min());
+        node.axis.set(i, child.cone.axis);
+        node.cone_cosine[i] = child.cone.cosine;
+        node.cone_sine[i] = std::sqrt(std::max(0.0f, 1 - child.cone.cosine * child.cone.cosine));
+        node.power[i] = child.power;
+        node.is_light[i] = child.light != none;
+        node.child[i] = child.light != none ? child.light : static_cast<std::uint32_t>(nodes_.size());
+        if (child.light != none)
+            place_[child.light] = place;
+        else
+            add_node(binary, children[i], place);
+    }
 }
 
 // Cosines use the box's nearest point, which favours wide nodes around x.
-float LightTree::importance(const LightNode& node, const V3f& x, const V3f& n) {
-    const V3f to_centre = node.centre - x;
-    const V3f& axis = node.cone.axis;
-    const float height = n.dot(to_centre) + support(node.half, n);       // of the highest point above the surface
-    const float ahead = support(node.half, axis) - axis.dot(to_centre);  // of x before the rearmost point
-    if (height <= 0) return 0;
-    const V3f gap = larger(absolute(to_centre) - node.half, V3f(0, 0, 0));
-    const float nearest2 = gap.length2(), centre2 = to_centre.length2();
-    const float inverse = 1 / std::sqrt(std::max(nearest2, std::numeric_limits<float>::min()));
-    const float receiving = std::min(1.0f, height * inverse);
-    float emitting = std::min(1.0f, ahead * inverse);
-    if (node.cone.cosine < 1) {
+LightTree::Choices LightTree::importance_of_children(const Node& node, const V3f& x, const V3f& n) {
+    constexpr float least = std::numeric_limits<float>::min();
+    Choices choices;
+    for (std::size_t i = 0; i < width; ++i) {
+        const float dx = node.centre.x[i] - x.x, dy = node.centre.y[i] - x.y, dz = node.centre.z[i] - x.z;
+        const float hx = node.half.x[i], hy = node.half.y[i], hz = node.half.z[i];
+        const float ax = node.axis.x[i], ay = node.axis.y[i], az = node.axis.z[i];
+        // Of the box's highest point above the surface, and of x before the rearmost point.
+        const float height =
+            n.x * dx + n.y * dy + n.z * dz + std::abs(n.x) * hx + std::abs(n.y) * hy + std::abs(n.z) * hz;
+        const float ahead = std::abs(ax) * hx + std::abs(ay) * hy + std::abs(az) * hz - (ax * dx + ay * dy + az * dz);
+        const float gap_x = std::max(0.0f, std::abs(dx) - hx), gap_y = std::max(0.0f, std::abs(dy) - hy),
+                    gap_z = std::max(0.0f, std::abs(dz) - hz);
+        const float nearest2 = gap_x * gap_x + gap_y * gap_y + gap_z * gap_z, centre2 = dx * dx + dy * dy + dz * dz;
+        const float per_distance = 1 / std::sqrt(std::max(nearest2, least)), radius = node.radius[i];
+        const float receiving = std::clamp(height * per_distance, 0.0f, 1.0f);
         // Behind the whole box, the farthest patch has the smallest angle.
-        if (ahead < 0) emitting = ahead / (std::sqrt(centre2) + std::sqrt(node.radius2));
-        emitting = less(Angle::of_cosine(emitting), {node.cone.cosine, node.cone_sine}).cosine;
+        const float cosine = ahead < 0 ? ahead / (std::sqrt(centre2) + radius) : std::min(1.0f, ahead * per_distance);
+        const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+        const float outside_cone = cosine * node.cone_cosine[i] + sine * node.cone_sine[i];
+        const float emitting = cosine >= node.cone_cosine[i] ? 1 : std::max(0.0f, outside_cone);
+        choices.importance[i] = node.power[i] * receiving * emitting / std::max(centre2, radius * radius);
     }
-    return node.power * receiving * std::max(0.0f, emitting) / std::max(centre2, node.radius2);
+    choices.sum = 0;
+    for (const float importance : choices.importance) choices.sum += importance;
+    return choices;
 }
 
 LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) const {
-    if (nodes_.empty()) return {};
     constexpr double below_one = 0x1.fffffffffffffp-1;
-    std::uint32_t node = 0;
+    if (nodes_.empty()) return {};
     float probability = 1;
-    if (nodes_[0].is_leaf() && importance(nodes_[0], x, n) <= 0) return {};
-    while (!nodes_[node].is_leaf()) {
-        const std::uint32_t child = nodes_[node].first_child;
-        const float first = importance(nodes_[child], x, n), second = importance(nodes_[child + 1], x, n);
-        if (!(first + second > 0)) return {};
-        const float of_first = first / (first + second);
-        if (uniform < static_cast<double>(of_first)) {
-            uniform = std::min(uniform / static_cast<double>(of_first), below_one);
-            probability *= of_first;
-            node = child;
-        } else {
-            uniform =
-                std::min((uniform - static_cast<double>(of_first)) / (1 - static_cast<double>(of_first)), below_one);
-            probability *= 1 - of_first;
-            node = child + 1;
+    for (const Node* node = nodes_.data();;) {
+        const auto [importance, sum] = importance_of_children(*node, x, n);
+        if (!(sum > 0)) return {};
+        double rest = uniform * static_cast<double>(sum);
+        std::size_t i = 0, last = 0;
+        for (; i < width && rest >= static_cast<double>(importance[i]); ++i) {
+            rest -= static_cast<double>(importance[i]);
+            if (importance[i] > 0) last = i;
         }
+        if (i == width) i = last, rest = static_cast<double>(importance[i]);  // by rounding
+        uniform = std::min(rest / static_cast<double>(importance[i]), below_one);
+        probability *= importance[i] / sum;
+        if (node->is_light[i]) return {node->child[i], probability};
+        node = &nodes_[node->child[i]];
     }
-    return {nodes_[node].light, probability};
 }
 
 float LightTree::probability(std::uint32_t index, const V3f& x, const V3f& n) const {
-    std::uint32_t node = leaf_[index];
-    if (node == none) return 0;
-    if (nodes_[node].parent == none) return importance(nodes_[node], x, n) > 0 ? 1.0f : 0.0f;
     float probability = 1;
-    for (; nodes_[node].parent != none; node = nodes_[node].parent) {
-        const std::uint32_t child = nodes_[nodes_[node].parent].first_child;
-        const float first = importance(nodes_[child], x, n), second = importance(nodes_[child + 1], x, n);
-        if (!(first + second > 0)) return 0;
-        const float of_first = first / (first + second);
-        probability *= node == child ? of_first : 1 - of_first;
+    if (place_[index] == none) return 0;
+    for (std::uint32_t place = place_[index]; place != none; place = nodes_[place / width].place_in_parent) {
+        const auto [importance, sum] = importance_of_children(nodes_[place / width], x, n);
+        if (!(sum > 0)) return 0;
+        probability *= importance[place % width] / sum;
     }
     return probability;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -44,29 +46,42 @@ class LightTree {
     /// Returns the probability of choose(); 0 for an index without light.
     float probability(std::uint32_t index, const V3f& x, const V3f& n) const;
 
-    std::size_t light_count() const { return (nodes_.size() + 1) / 2; }
+    std::size_t light_count() const { return light_count_; }
 
   private:
-    struct alignas(64) LightNode {
-        V3f centre, half;  // of the bounding box [m]
-        Cone cone;
-        float cone_sine = 0;
-        float power = 0;  // [W or lm]
-        std::uint32_t first_child = 0;
-        std::uint32_t light = none, parent = none;
-        float radius2 = 0;  // [m^2]
-        bool is_leaf() const { return light != none; }
+    static constexpr std::size_t width = 8;
+    using Floats = std::array<float, width>;
+    struct Vectors {
+        Floats x{}, y{}, z{};
+        void set(std::size_t i, const V3f& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
     };
+    /// Up to eight children, lights or nodes, side by side for vector instructions; others have no power.
+    struct alignas(64) Node {
+        Vectors centre, half, axis;  // of bounding boxes [m] and cones
+        Floats cone_cosine{}, cone_sine{};
+        Floats power{};   // [W or lm]
+        Floats radius{};  // of the box [m]; positive
+        std::array<std::uint32_t, width> child{};
+        std::array<bool, width> is_light{};
+        std::uint32_t place_in_parent = none;  // node times `width` plus its number there
+    };
+    struct Choices {
+        Floats importance;
+        float sum;
+    };
+    struct BinaryNode;
     struct Split;
     struct Bin;
 
     static Cone bounding_cone(const Cone& a, const Cone& b);
-    static float importance(const LightNode& node, const V3f& x, const V3f& n);
     static Split best_split(std::span<const Light> lights, const Box& centres);
-    void build(std::uint32_t node, std::span<Light> lights);
+    static std::uint32_t build(std::span<Light> lights, std::vector<BinaryNode>& nodes);
+    void add_node(const std::vector<BinaryNode>& binary, std::uint32_t root, std::uint32_t place_in_parent);
+    static Choices importance_of_children(const Node& node, const V3f& x, const V3f& n);
 
-    std::vector<LightNode> nodes_;
-    std::vector<std::uint32_t> leaf_;
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> place_;  // of each light: node times `width` plus its number there
+    std::size_t light_count_;
 };
 
 /// @param geometry, power  Per patch; only patches with power > 0 become lights.
