@@ -151,7 +151,7 @@ void check_format_options(const ExportArguments& arguments, const CLI::App& comm
     }
     constexpr std::array<std::string_view, 2> of_sampling = {"--samples", "--seed"};
     if (arguments.lightmap.shading == LightmapShading::smooth)
-        refuse_options(command, of_sampling, "it has no effect without --shading hybrid or gather");
+        refuse_options(command, of_sampling, "it has no effect with --shading smooth");
 }
 
 void run(const ExportArguments& arguments, const CLI::App& command, int& exit_code) {
@@ -218,7 +218,7 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
                      {"gather", LightmapShading::gather}},
                     "smooth: interpolated between the elements; hybrid: direct light of each texel, indirect light "
                     "interpolated; gather: each texel finds its own light"))
-        ->default_str("smooth");
+        ->default_str("hybrid");
     of_lightmap(command.add_option("--samples", lightmap.samples,
                                    "Points a texel (default: 16); with --shading gather, directions (default: 64)"))
         ->check(CLI::Range(2, 1 << 24));

@@ -145,9 +145,11 @@ PathOptions path_options(const RenderArguments& options) {
     PathOptions result;
     result.width = options.size.width;
     result.height = options.rows();
-    constexpr int gathered_samples = 16;  // enough for a filtered picture
-    result.samples =
-        options.samples.value_or(options.shading == PictureShading::path ? result.samples : gathered_samples);
+    constexpr int gathered_samples = 16, hybrid_samples = 32;  // enough for a filtered picture
+    const int usual = options.shading == PictureShading::path     ? result.samples
+                      : options.shading == PictureShading::hybrid ? hybrid_samples
+                                                                  : gathered_samples;
+    result.samples = options.samples.value_or(usual);
     result.until = options.solver.until();
     result.seed = options.solver.seed();
     if (options.shows_irradiance()) result.quantity = PathQuantity::irradiance;
@@ -426,7 +428,7 @@ void add_render(CLI::App& app, int& exit_code) {
     add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
         ->type_name("WxH")
         ->default_str("1280x720");
-    command.add_option("--samples", options->samples, "Camera rays a pixel (default: 16; with --shading path 64)")
+    command.add_option("--samples", options->samples, "Camera rays a pixel (default: hybrid 32, path 64, else 16)")
         ->check(CLI::Range(1, 65536));
     add_choice<PictureShading>(
         command, "--shading", options->shading,

@@ -35,7 +35,7 @@ struct LightmapOptions {
     float texels_per_metre = 20;  ///< Minimum, > 0; less only on surfaces that would exceed an image.
     int max_size = 4096;          ///< Side of an image [texels], 64 to 16384, a multiple of 4; more images if needed.
     int gutter = 2;               ///< Margin of each chart, filled from its edge [texels], 1 to 64.
-    LightmapShading shading = LightmapShading::smooth;
+    LightmapShading shading = LightmapShading::hybrid;
     LightmapContent content = LightmapContent::irradiance;
     int samples = 16;  ///< Points per texel, at which direct light is sampled; or gathered directions. >= 2.
     std::uint64_t seed = 1;
