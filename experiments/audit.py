@@ -47,7 +47,7 @@ class Scale:
     rays: int = 8_000_000
     size: tuple[int, int] = (1280, 720)  # the size that the solver's estimate assumes
     samples: int | None = None  # paths per pixel of each reference picture; None: Scene.samples
-    most_rays: int = 64_000_000  # for runs with an error limit
+    max_rays: int = 64_000_000  # for runs with an error limit
     total_rays: int = 20_000_000  # random walks for the total power
 
 
@@ -160,7 +160,7 @@ class Bench:
                     continue
                 reference = reference or Reference(self.command, name, scene, self.scale, self.folder)
                 print(f"{name}: {run}, seed {seed}", file=sys.stderr, flush=True)
-                limits = f"--rays {self.scale.rays}" if limit == "rays" else f"--until {limit} --rays {self.scale.most_rays}"
+                limits = f"--rays {self.scale.rays}" if limit == "rays" else f"--until {limit} --rays {self.scale.max_rays}"
                 options = f"{scene.view() if viewed else ''} {scene.options} --method {method} {limits} --seed {seed}"
                 row = {"scene": name, "run": run, "seed": seed, "rays_asked": self.scale.rays, "build": self.build()}
                 row |= self.solved(path, scene, reference, options, viewed)

@@ -33,23 +33,23 @@ SCALE = Scale(rays=RAYS, size=(320, 180))
 # By file of src/interflect/solver, the constants that are measurements. Others are derived beside their definition
 # (headroom of fixed-point sums, rounding, sizes of batches, which change no result).
 CONSTANTS = {
-    "methods/bounce_budget.cpp": "fewest_rays_of_bounce least_share_left fewest_walks assumed_bounces decay_at_first",
+    "methods/bounce_budget.cpp": "fewest_rays_of_bounce min_share_left fewest_walks assumed_bounces decay_at_first",
     "methods/importance_transport.cpp": "negligible_importance",
     "importance/importance_weights.cpp": "taken_over rays_of_mean",
     "sampling/ray_plan.cpp": "share_of_nearby",
     "state/solver_state.cpp": "rays_per_camera_ray",
-    "state/element_floor.cpp": "least_cosine",
+    "state/element_floor.cpp": "min_cosine",
     "state/schedule.cpp": "growth first_rays_per_patch fewest_first_rays budget_over_first_rays rays_of_a_moment",
     "noise/noise_model.cpp": "memory largest_scale few_arrivals",
-    "error/error_estimate.cpp": "least_decay most_decay",
+    "error/error_estimate.cpp": "min_decay max_decay",
     "error/sibling_variation.cpp": "under_sampled highest_expected_decay",
     "error/sibling_variation.h": "assumed_variation",
     "error/noise_update.cpp": "long_enough",
     "refinement/oracle_threshold.cpp": "rays_at_epsilon",
-    "refinement/variance_refinement.cpp": "expected_decay assumed_square least_signal negligible_gain negligible_misplacement "
+    "refinement/variance_refinement.cpp": "expected_decay assumed_square min_signal negligible_gain negligible_misplacement "
     "tolerable_misplacement unseen_shape",
-    "iteration/outdoor_targets.cpp": "enough most_lines fewest_lines share_of_rest worthwhile_share widest_target rays_of_lines "
-    "most_rays all_over_rays",
+    "iteration/outdoor_targets.cpp": "enough max_lines fewest_lines share_of_rest worthwhile_share widest_target rays_of_lines "
+    "max_rays all_over_rays",
 }
 TUNED = '''#pragma once
 

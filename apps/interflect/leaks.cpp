@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::int64_t rays_traced = 1 << 16;
 constexpr std::uint64_t leak_seed = 1;
-constexpr float least_leak = 1e-3f, most_leak = 0.05f;
+constexpr float min_leak = 1e-3f, max_leak = 0.05f;
 /// Distance from an escaping ray to its parallels, relative to the scene's diagonal.
 constexpr float distance_beside = 0.02f;
 constexpr std::size_t rays_beside = 8;
@@ -239,7 +239,7 @@ Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solu
 }
 
 bool leaks(const Escapes& escapes) {
-    return escapes.share() > least_leak && escapes.share() < most_leak && 2 * escapes.through_gaps > escapes.escaped;
+    return escapes.share() > min_leak && escapes.share() < max_leak && 2 * escapes.through_gaps > escapes.escaped;
 }
 
 }  // namespace interflect::command

@@ -18,12 +18,12 @@ namespace {
 
 constexpr std::chrono::seconds silence{5};  // longer than most phases; shorter than a user's patience
 
-constexpr std::size_t least_addresses = std::size_t{1} << 30;  // a thread takes 136 MiB: a stack and a heap of malloc
+constexpr std::size_t min_addresses = std::size_t{1} << 30;  // a thread takes 136 MiB: a stack and a heap of malloc
 
 }  // namespace
 
 LongWork::LongWork(std::string what) : what_(std::move(what)), start_(Clock::now()), last_news_(start_) {
-    if (free_address_space() < least_addresses) return;
+    if (free_address_space() < min_addresses) return;
     try {
         thread_ = std::thread([this] { watch(); });
     } catch (const std::system_error&) {  // too many threads: work without reports

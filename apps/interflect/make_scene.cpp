@@ -114,7 +114,7 @@ void add_maze(CLI::App& parent) {
             asked_for.rooms = maze_rooms_for(static_cast<std::uint64_t>(options->patches), asked_for);
         return make_maze(asked_for);
     });
-    CLI::Option* rooms = add_number(kind, "--rooms", maze.rooms, MazeOptions::most_rooms, "How many rooms");
+    CLI::Option* rooms = add_number(kind, "--rooms", maze.rooms, MazeOptions::max_rooms, "How many rooms");
     add_parsed(kind, "--patches", options->patches, parse_count,
                "About so many patches, such as 10M: chooses the number of rooms")
         ->excludes(rooms);
@@ -129,16 +129,16 @@ void add_office(CLI::App& parent) {
     const auto office = std::make_shared<OfficeOptions>();
     CLI::App& kind = add_kind(parent, "office", "Offices with desks in rows and luminaires in a grid", office->seed,
                               [office] { return make_office(*office); });
-    add_number(kind, "--rooms", office->rooms, OfficeOptions::most_rooms, "How many rooms");
-    add_number(kind, "--desk-rows", office->desk_rows, OfficeOptions::most_rows, "Rows of desks in a room");
-    add_number(kind, "--desks-per-row", office->desks_per_row, OfficeOptions::most_desks_per_row, "Desks in a row");
+    add_number(kind, "--rooms", office->rooms, OfficeOptions::max_rooms, "How many rooms");
+    add_number(kind, "--desk-rows", office->desk_rows, OfficeOptions::max_rows, "Rows of desks in a room");
+    add_number(kind, "--desks-per-row", office->desks_per_row, OfficeOptions::max_desks_per_row, "Desks in a row");
 }
 
 void add_boxes(CLI::App& parent) {
     const auto boxes = std::make_shared<BoxesOptions>();
     CLI::App& kind = add_kind(parent, "boxes", "One room with random boxes on its floor", boxes->seed,
                               [boxes] { return make_boxes(*boxes); });
-    add_number(kind, "--boxes", boxes->boxes, BoxesOptions::most_boxes, "How many boxes");
+    add_number(kind, "--boxes", boxes->boxes, BoxesOptions::max_boxes, "How many boxes");
     kind.add_flag("--texture", boxes->texture,
                   "With images on the floor, the boxes and the luminaires, written beside the scene (.png)");
 }

@@ -32,7 +32,7 @@ void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
 }
 
 /// Points traced again for the solution's error: total, and minimum per grid.
-constexpr std::size_t most_compared = 256, least_of_grid = 8;
+constexpr std::size_t max_compared = 256, min_of_grid = 8;
 
 /// Traces paths at evenly spread points of each grid, with the gathering's number of samples.
 void compare_with_paths(const Scene& scene, const RayCaster& ray_caster, const std::vector<MeasuringPoint>& points,
@@ -40,12 +40,12 @@ void compare_with_paths(const Scene& scene, const RayCaster& ray_caster, const s
                         std::vector<MeasuredGrid>& grids) {
     options.until = 0;
     ++options.seed;
-    const std::size_t most_of_grid = std::max(least_of_grid, most_compared / grids.size());
+    const std::size_t max_of_grid = std::max(min_of_grid, max_compared / grids.size());
     std::vector<std::vector<std::size_t>> chosen(grids.size());
     std::vector<MeasuringPoint> compared;
     std::size_t first = 0;
     for (std::size_t g = 0; g < grids.size(); ++g) {
-        const std::size_t size = grids[g].grid.points.size(), count = std::min(size, most_of_grid);
+        const std::size_t size = grids[g].grid.points.size(), count = std::min(size, max_of_grid);
         for (std::size_t k = 0; k < count; ++k) {
             chosen[g].push_back(k * size / count);
             compared.push_back(points[first + chosen[g].back()]);

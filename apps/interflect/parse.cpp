@@ -78,7 +78,7 @@ std::size_t parse_element_count(const std::string& text) {
 
 std::int64_t parse_iteration_size(const std::string& text) {
     const std::int64_t count = parse_count(text);
-    if (count > most_rays_per_iteration) refuse(text, "a number of at most 100G");
+    if (count > max_rays_per_iteration) refuse(text, "a number of at most 100G");
     return count;
 }
 
@@ -133,13 +133,13 @@ Imath::V3d parse_vector(const std::string& text) {
 }
 
 Line parse_line(const std::string& text) {
-    constexpr double most_points = 1e6;
+    constexpr double max_points = 1e6;
     std::string_view rest = text;
     Line line;
     double count = line.count;
     const bool parsed = take_vector(rest, line.a) && take(rest, ':') && take_vector(rest, line.b) &&
                         (rest.empty() || (take(rest, ':') && take_number(rest, count) && rest.empty()));
-    if (!parsed || line.a == line.b || !(count >= 2 && count <= most_points && count == std::floor(count)))
+    if (!parsed || line.a == line.b || !(count >= 2 && count <= max_points && count == std::floor(count)))
         refuse(text, "two different ends and perhaps a number of points from 2 to 1e6, such as 0,1,0.75:4,1,0.75:9");
     line.count = static_cast<int>(count);
     return line;
@@ -265,10 +265,10 @@ Daylight::Sun parse_sun(const std::string& text) {
 
 Daylight::Environment parse_environment(const std::string& text) {
     constexpr const char* expected = "FILE[,ROTATION[,SCALE]], such as sky.exr,90: degrees, and a factor of at least 0";
-    constexpr std::size_t most_numbers = 2;
+    constexpr std::size_t max_numbers = 2;
     std::vector<double> numbers;
     std::size_t end = text.size();
-    for (std::size_t comma = text.rfind(','); comma != text.npos && numbers.size() < most_numbers;
+    for (std::size_t comma = text.rfind(','); comma != text.npos && numbers.size() < max_numbers;
          comma = text.rfind(',', comma - 1)) {
         std::string_view part = std::string_view(text).substr(comma + 1, end - comma - 1);
         double number = 0;
@@ -280,7 +280,7 @@ Daylight::Environment parse_environment(const std::string& text) {
     if (end == 0) refuse(text, expected);
     Daylight::Environment environment{.file = text.substr(0, end)};
     if (!numbers.empty()) environment.rotation = numbers[0];
-    if (numbers.size() == most_numbers) environment.scale = numbers[1];
+    if (numbers.size() == max_numbers) environment.scale = numbers[1];
     if (environment.scale < 0) refuse(text, expected);
     return environment;
 }

@@ -79,8 +79,8 @@ void print_text(const RatedGrid& g) {
     print_line("  largest UGR       {:.1f}, standard error {:.2g}", worst.ugr, worst.standard_error);
     print_line("  observer          at {}, looking {}", text_of(observer.eye), text_of(observer.line_of_sight));
     print_line("  background        {:.3g} cd/m2", worst.background_luminance);
-    constexpr std::size_t most_told = 5;
-    for (std::size_t i = 0; i < std::min(worst.sources.size(), most_told); ++i) {
+    constexpr std::size_t max_reported = 5;
+    for (std::size_t i = 0; i < std::min(worst.sources.size(), max_reported); ++i) {
         const GlareSource& s = worst.sources[i];
         print_line("  source            {}: {:.4g} cd/m2, {:.3g} sr, position index {:.3g}", s.name, s.luminance,
                    s.solid_angle, s.position_index);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int bar_width = 24;
 constexpr double seconds_between_lines = 2;  // if stderr is not a terminal
-constexpr double least_fraction = 1e-5;      // of the work; below, the remaining time is unknown
+constexpr double min_fraction = 1e-5;        // of the work; below, the remaining time is unknown
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void ProgressBar::show(const WorkDone& work) {
     const double fraction = work.fraction;
     const std::string error = work.error ? "error " + percent(*work.error) + ", " : std::string();
     const std::string left =
-        fraction > least_fraction ? duration(work.seconds / fraction * (1 - fraction)) : std::string("-");
+        fraction > min_fraction ? duration(work.seconds / fraction * (1 - fraction)) : std::string("-");
     const std::string text =
         fmt::format("{:3.0f}%  {} rays, {}/s, {}{} left", 100 * fraction, magnitude(static_cast<double>(work.rays)),
                     magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);

@@ -354,7 +354,7 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     if (options.path.layers && require_image_format(options.output) != ImageFormat::exr)
         throw UsageError("--layers", "layers need a picture in OpenEXR: expected an --output that ends in .exr");
     if (require_image_format(options.output) == ImageFormat::png &&
-        codecs::png_bytes(options.size.width, options.size.height) > codecs::most_png_bytes)
+        codecs::png_bytes(options.size.width, options.size.height) > codecs::max_png_bytes)
         throw UsageError("--size",
                          fmt::format("{} x {} pixels are too many for a PNG: expected fewer, or another format",
                                      options.size.width, options.size.height));

@@ -52,9 +52,9 @@ constexpr int picture_samples = 16;  // enough for a filtered picture
 
 /// Returns the floors of objects, except those below 1% of the area, such as doorsteps.
 std::vector<PlanarArea> rooms_of(const Scene& scene, const PlanarArea& floor) {
-    constexpr double least_share = 0.01;
+    constexpr double min_share = 0.01;
     std::vector<PlanarArea> rooms = divide_by_object(scene, floor);
-    std::erase_if(rooms, [&](const PlanarArea& room) { return room.area < least_share * floor.area; });
+    std::erase_if(rooms, [&](const PlanarArea& room) { return room.area < min_share * floor.area; });
     return rooms;
 }
 

@@ -68,7 +68,7 @@ std::string begin(const Frame& frame, const Image& picture, double room_below) {
 }
 
 std::string legend(const Frame& frame) {
-    constexpr int stops = 17, most_values = 9;
+    constexpr int stops = 17, max_values = 9;
     const double top = frame.height + dimension_room + 22, right = frame.width - 2;
     std::string svg = "<linearGradient id=\"colours\">\n";
     for (int i = 0; i < stops; ++i) {
@@ -78,7 +78,7 @@ std::string legend(const Frame& frame) {
     svg += "</linearGradient>\n" + text(2, top - 8, "start", "Illuminance [lx]");
     svg += fmt::format("<rect x=\"2\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"20\" fill=\"url(#colours)\"/>\n", top,
                        right - 2);
-    for (const float value : round_values(frame.plan.scale, most_values)) {
+    for (const float value : round_values(frame.plan.scale, max_values)) {
         const double t = frame.plan.scale.position(value), x = 2 + t * (right - 2);
         svg += fmt::format("<path d=\"M{:.1f} {:.1f}v6\" stroke=\"#1d2430\" stroke-width=\"1.2\"/>\n", x, top + 20);
         svg += text(x, top + 42, t < 0.02 ? "start" : t > 0.98 ? "end" : "middle", fmt::format("{:g}", value));

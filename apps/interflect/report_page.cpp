@@ -145,8 +145,8 @@ std::string glare(const ReportContent& content) {
         rows += row({html_text(g.grid.name), fmt::format("{}", g.ratings.size()),
                      std::isfinite(worst.ugr) ? fmt::format("{:.1f}", worst.ugr) : "no source is seen",
                      text_of(observer.eye), text_of(observer.line_of_sight), number(worst.background_luminance)});
-        constexpr std::size_t most_told = 4;
-        for (std::size_t i = 0; i < std::min(worst.sources.size(), most_told); ++i) {
+        constexpr std::size_t max_reported = 4;
+        for (std::size_t i = 0; i < std::min(worst.sources.size(), max_reported); ++i) {
             const GlareSource& s = worst.sources[i];
             sources += row({html_text(g.grid.name), html_text(s.name), number(s.luminance),
                             fmt::format("{:.3g}", s.solid_angle), fmt::format("{:.2f}", s.position_index)},
@@ -195,17 +195,17 @@ std::string lights(const ReportContent& content) {
 }
 
 std::string surfaces(const ReportContent& content) {
-    constexpr std::size_t most_told = 24;
+    constexpr std::size_t max_reported = 24;
     std::string rows;
     const std::vector<SurfaceFacts>& all = content.facts.surfaces;
-    for (std::size_t i = 0; i < std::min(all.size(), most_told); ++i)
+    for (std::size_t i = 0; i < std::min(all.size(), max_reported); ++i)
         rows += row({html_text(all[i].material.empty() ? "(unnamed)" : all[i].material),
                      fmt::format("{:.2f}", all[i].area), fmt::format("{:.2f}", all[i].reflectance),
                      all[i].transmittance > 0 ? fmt::format("{:.2f}", all[i].transmittance) : "–",
                      all[i].specular_reflectance > 0 ? fmt::format("{:.2f}", all[i].specular_reflectance) : "–"});
-    const std::string others = all.size() > most_told
-                                   ? fmt::format("<p class=\"soft\">And {} smaller ones.</p>\n", all.size() - most_told)
-                                   : std::string();
+    const std::string others = all.size() > max_reported ? fmt::format("<p class=\"soft\">And {} smaller ones.</p>\n",
+                                                                       all.size() - max_reported)
+                                                         : std::string();
     return table("surfaces", {"Material", "Area [m²]", "Reflectance ρ", "Transmittance τ", "Mirrored"}, rows) + others;
 }
 

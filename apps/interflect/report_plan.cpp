@@ -205,8 +205,8 @@ ReportPlan draw_plan(const Scene& scene, const Solution& solution, const RayCast
     std::vector<float> numbers;
     for (const Rgb& value : values.pixels) numbers.push_back(value.x);
     plan.scale = fit_round_scale(std::move(numbers));
-    constexpr int most_isolines = 10;
-    std::vector<float> levels = round_values(plan.scale, most_isolines);
+    constexpr int max_isolines = 10;
+    std::vector<float> levels = round_values(plan.scale, max_isolines);
     std::erase_if(levels, [&](float v) { return v <= plan.scale.low; });
     plan.illuminance = with_isolines(false_colours(values, plan.scale), values, levels, plan.scale);
     for (std::size_t i = 0; i < mask.size(); ++i) {

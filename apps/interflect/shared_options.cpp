@@ -195,7 +195,7 @@ Scene MeshOptions::cut(Scene scene, const ReadOptions& read) const {
     const std::size_t faces = scene.patches.size();
     {
         const LongWork work("cutting faces where others meet them");
-        scene = cut_at_contacts(scene, {.least_extent = static_cast<float>(2 * default_element_size(scene)),
+        scene = cut_at_contacts(scene, {.min_extent = static_cast<float>(2 * default_element_size(scene)),
                                         .max_patches = std::min(read.max_patches, patches_in_memory(faces))});
     }
     log_warnings(scene.warnings);
@@ -354,7 +354,7 @@ void SolverOptions::add_importance(CLI::App& app) {
     group(app.add_option("--camera-rays", importance.camera_rays,
                          "Rays that find what a view shows at first, per view; more follow as rays are averaged")
               ->capture_default_str()
-              ->check(CLI::Range(1, most_camera_rays)));
+              ->check(CLI::Range(1, max_camera_rays)));
     group(app.add_option(
                  "--importance-smoothing", importance.smoothing,
                  "How much of its parent's importance drives an element's rays and refinement; 0: as in the paper")

@@ -17,10 +17,10 @@ namespace {
 
 constexpr int check_rows = 36;
 constexpr double all = 1;
-constexpr int most_check_columns = 1024;  // for very wide pictures
+constexpr int max_check_columns = 1024;  // for very wide pictures
 
 std::vector<Ray> camera_rays(const Scene& scene, const View& view, float aspect) {
-    const int columns = std::clamp(static_cast<int>(static_cast<float>(check_rows) * aspect), 1, most_check_columns);
+    const int columns = std::clamp(static_cast<int>(static_cast<float>(check_rows) * aspect), 1, max_check_columns);
     const Camera camera(view, columns, check_rows, scene.origin);
     std::vector<Ray> rays;
     for (int y = 0; y < check_rows; ++y)

@@ -153,9 +153,9 @@ struct EnvironmentMap {
     Rgb factor{1, 1, 1};  ///< Factor from texels to radiance [cd/m^2 or W/(m^2 sr)], >= 0.
 };
 /// Limit of texels of all environment maps of a scene: up to 24 bytes each during rendering.
-inline constexpr std::uint64_t most_environment_texels = std::uint64_t{1} << 25;
+inline constexpr std::uint64_t max_environment_texels = std::uint64_t{1} << 25;
 /// Limit of domes and maps of a scene; each takes up to 50 MB while light is shot.
-inline constexpr std::size_t most_skies = 8;
+inline constexpr std::size_t max_skies = 8;
 
 /// A luminaire with measured intensity. All points of its opening visible from a direction emit equally, so the far
 /// field is as measured and the near field depends on the opening's size.

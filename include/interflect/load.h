@@ -99,7 +99,7 @@ double usual_sun_illuminance(int cie_type, double sun_altitude);
 /// Adds daylight to a scene, as lights named by type and index among all lights: "sun-3", "sky-4", "environment-5".
 /// Omits a sun of 0 lx. Without a sky, the default illuminance of the sun is the one for a clear sky.
 /// @throws InputError for values out of range, a sky that requires a missing sun, an unreadable file, and more than
-///         most_skies in the resulting scene.
+///         max_skies in the resulting scene.
 void add_daylight(Scene& scene, const Daylight& added);
 
 /// Reads a scene in the format of the file name's extension (.mgf, .gltf, .glb, .obj, .ply, .rad, .stl), and its named

@@ -62,7 +62,7 @@ std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Sol
                                                    PathOptions options = {}, const Monitor& monitor = {});
 
 /// Upper limit of measuring points per grid.
-inline constexpr std::size_t most_measuring_points = 1'000'000;
+inline constexpr std::size_t max_measuring_points = 1'000'000;
 
 /// Maximum point distance of a measuring grid by EN 12464-1 (formula 1): p = 0.2 * 5^(log10 d) [m], at most 10 m. d is
 /// the longer side of the area, or the shorter one if the longer is at least twice that.
@@ -121,13 +121,13 @@ struct MeasuringGrid {
 /// divided into the fewest equal cells no wider than the spacing. A cell's centre is a point of the grid if it lies
 /// within the faces, at least the strip's width from their border.
 /// @param height  World z of the points [m]; nullopt: on the area itself.
-/// @throws InputError for options out of range, for more than most_measuring_points, and if no point remains. Cost:
+/// @throws InputError for options out of range, for more than max_measuring_points, and if no point remains. Cost:
 ///         O(points * patches), with a boundary also O(patches^2).
 MeasuringGrid area_grid(const Scene& scene, const PlanarArea& area, const GridOptions& options = {},
                         const std::optional<double>& height = {});
 
 /// `count` equidistant points from a to b, inclusive.
-/// @throws InputError for fewer than 2 points, for more than most_measuring_points, and for equal ends.
+/// @throws InputError for fewer than 2 points, for more than max_measuring_points, and for equal ends.
 MeasuringGrid line_grid(const Imath::V3d& a, const Imath::V3d& b, int count);
 
 /// Statistics of the illuminance at the points of a measuring area [lx].
@@ -254,14 +254,14 @@ struct ProbeGrid {
     std::vector<IrradianceProbe> probes;  ///< x fastest, then y, then z.
 };
 /// Maximum number of probes of one grid.
-inline constexpr std::int64_t most_probes = 1'000'000;
+inline constexpr std::int64_t max_probes = 1'000'000;
 
 /// Computes probes for the light of a solution. Rays from each probe follow a randomly rotated product quadrature of
 /// the sphere and return the radiance (M + rho H) / pi of the surface hit, smoothly shaded, or of the sky. Panes of
 /// glass are transparent, mirrors black. Unoccluded light sources other than surfaces are added exactly.
 /// @param ray_caster  Of the same scene, as is `solution`.
 /// @return            The same bits for any number of threads.
-/// @throws InputError for an option out of range, more than most_probes, or another scene; Stopped if `monitor` ends
+/// @throws InputError for an option out of range, more than max_probes, or another scene; Stopped if `monitor` ends
 ///         it.
 /// Cost: about 2 rays a direction and probe.
 ProbeGrid irradiance_probes(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,

@@ -18,12 +18,12 @@ struct ContactOptions {
     float touch_distance = 1e-4f;
     /// Minimum extent of connected segments [m], >= 0; smaller ones are ignored. Faces with less area than its
     /// square stay whole. Twice default_element_size() (the side of the smallest elements) is suitable.
-    float least_extent = 0;
+    float min_extent = 0;
     /// Maximum ratio of length to width of quadrilateral pieces, >= 1. Longer pieces are divided across, unless
-    /// narrower than twice `least_extent` or 0.002 of the face's diameter.
+    /// narrower than twice `min_extent` or 0.002 of the face's diameter.
     float largest_aspect = 4;
     /// Maximum number of pieces of one face, in (0, 2^31). A face that needs more is cut along some segments only.
-    std::uint32_t most_pieces_per_face = 1u << 16;
+    std::uint32_t max_pieces_per_face = 1u << 16;
     /// Maximum number of patches of the resulting scene. Further faces stay whole.
     std::uint64_t max_patches = 50'000'000;
 };

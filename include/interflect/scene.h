@@ -28,8 +28,8 @@ struct Texture {
 };
 
 /// Limits: texels of all textures of a scene, 12 bytes each; texels along the side of an image.
-inline constexpr std::uint64_t most_texels = std::uint64_t{1} << 26;
-inline constexpr std::uint32_t most_texels_of_side = 1u << 14;
+inline constexpr std::uint64_t max_texels = std::uint64_t{1} << 26;
+inline constexpr std::uint32_t max_texels_of_side = 1u << 14;
 
 /// Largest texture coordinate. Single precision resolves 1 / 2000 texel there.
 inline constexpr float farthest_texture_coordinate = 4096;
@@ -57,7 +57,7 @@ struct LightGroup {
 };
 
 /// Maximum number of groups, including that of unmatched sources.
-inline constexpr std::size_t most_light_groups = 32;
+inline constexpr std::size_t max_light_groups = 32;
 
 /// Whether a pattern matches all of `name`. O(product of both lengths).
 bool matches(std::string_view pattern, std::string_view name);
@@ -74,14 +74,14 @@ struct SourceGroups {
     std::size_t index_of(const std::string& name) const;
 };
 
-/// Empty for a scene without groups. @throws InputError for more than most_light_groups or a duplicate name.
+/// Empty for a scene without groups. @throws InputError for more than max_light_groups or a duplicate name.
 SourceGroups source_groups(const Scene& scene);
 
 /// @throws InputError for a group without sources, and as source_groups().
 void require_sources_of_groups(const Scene& scene);
 
 /// One group for each top-level object with a source; if at most one object has sources, one for each material and
-/// luminaire. @throws InputError for more than most_light_groups.
+/// luminaire. @throws InputError for more than max_light_groups.
 std::vector<LightGroup> groups_by_name(const Scene& scene);
 
 /// Copy of the scene with the sources of each group scaled. Materials keep their order.

@@ -61,8 +61,8 @@ inline constexpr Method automatic_method{.name = "automatic"};
 const Method& default_method(bool has_views);
 
 /// Above this, the fixed-point sums of transport would round the payload of single rays.
-inline constexpr std::int64_t most_rays_per_iteration = 100'000'000'000;
-inline constexpr int most_camera_rays = 1 << 22;
+inline constexpr std::int64_t max_rays_per_iteration = 100'000'000'000;
+inline constexpr int max_camera_rays = 1 << 22;
 
 /// Limits of a run, which stops at the first one reached.
 struct Limits {
@@ -83,7 +83,7 @@ struct RefinementOptions {
 
 /// Use of the views (Method::importance).
 struct ImportanceOptions {
-    int camera_rays = 1 << 16;  ///< Rays per view of the first estimate of V, 1 to most_camera_rays; more follow later.
+    int camera_rays = 1 << 16;  ///< Rays per view of the first estimate of V, 1 to max_camera_rays; more follow later.
     /// Fraction of the parent's importance in the importance that controls an element's rays and refinement; exponent
     /// of importance in the sampling probability. In [0, 1]; 0 and 1, respectively, as in the paper.
     double smoothing = 0.9, exponent = 0.75;
@@ -99,7 +99,7 @@ struct ExperimentalOptions {
     bool one_bounce = false;
     int warm_up = 0;     ///< Iterations with tau = 1 before averaging begins; >= 0.
     int iterations = 0;  ///< Number of averaged iterations, >= 0; 0: until a limit is reached.
-    /// Rays per iteration, at most most_rays_per_iteration; 0: grows with the number of rays averaged.
+    /// Rays per iteration, at most max_rays_per_iteration; 0: grows with the number of rays averaged.
     std::int64_t rays_per_iteration = 0;
 
     /// With RefinementCriterion::variance: reduces differences that are mostly noise (docs/method.md).

@@ -78,7 +78,7 @@ struct UnfoldedCase {
     CurvedSurface surface;
     int columns, rows;
     bool pairs;
-    std::size_t most_charts;
+    std::size_t max_charts;
     double stretch;  // of edges
 };
 
@@ -91,7 +91,7 @@ class UnfoldedLightmap : public testing::TestWithParam<UnfoldedCase> {
 
 // Fails if smooth surfaces are not joined.
 TEST_P(UnfoldedLightmap, HasFewCharts) {
-    EXPECT_LE(charts_.size(), GetParam().most_charts);
+    EXPECT_LE(charts_.size(), GetParam().max_charts);
     std::size_t patches = 0;
     for (const LightmapChart& chart : charts_) patches += chart.patches.size();
     EXPECT_EQ(patches, scene_.patches.size());

@@ -162,8 +162,8 @@ TEST_F(MgfSkies, FaultsNameTheScenesLine) {
 
 TEST_F(MgfSkies, AreFew) {
     std::string lines;
-    for (std::size_t i = 0; i < most_skies; ++i) lines += "light sky overcast 1\n";
-    EXPECT_EQ(read(lines + "light sky 5\n").luminaires.size(), most_skies + 1) << "uniform ones do not count";
+    for (std::size_t i = 0; i < max_skies; ++i) lines += "light sky overcast 1\n";
+    EXPECT_EQ(read(lines + "light sky 5\n").luminaires.size(), max_skies + 1) << "uniform ones do not count";
     EXPECT_THROW(read(lines + "light sky overcast 1\n"), InputError);
     EXPECT_THROW(read("xf -a 9 -rz 1\nlight environment map.exr\nxf\n"), InputError);
 }

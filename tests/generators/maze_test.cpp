@@ -48,7 +48,7 @@ TEST(Maze, RoomsForPatches) {
 
 TEST(Maze, RefusesOptionsOutOfRange) {
     EXPECT_THROW(make_maze({.rooms = 0}), InputError);
-    EXPECT_THROW(make_maze({.rooms = MazeOptions::most_rooms + 1}), InputError);
+    EXPECT_THROW(make_maze({.rooms = MazeOptions::max_rooms + 1}), InputError);
     EXPECT_THROW(make_maze({.extra_doors = -0.1f}), InputError);
     EXPECT_THROW(make_maze({.extra_doors = 1.1f}), InputError);
     EXPECT_THROW(make_maze({.extra_doors = NAN}), InputError);
@@ -56,7 +56,7 @@ TEST(Maze, RefusesOptionsOutOfRange) {
 
 TEST(Maze, ThingsAreFartherApartThanRaysAreLifted) {
     // Otherwise a ray from the underside of an object would start below its support.
-    const Scene scene = make_maze({.rooms = MazeOptions::most_rooms});
+    const Scene scene = make_maze({.rooms = MazeOptions::max_rooms});
     const RayCaster ray_caster(scene);
     for (std::uint32_t i = 0; i < scene.patches.size(); i += 101) EXPECT_LT(ray_caster.ray_offset(i), building::gap);
 }

@@ -290,7 +290,7 @@ TEST(Contacts, SmallThingsCanBeIgnored) {
     Scene scene = floor_scene();
     add_box(scene, V3f(1, 1, 0), V3f(1.01f, 1.01f, 0.7f), 1);
     add_box(scene, V3f(2, 1, 0), V3f(2.1f, 1.1f, 0.7f), 1);
-    EXPECT_EQ(count_of_material(cut_at_contacts(scene, {.least_extent = 0.05f, .largest_aspect = 1e9f}), 0), 5u);
+    EXPECT_EQ(count_of_material(cut_at_contacts(scene, {.min_extent = 0.05f, .largest_aspect = 1e9f}), 0), 5u);
     EXPECT_GT(count_of_material(cut_at_contacts(scene, any_aspect), 0), 8u);
 }
 
@@ -298,7 +298,7 @@ TEST(Contacts, LimitsAreReported) {
     Scene scene = floor_scene();
     for (float i = 0; i < 10; ++i)
         add_box(scene, V3f(0.3f * i + 0.2f, 0.25f * i + 0.2f, 0), V3f(0.3f * i + 0.3f, 0.25f * i + 0.3f, 0.7f), 1);
-    const Scene few = cut_at_contacts(scene, {.most_pieces_per_face = 7});
+    const Scene few = cut_at_contacts(scene, {.max_pieces_per_face = 7});
     expect_same_surfaces(scene, few);
     EXPECT_EQ(few.warnings.entries().size(), 1u);
     const Scene whole = cut_at_contacts(scene, {.max_patches = scene.patches.size() + 3});

@@ -126,7 +126,7 @@ TEST(Legend, RefusesWhatItCannotDraw) {
 
 TEST(Legend, IsRefusedWhereTheImageGetsTooLarge) {
     Image wide;  // without its pixels, which are not accessed
-    wide.width = most_image_pixels / 4;
+    wide.width = max_image_pixels / 4;
     wide.height = 4;
     EXPECT_THROW(with_legend(wide, scale, "level"), InputError);
 }

@@ -82,7 +82,7 @@ void expect_unchanged(const Scene& scene, const ContactOptions& options) {
 
 void expect_unchanged(const Scene& scene) {
     expect_unchanged(scene, {});
-    expect_unchanged(scene, {.least_extent = static_cast<float>(2 * default_element_size(scene))});
+    expect_unchanged(scene, {.min_extent = static_cast<float>(2 * default_element_size(scene))});
 }
 
 TEST(ContactCuts, MadeScenesStayAsTheyAre) {
@@ -105,7 +105,7 @@ TEST(ContactCuts, RealScenesStayAsTheyAre) {
 
 TEST(ContactCuts, GrowOfficeGrazByLessThanTwoAndAHalfTimes) {
     const Scene scene = load_scene(real_scenes() / "office-graz.mgf");
-    const Scene cut = cut_at_contacts(scene, {.least_extent = static_cast<float>(2 * default_element_size(scene))});
+    const Scene cut = cut_at_contacts(scene, {.min_extent = static_cast<float>(2 * default_element_size(scene))});
     EXPECT_GT(cut.patches.size(), scene.patches.size() * 5 / 4);
     EXPECT_LT(cut.patches.size(), scene.patches.size() * 5 / 2);
 }

@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, TextureFaults,
     testing::Values(
         Fault{"NoSize", [](Scene& s) { s.textures[0].width = 0; }, "texture 'numbers.png' has 0 x 2 texels"},
-        Fault{"TooWide", [](Scene& s) { s.textures[0].width = most_texels_of_side + 1; }, "expected 1 to 16384 a side"},
+        Fault{"TooWide", [](Scene& s) { s.textures[0].width = max_texels_of_side + 1; }, "expected 1 to 16384 a side"},
         Fault{"TexelsMissing", [](Scene& s) { s.textures[0].texels.pop_back(); }, "of 3 x 2 texels holds 5"},
         Fault{"NegativeTexel", [](Scene& s) { s.textures[0].texels[4].z = -1; }, "1 from the left and 1 from the top"},
         Fault{"InfiniteTexel", [](Scene& s) { s.textures[0].texels[0].x = std::numeric_limits<float>::infinity(); },

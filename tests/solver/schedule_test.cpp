@@ -136,20 +136,20 @@ TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
 
 TEST(Schedule, HasAShortIterationBeforeLongOnesUnlessTheirNumberIsAskedFor) {
     SolveOptions options{.method = find_method("srr")};
-    options.limits.rays = options.experimental.rays_per_iteration = most_rays_per_iteration;
+    options.limits.rays = options.experimental.rays_per_iteration = max_rays_per_iteration;
     Schedule schedule(options, patches);
     const std::vector<IterationPlan> plans = all_plans(schedule);
     ASSERT_EQ(plans.size(), 2u);
     EXPECT_EQ(plans[0].rays, 50'000);
-    EXPECT_EQ(schedule.rays(), most_rays_per_iteration);
+    EXPECT_EQ(schedule.rays(), max_rays_per_iteration);
     options.experimental.iterations = 1;
     Schedule counted(options, patches);
-    EXPECT_EQ(counted.next(0).rays, most_rays_per_iteration);
+    EXPECT_EQ(counted.next(0).rays, max_rays_per_iteration);
 }
 
 TEST(Schedule, FindsOutHowFastItIsBeforeALongIterationUnderALimitOfTime) {
     SolveOptions options{.method = find_method("srr")};
-    options.limits.rays = options.experimental.rays_per_iteration = most_rays_per_iteration;
+    options.limits.rays = options.experimental.rays_per_iteration = max_rays_per_iteration;
     options.limits.time = 10;
     Schedule schedule(options, patches);
     EXPECT_EQ(schedule.start_rays(), 1 << 18);

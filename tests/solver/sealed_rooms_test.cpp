@@ -24,8 +24,8 @@ constexpr float depth = 4, height = 3, thickness = 0.01f, length = 8 + thickness
 /// Returns the ratio of the area-weighted mean irradiance of the dark room to the lit one, over the leaves.
 double leak(const TwoRoomsOptions& rooms, bool cuts, double min_area = 0) {
     const Scene whole = make_two_rooms(rooms);
-    const auto least_extent = static_cast<float>(2 * default_element_size(whole));
-    const Scene scene = cuts ? cut_at_contacts(whole, {.least_extent = least_extent}) : whole;
+    const auto min_extent = static_cast<float>(2 * default_element_size(whole));
+    const Scene scene = cuts ? cut_at_contacts(whole, {.min_extent = min_extent}) : whole;
     SolveOptions options{.method = find_method("hsrr")};
     options.limits.rays = 1'000'000;
     options.refinement.min_area = min_area;

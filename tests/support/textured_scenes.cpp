@@ -32,15 +32,14 @@ void add_lamp(Scene& scene) {
 }  // namespace
 
 Scene textured_furnace(const Rgb& radiosity) {
-    constexpr float rho = 0.9f, least_texel = 0.2f;
+    constexpr float rho = 0.9f, min_texel = 0.2f;
     constexpr std::uint32_t side = 16;
     Scene scene = closed_box({1, 2, 3}, 3, {{"wall", Rgb(rho), Rgb(1)}});
     Texture reflectance{"reflectance", side, side, {}}, exitance{"exitance", side, side, {}};
     for (std::uint64_t i = 0; i < side * side; ++i) {
         Rgb texel;
         for (std::uint64_t c = 0; c < 3; ++c)
-            texel[static_cast<int>(c)] =
-                least_texel + (1 - least_texel) * static_cast<float>(mix(i, c) % 1'000) / 1'000;
+            texel[static_cast<int>(c)] = min_texel + (1 - min_texel) * static_cast<float>(mix(i, c) % 1'000) / 1'000;
         reflectance.texels.push_back(texel);
         exitance.texels.push_back((Rgb(1) - texel * rho) * radiosity);
     }

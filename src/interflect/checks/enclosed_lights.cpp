@@ -76,8 +76,8 @@ struct LitSpace {
 };
 
 std::vector<LitSpace> lit_spaces(const LocalLights& lights, const Paths& paths) {
-    constexpr std::size_t least_paths = 8, most_paths = 64, all_paths = 1024;
-    const std::size_t count = std::clamp(all_paths / lights.size(), least_paths, most_paths);
+    constexpr std::size_t min_paths = 8, max_paths = 64, all_paths = 1024;
+    const std::size_t count = std::clamp(all_paths / lights.size(), min_paths, max_paths);
     std::vector<LitSpace> spaces(lights.size());
     for (std::size_t i = 0; i < lights.size(); ++i) {
         LitSpace& space = spaces[i];
@@ -113,10 +113,10 @@ std::vector<V3f> points_lit_by_surfaces(const Scene& scene, const RayCaster& ray
 }
 
 bool is_narrow(const Imath::Box3f& space, const V3f& scene) {
-    constexpr float narrow = 0.5f, least_room = 2;  // [m]
+    constexpr float narrow = 0.5f, min_room = 2;  // [m]
     const V3f size = space.size();
     if (size.length() <= std::min(narrow, scene.length() / 10)) return true;
-    return std::min({size.x, size.y, size.z}) < narrow && std::min({scene.x, scene.y, scene.z}) >= least_room;
+    return std::min({size.x, size.y, size.z}) < narrow && std::min({scene.x, scene.y, scene.z}) >= min_room;
 }
 
 std::vector<V3f> views_inside(const Scene& scene, const SightLines& lines) {

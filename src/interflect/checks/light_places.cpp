@@ -18,10 +18,10 @@ namespace interflect::detail {
 namespace {
 
 /// Minimum gap to a surface [m], or relative to a small scene's diagonal.
-constexpr float least_gap = 0.02f, least_gap_relative = 0.01f;
+constexpr float min_gap = 0.02f, min_gap_relative = 0.01f;
 
 /// Multiple of the gap along a ray; excludes lamp shades.
-constexpr float most_oblique = 5;
+constexpr float max_oblique = 5;
 
 struct Outcome {
     std::size_t escaped = 0, close = 0;
@@ -35,7 +35,7 @@ Outcome outcome_of(const Scene& scene, std::span<const Ray> rays, const SightLin
         if (hit.patch == none) continue;
         const V3f normal = PatchGeometry(scene, scene.patches[hit.patch]).normal();
         result.close +=
-            hit.distance < most_oblique * close_distance && -hit.distance * ray.direction.dot(normal) < close_distance;
+            hit.distance < max_oblique * close_distance && -hit.distance * ray.direction.dot(normal) < close_distance;
     }
     return result;
 }
@@ -92,7 +92,7 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights
                "along C90 in EULUMDAT",
                "turn one that replaces a luminaire of the other format by 90 degrees about its axis");
     const Imath::Vec3<float> extent = core_bounds(scene).size();
-    const float size = extent.length(), close_distance = std::min(least_gap, least_gap_relative * size);
+    const float size = extent.length(), close_distance = std::min(min_gap, min_gap_relative * size);
     bool has_eulumdat = false, has_lm63 = false;
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const Luminaire& luminaire = lights.luminaire(i);

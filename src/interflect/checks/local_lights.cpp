@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t most_lights = 1024;
+constexpr std::size_t max_lights = 1024;
 constexpr std::uint64_t seed_of_light = 31;
 
 /// Relative to the largest coordinate. Emission starts measured light outside its opening, perhaps beyond a close
@@ -47,7 +47,7 @@ Scene sample_of_lights(const Scene& scene) {
     std::vector<const Luminaire*> lights;
     for (const Luminaire& luminaire : scene.luminaires)
         if (is_local(luminaire) && largest_channel(rating(luminaire)) > 0) lights.push_back(&luminaire);
-    const std::size_t step = (lights.size() + most_lights - 1) / most_lights;
+    const std::size_t step = (lights.size() + max_lights - 1) / max_lights;
     for (std::size_t i = 0; i < lights.size(); i += step) sample.luminaires.push_back(*lights[i]);
     return sample;
 }

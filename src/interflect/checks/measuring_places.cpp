@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t most_points = 2048;
+constexpr std::size_t max_points = 2048;
 constexpr std::uint64_t rays_per_point = 32, seed_of_points = 41;
 
 float offset_of_points(const Scene& scene) {
@@ -29,7 +29,7 @@ std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_ca
     const bool is_room = find_shell(scene, ray_caster, lines).is_room;
     const float offset = offset_of_points(scene);
     std::vector<PointFault> faults(points.size(), PointFault::none);
-    const std::size_t step = (points.size() + most_points - 1) / most_points;
+    const std::size_t step = (points.size() + max_points - 1) / max_points;
     for (std::size_t p = 0; p < points.size(); p += step) {
         const MeasuringPoint& point = points[p];
         const bool is_planar = point.receiver == Receiver::planar;

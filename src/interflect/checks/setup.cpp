@@ -55,8 +55,8 @@ bool is_bare_mesh(const Scene& scene) {
 
 /// Meshes in metres have fractional coordinates.
 bool has_integer_coordinates(const Scene& scene) {
-    constexpr std::size_t least_vertices = 8;
-    if (scene.vertices.size() < least_vertices) return false;
+    constexpr std::size_t min_vertices = 8;
+    if (scene.vertices.size() < min_vertices) return false;
     constexpr double rounding = 1e-6;
     const std::size_t coordinates = 3 * scene.vertices.size();
     std::size_t integers = 0;

@@ -11,8 +11,8 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr int most_escaped_inside = 2;                                 // of SightLines::rays_per_point
-constexpr int least_escaped_outside = SightLines::rays_per_point / 4;  // walls on a ground have half
+constexpr int max_escaped_inside = 2;                                // of SightLines::rays_per_point
+constexpr int min_escaped_outside = SightLines::rays_per_point / 4;  // walls on a ground have half
 constexpr std::uint64_t seed_of_origins = 11, seed_of_directions = 12, seed_of_sides = 13;
 
 /// Uniform and isotropic in the sphere around the scene.
@@ -46,10 +46,10 @@ MetFace met_face(const Scene& scene, const RayCaster& ray_caster, const Ray& lin
 }
 
 bool is_seen_inside(const Scene& scene, const SightLines& lines) {
-    constexpr float least_extent = 2;
+    constexpr float min_extent = 2;
     if (scene.views.empty()) {
         const V3f extent = core_bounds(scene).size();
-        return std::min({extent.x, extent.y, extent.z}) >= least_extent;
+        return std::min({extent.x, extent.y, extent.z}) >= min_extent;
     }
     return std::any_of(scene.views.begin(), scene.views.end(),
                        [&](const View& view) { return !lines.is_open(V3f(view.eye - scene.origin)); });
@@ -59,7 +59,7 @@ bool is_seen_inside(const Scene& scene, const SightLines& lines) {
 
 Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines) {
     constexpr std::uint64_t count = 128;
-    constexpr int least_met = 32;
+    constexpr int min_met = 32;
     const OuterLines line(scene);
     int met = 0, solid = 0, enclosing = 0, paths = 0;
     float length = 0;
@@ -68,10 +68,10 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
         if (hit.patch == none) continue;
         ++met;
         const MetFace face = met_face(scene, ray_caster, line(i), hit);
-        SightLines::Outlook inner = lines.from_surface(face.back, -face.normal, seed_of_sides, most_escaped_inside);
-        if (inner.escaped > most_escaped_inside)
-            inner = lines.from_surface(face.front, face.normal, seed_of_sides, least_escaped_outside);
-        if (inner.escaped > least_escaped_outside && scene.patches[hit.patch].other_side == none) {
+        SightLines::Outlook inner = lines.from_surface(face.back, -face.normal, seed_of_sides, max_escaped_inside);
+        if (inner.escaped > max_escaped_inside)
+            inner = lines.from_surface(face.front, face.normal, seed_of_sides, min_escaped_outside);
+        if (inner.escaped > min_escaped_outside && scene.patches[hit.patch].other_side == none) {
             // Outer side of a thick wall: the inner side lies behind.
             const Ray behind{face.back, line(i).direction};
             const Hit inner_hit = lines.first_surface(behind);
@@ -80,14 +80,14 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
                 continue;
             }
             const MetFace inner_face = met_face(scene, ray_caster, behind, inner_hit);
-            inner = lines.from_surface(inner_face.front, inner_face.normal, seed_of_sides, most_escaped_inside);
+            inner = lines.from_surface(inner_face.front, inner_face.normal, seed_of_sides, max_escaped_inside);
         }
-        if (inner.escaped > most_escaped_inside) continue;
+        if (inner.escaped > max_escaped_inside) continue;
         ++enclosing;
         paths += inner.met;
         length += inner.distance;
     }
-    if (met < least_met || 2 * solid > met || 10 * enclosing < 9 * (met - solid)) return {};
+    if (met < min_met || 2 * solid > met || 10 * enclosing < 9 * (met - solid)) return {};
     return {true, is_seen_inside(scene, lines), length / static_cast<float>(paths)};
 }
 
@@ -99,8 +99,8 @@ bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightL
         if (hit.patch == none) continue;
         const MetFace face = met_face(scene, ray_caster, line(i), hit);
         const SightLines::Outlook outlook =
-            lines.from_surface(face.front, face.normal, seed_of_sides, most_escaped_inside);
-        if (outlook.escaped <= most_escaped_inside) return true;
+            lines.from_surface(face.front, face.normal, seed_of_sides, max_escaped_inside);
+        if (outlook.escaped <= max_escaped_inside) return true;
     }
     return false;
 }

@@ -15,7 +15,7 @@ SightLines::SightLines(const Scene& scene, const RayCaster& ray_caster)
 Hit SightLines::first_surface(const Ray& ray) const {
     Ray rest = ray;
     Hit hit;
-    for (int panes = 0; panes <= Panes::most_in_a_row; ++panes) {
+    for (int panes = 0; panes <= Panes::max_consecutive_panes; ++panes) {
         ray_caster_.trace({&rest, 1}, {&hit, 1});
         if (hit.patch == none) return hit;
         if (!(largest_channel(panes_.transmittance(rest, hit)) > 0)) break;
@@ -37,9 +37,9 @@ bool SightLines::is_clear(const V3f& a, const V3f& b) const {
 }
 
 SightLines::Outlook SightLines::from_surface(const V3f& x, const V3f& normal, std::uint64_t key,
-                                             int most_escaped) const {
+                                             int max_escaped) const {
     Outlook outlook;
-    for (std::uint64_t i = 0; i < rays_per_point && outlook.escaped <= most_escaped; ++i) {
+    for (std::uint64_t i = 0; i < rays_per_point && outlook.escaped <= max_escaped; ++i) {
         const Hit hit = first_surface({x, cosine_direction(normal, key, i)});
         if (hit.patch == none) {
             ++outlook.escaped;

@@ -22,8 +22,8 @@ class SightLines {
         float distance = 0;        ///< Sum over hits [m].
     };
     static constexpr int rays_per_point = 32;
-    /// Traces rays from just before a surface until more than `most_escaped` escape.
-    Outlook from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int most_escaped) const;
+    /// Traces rays from just before a surface until more than `max_escaped` escape.
+    Outlook from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int max_escaped) const;
     /// Whether a quarter of all directions escape, as outside a closed scene.
     bool is_open(const V3f& x) const;
 

@@ -16,16 +16,16 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr double least_cosine = 0.9, least_agreement = 0.5;
+constexpr double min_cosine = 0.9, min_agreement = 0.5;
 
 constexpr const char* axis_names[3][2] = {{"x", "-x"}, {"y", "-y"}, {"z", "-z"}};
 
 /// @param total  Length of `sum` for parallel terms.
 const char* axis_of(const Imath::V3d& sum, double total) {
     const double length = sum.length();
-    if (!(length > least_agreement * total)) return nullptr;
+    if (!(length > min_agreement * total)) return nullptr;
     for (int i = 0; i < 3; ++i)
-        if (std::abs(sum[i]) > least_cosine * length) return axis_names[i][sum[i] < 0];
+        if (std::abs(sum[i]) > min_cosine * length) return axis_names[i][sum[i] < 0];
     return nullptr;
 }
 
@@ -56,13 +56,13 @@ std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, 
     return boxes;
 }
 
-constexpr std::size_t least_objects = 4;
+constexpr std::size_t min_objects = 4;
 
 /// Divides fewer than four objects into connected faces.
 std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
     std::vector<Imath::Box3f> boxes =
         boxes_of_parts(scene, scene.objects.size(), [](const Patch& patch) { return patch.object; });
-    if (boxes.size() >= least_objects) return boxes;
+    if (boxes.size() >= min_objects) return boxes;
     DisjointSets connected(scene.vertices.size());
     for (const Patch& patch : scene.patches)
         for (int k = 1; k < patch.vertex_count(); ++k) connected.unite(patch.vertices[0], patch.vertices[k]);
@@ -80,11 +80,11 @@ bool is_thin(const Imath::Box3f& box, int axis) {
 std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     const std::vector<Imath::Box3f> boxes = boxes_of_objects(scene);
     std::array<std::array<double, 2>, 3> shares{};
-    if (boxes.size() < least_objects) return shares;
+    if (boxes.size() < min_objects) return shares;
     Imath::Box3f all;
     for (const Imath::Box3f& box : boxes) all.extendBy(box);
-    constexpr float least_distance = 0.01f;
-    const float distance = least_distance * all.size().length();
+    constexpr float min_distance = 0.01f;
+    const float distance = min_distance * all.size().length();
     for (const Imath::Box3f& box : boxes)
         for (int axis = 0; axis < 3; ++axis) {
             if (is_thin(box, axis)) continue;
@@ -108,7 +108,7 @@ bool is_flat(const V3f& extent, int axis) {
 }  // namespace
 
 const char* find_other_up_axis(const Scene& scene) {
-    constexpr double least_standing = 0.5, least_advantage = 0.25;
+    constexpr double min_standing = 0.5, min_advantage = 0.25;
     if (scene.patches.empty() || axis_of_views(scene)) return nullptr;
     const char* const of_light = axis_of_light(scene);
     const auto standing = standing_objects(scene);
@@ -117,8 +117,8 @@ const char* find_other_up_axis(const Scene& scene) {
         for (int sign = 0; sign < 2; ++sign) {
             const std::string_view name = axis_names[axis][sign];
             const bool shines = of_light && name == of_light;
-            const bool stands = standing[axis][sign] >= least_standing &&
-                                standing[axis][sign] >= standing[2][0] + least_advantage &&
+            const bool stands = standing[axis][sign] >= min_standing &&
+                                standing[axis][sign] >= standing[2][0] + min_advantage &&
                                 standing[axis][sign] > standing[axis][1 - sign];
             if (shines + stands + is_flat(extent, axis) >= 2) return axis_names[axis][sign];
         }

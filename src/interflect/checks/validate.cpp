@@ -124,9 +124,9 @@ class Validator {
             const std::uint32_t other = scene_.patches[i].other_side;
             if (other != none && emits(other)) continue;
             const Surroundings front = surroundings_.look(i, Side::front), back = surroundings_.look(i, Side::back);
-            if (front.blocked > most_blocked && back.blocked < 1 - most_blocked)
+            if (front.blocked > max_blocked && back.blocked < 1 - max_blocked)
                 inverted.add_patch(i);
-            else if (front.blocked > most_blocked || surroundings_.is_enclosed(i))
+            else if (front.blocked > max_blocked || surroundings_.is_enclosed(i))
                 hidden.add_patch(i);
         }
         for (const Luminaire& luminaire : scene_.luminaires) {
@@ -177,7 +177,7 @@ class Validator {
             luminaire.kind);
     }
 
-    static constexpr float most_blocked = 0.9f;
+    static constexpr float max_blocked = 0.9f;
 
     const Scene& scene_;
     const RayCaster& ray_caster_;

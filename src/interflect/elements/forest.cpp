@@ -33,7 +33,7 @@ ElementForest::ElementForest(const Scene& scene, std::size_t capacity)
       nodes_(valid_capacity(capacity, scene.patches.size())),
       blocks_((capacity - scene.patches.size()) / 4) {
     geometry_.resize(scene.patches.size());
-    parallel_for_ranges(scene.patches.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(scene.patches.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             geometry_[i] = PatchGeometry(scene, scene.patches[i]);
             nodes_[i] = {none, geometry_[i].area()};

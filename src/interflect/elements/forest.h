@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-inline constexpr std::size_t elements_at_once = 1 << 13;
+inline constexpr std::size_t elements_per_task = 1 << 13;
 
 /// Quadtrees over a scene's patches. Element i < patch_count() is the root of patch i; blocks of four siblings follow.
 /// Threads may subdivide while others traverse; put_in_order() then makes indices independent of threads.

@@ -87,8 +87,8 @@ void ElementMesh::join_near_points() {
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = {Imath::Box3f(points_[i]), i};
     arrange_box_tree(all);
     std::vector<std::uint32_t> joined(points_.size());
-    constexpr std::size_t points_at_once = 1 << 12;
-    parallel_for_ranges(points_.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t points_per_task = 1 << 12;
+    parallel_for_ranges(points_.size(), points_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             joined[i] = static_cast<std::uint32_t>(i);
             visit_points_within(all, box_around(points_[i], points_[i], tolerance_), [&](std::uint32_t j) {

@@ -69,8 +69,8 @@ class Surroundings {
 std::vector<bool> encased_patches(const Scene& scene, const RayCaster& ray_caster, const std::vector<bool>& is_dark) {
     const Surroundings surroundings(scene, ray_caster, is_dark);
     std::vector<char> encased(scene.patches.size(), 0);  // threads write to neighbouring entries
-    constexpr std::size_t patches_at_once = 1 << 8;
-    parallel_for_ranges(encased.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t patches_per_task = 1 << 8;
+    parallel_for_ranges(encased.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)
             if (is_dark[p] && surroundings.encase(static_cast<std::uint32_t>(p))) encased[p] = 1;
     });

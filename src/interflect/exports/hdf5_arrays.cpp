@@ -67,10 +67,10 @@ hid_t native_type<std::byte>() {
 
 /// Chunks of 1 MB limit the memory of compression.
 void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
-    constexpr hsize_t most_rows = hsize_t{1} << 16;
+    constexpr hsize_t max_rows = hsize_t{1} << 16;
     constexpr unsigned deflate_level = 4;  // 9 takes seven times the time for 2% less
     std::vector<hsize_t> chunk(size.begin(), size.end());
-    chunk[0] = std::min(chunk[0], most_rows);
+    chunk[0] = std::min(chunk[0], max_rows);
     require(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "cannot divide an array");
     require(H5Pset_shuffle(properties), "cannot shuffle an array");
     require(H5Pset_deflate(properties, deflate_level), "cannot compress an array");

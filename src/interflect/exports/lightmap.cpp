@@ -154,8 +154,8 @@ class IrradianceSource {
   private:
     std::vector<Rgb> interpolated(std::span<const TexelPlace> places) const {
         std::vector<Rgb> values(places.size());
-        constexpr std::size_t texels_at_once = 1 << 12;
-        parallel_for_ranges(places.size(), texels_at_once, [&](std::size_t begin, std::size_t end) {
+        constexpr std::size_t texels_per_task = 1 << 12;
+        parallel_for_ranges(places.size(), texels_per_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) values[i] = smooth_.at(places[i].patch, places[i].at);
         });
         return values;
@@ -235,8 +235,8 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
     const int columns = chart.columns + 2 * gutter, rows = chart.rows + 2 * gutter;
     const auto texel = static_cast<float>(std::max(chart.spacing().x, chart.spacing().y));
     std::vector<TexelPlace> places(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    constexpr std::size_t texels_at_once = 1 << 10;
-    parallel_for_ranges(places.size(), texels_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t texels_per_task = 1 << 10;
+    parallel_for_ranges(places.size(), texels_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto column = static_cast<int>(i % static_cast<std::size_t>(columns)) - gutter;
             const auto row = static_cast<int>(i / static_cast<std::size_t>(columns)) - gutter;

@@ -28,7 +28,7 @@ FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
 }
 
 /// Low for objects that share a map.
-constexpr double least_filled = 0.1;
+constexpr double min_filled = 0.1;
 
 bool is_mostly_empty(const FlatPatches& layout) {
     Imath::Box2d box;
@@ -37,7 +37,7 @@ bool is_mostly_empty(const FlatPatches& layout) {
         box.extendBy(flat.box());
         area += std::abs(flat.signed_area());
     }
-    return area < least_filled * box.size().x * box.size().y;
+    return area < min_filled * box.size().x * box.size().y;
 }
 
 bool overlaps_itself(const FlatPatches& layout) {

@@ -94,8 +94,8 @@ struct RowReader {
     template <class Value>
     void field(const char* name, Value& value) const {
         const double number = next(name);
-        constexpr double most_exact = 9007199254740992;  // 2^53
-        const double most = std::min(most_exact, static_cast<double>(std::numeric_limits<Value>::max()));
+        constexpr double max_exact = 9007199254740992;  // 2^53
+        const double most = std::min(max_exact, static_cast<double>(std::numeric_limits<Value>::max()));
         if (!(number >= 0 && number <= most))
             throw std::runtime_error(fmt::format("'{}' of an iteration is out of range", name));
         value = static_cast<Value>(number);

@@ -11,12 +11,12 @@ namespace interflect::detail {
 namespace {
 
 /// Each new piece is compared with all patches of its layout.
-constexpr std::size_t most_patches_unfolded = 4096;
+constexpr std::size_t max_patches_unfolded = 4096;
 
 /// Maximum relative change of edge lengths.
-constexpr double most_stretch = 0.1;
+constexpr double max_stretch = 0.1;
 /// Maximum relative change of areas at corners.
-constexpr double most_shear = 0.2;
+constexpr double max_shear = 0.2;
 
 constexpr double flat_rounding = 1e-4;
 
@@ -97,7 +97,7 @@ class Unfolding {
             for (const std::uint32_t j : joints_of_[added[i]])
                 for (const std::uint32_t edge : joints_[j].edge) {
                     const std::uint32_t next = piece_of_[edge / 4];
-                    if (next == none || layout_of_[next] != none || layout_.size() >= most_patches_unfolded) continue;
+                    if (next == none || layout_of_[next] != none || layout_.size() >= max_patches_unfolded) continue;
                     const std::optional<FlatPatches> placed = place(next, number);
                     if (!placed) continue;
                     add(next, *placed, number);
@@ -133,7 +133,7 @@ class Unfolding {
         for (std::size_t i = 0; i < placed.size(); ++i) {
             // Partial edges have corners inside other edges and cannot deform.
             const bool fits = has_seams ? is_alike(pieces_[piece][i], placed[i], flat_rounding, flat_rounding)
-                                        : is_alike(pieces_[piece][i], placed[i], most_stretch, most_shear);
+                                        : is_alike(pieces_[piece][i], placed[i], max_stretch, max_shear);
             if (!fits || !has_room(placed[i])) return std::nullopt;
         }
         return placed;
@@ -190,7 +190,7 @@ class Unfolding {
     /// If the distance in space is larger, the straight line leaves the layout.
     bool is_apart_in_space(const FlatPatch& a, const FlatPatch& b) const {
         const double in_space = (centre(a.patch) - centre(b.patch)).length(), flat = (a.centre() - b.centre()).length();
-        return in_space > (1 + most_stretch) * flat;
+        return in_space > (1 + max_stretch) * flat;
     }
     V3f centre(std::uint32_t patch) const { return PatchGeometry(scene_, scene_.patches[patch]).centre(); }
 

@@ -16,7 +16,7 @@ using ChartConflicts = std::vector<std::vector<std::uint32_t>>;
 /// Edges, or parts of them, between patches of a smooth surface.
 using Joints = std::vector<SmoothSurfaces::Seam>;
 
-/// Unfolds smooth surfaces by joining flat pieces at common edges, with deformations up to most_stretch and most_shear.
+/// Unfolds smooth surfaces by joining flat pieces at common edges, with deformations up to max_stretch and max_shear.
 /// A piece starts another layout if it would deform more, overlap, or come closer than `gap` [m] to a piece further
 /// away in space.
 std::vector<FlatPatches> unfolded(const Scene& scene, const SmoothSurfaces::Groups& corners, const Joints& joints,

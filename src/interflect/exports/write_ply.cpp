@@ -7,7 +7,7 @@ namespace interflect::detail {
 
 namespace {
 
-std::size_t most_corners(const LitPolygons& polygons) {
+std::size_t max_corners(const LitPolygons& polygons) {
     std::size_t most = 0;
     for (std::size_t i = 0; i < polygons.size(); ++i)
         most = std::max<std::size_t>(most, polygons.ends[i] - polygons.begin(i));
@@ -27,7 +27,7 @@ void append_position(std::string& bytes, const Scene& scene, const V3f& point) {
 std::vector<ExportedFile> make_ply(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options) {
     const LitPolygons polygons = lit_polygons(scene, solution);
-    const bool has_many_corners = most_corners(polygons) > 255;
+    const bool has_many_corners = max_corners(polygons) > 255;
     const char* coordinate = scene.origin == Imath::V3d(0) ? "float" : "double";
     std::string bytes = fmt::format(
         "ply\nformat binary_little_endian 1.0\n"

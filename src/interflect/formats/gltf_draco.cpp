@@ -22,7 +22,7 @@ namespace {
 
 /// Bounds the decoder's memory. Only Edgebreaker stores the vertex count first (Draco 2.2 bitstream specification,
 /// section 2).
-bool claims_at_most(draco::DecoderBuffer buffer, std::uint64_t most_triangles, std::uint64_t most_vertices) {
+bool claims_at_most(draco::DecoderBuffer buffer, std::uint64_t max_triangles, std::uint64_t max_vertices) {
     constexpr int metadata_flag = 0x8000;
     draco::DracoHeader header{};
     if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return false;
@@ -40,7 +40,7 @@ bool claims_at_most(draco::DecoderBuffer buffer, std::uint64_t most_triangles, s
     if (is_edgebreaker && !buffer.Decode(&traversal)) return false;
     if (!draco::DecodeVarint(&first, &buffer) || !draco::DecodeVarint(&second, &buffer)) return false;
     const std::uint32_t vertices = is_edgebreaker ? first : second, triangles = is_edgebreaker ? second : first;
-    return triangles <= most_triangles && vertices <= most_vertices;
+    return triangles <= max_triangles && vertices <= max_vertices;
 }
 
 DracoAttribute attribute_of(const draco::Mesh& mesh, std::uint32_t id, const GltfValue& extension) {
@@ -62,12 +62,12 @@ DracoAttribute attribute_of(const draco::Mesh& mesh, std::uint32_t id, const Glt
 }  // namespace
 
 DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>& attributes,
-                       std::uint64_t most_triangles, std::uint64_t most_vertices, const GltfValue& extension) {
+                       std::uint64_t max_triangles, std::uint64_t max_vertices, const GltfValue& extension) {
     draco::DecoderBuffer buffer;
     buffer.Init(bytes.data(), bytes.size());
     const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
     if (!type.ok() || type.value() != draco::TRIANGULAR_MESH) extension.fail("its data are no mesh of Draco's");
-    if (!claims_at_most(buffer, most_triangles, most_vertices))
+    if (!claims_at_most(buffer, max_triangles, max_vertices))
         extension.fail("its data are damaged, or have more triangles or vertices than its accessors");
     draco::Decoder decoder;
     const auto decoded = decoder.DecodeMeshFromBuffer(&buffer);

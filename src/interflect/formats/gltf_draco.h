@@ -21,8 +21,8 @@ struct DracoMesh {
 };
 
 /// @param attributes  Unique identifiers, in the order of the result.
-/// @throws GltfFault, also beyond most_triangles or most_vertices, before allocation.
+/// @throws GltfFault, also beyond max_triangles or max_vertices, before allocation.
 DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>& attributes,
-                       std::uint64_t most_triangles, std::uint64_t most_vertices, const GltfValue& extension);
+                       std::uint64_t max_triangles, std::uint64_t max_vertices, const GltfValue& extension);
 
 }  // namespace interflect::detail

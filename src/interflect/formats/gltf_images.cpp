@@ -15,7 +15,7 @@ namespace {
 constexpr int repeat = 10497;  // glTF constant
 
 /// Each texture decodes its images again.
-constexpr std::uint64_t most_decoded = 32 * most_texels;
+constexpr std::uint64_t max_decoded = 32 * max_texels;
 
 const std::vector<float>& decoded_srgb() {
     static const std::vector<float> table = [] {
@@ -92,13 +92,13 @@ StoredImage GltfImages::decode(std::uint32_t image) {
     const GltfValue& owner = images_[image];
     const std::string bytes = bytes_of(image);
     try {
-        StoredImage result = decode_stored_image(bytes, static_cast<std::int64_t>(most_texels));
+        StoredImage result = decode_stored_image(bytes, static_cast<std::int64_t>(max_texels));
         decoded_ += result.pixel_count();
-        if (decoded_ > most_decoded)
-            throw std::runtime_error(fmt::format("with it, more than {} pixels are decoded", most_decoded));
-        if (static_cast<std::uint32_t>(std::max(result.width, result.height)) > most_texels_of_side)
+        if (decoded_ > max_decoded)
+            throw std::runtime_error(fmt::format("with it, more than {} pixels are decoded", max_decoded));
+        if (static_cast<std::uint32_t>(std::max(result.width, result.height)) > max_texels_of_side)
             throw std::runtime_error(fmt::format("it has {} x {} pixels, expected 1 to {} a side", result.width,
-                                                 result.height, most_texels_of_side));
+                                                 result.height, max_texels_of_side));
         return result;
     } catch (const std::runtime_error& fault) {
         owner.fail(fmt::format("cannot read this image: {}", fault.what()));
@@ -152,12 +152,12 @@ std::pair<std::uint32_t, bool> GltfImages::texture(const GltfTexels& texels) {
 }
 
 void GltfImages::limit_textures() {
-    if (texels_ <= most_texels) return;
+    if (texels_ <= max_texels) return;
     reduce_textures(asset_.model.textures);
     texels_ = texel_count(asset_.model.textures);
     asset_.warn("textures-reduced",
                 fmt::format("the largest images are halved in width and height, so that all have {} texels at most",
-                            most_texels),
+                            max_texels),
                 "textures");
 }
 
@@ -173,7 +173,7 @@ const GltfImageMeans& GltfImages::means(std::uint32_t image) {
         colour += RgbD(colour_at(pixels, i));
         stored += RgbD(pixels.value(i, 0), pixels.value(i, 1), pixels.value(i, 2));
         opaque += static_cast<double>(pixels.value(i, alpha));
-        result.least_alpha = std::min(result.least_alpha, pixels.value(i, alpha));
+        result.min_alpha = std::min(result.min_alpha, pixels.value(i, alpha));
     }
     const auto count = static_cast<double>(pixels.pixel_count());
     result.colour = Rgb(colour / count);

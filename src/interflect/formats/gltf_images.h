@@ -40,7 +40,7 @@ struct GltfImageMeans {
     Rgb colour{1, 1, 1};  ///< Linear.
     Rgb stored{1, 1, 1};  ///< Not decoded.
     float alpha = 1;
-    float least_alpha = 1;
+    float min_alpha = 1;
 };
 
 /// PNG and JPEG images.

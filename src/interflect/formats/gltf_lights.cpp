@@ -19,7 +19,7 @@ using Imath::V3d;
 constexpr const char* punctual_lights = "KHR_lights_punctual";
 constexpr const char* measured_lights = "EXT_lights_ies";
 
-constexpr std::size_t most_lights = 1 << 16;
+constexpr std::size_t max_lights = 1 << 16;
 
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
@@ -69,8 +69,8 @@ void GltfLights::add(const GltfNode& node, std::uint32_t object) {
 }
 
 void GltfLights::add_light(Luminaire luminaire, const GltfNode& node, const std::string& name) {
-    if (asset_.model.lights.size() >= most_lights)
-        node.value->fail(fmt::format("this is one light more than the {} that are read", most_lights));
+    if (asset_.model.lights.size() >= max_lights)
+        node.value->fail(fmt::format("this is one light more than the {} that are read", max_lights));
     luminaire.name = unique_name(light_names_, !node.name.empty() ? node.name : name.empty() ? "light" : name);
     if (const std::string fault = luminaire_fault(luminaire); !fault.empty()) node.value->fail("its light " + fault);
     asset_.model.lights.push_back({std::move(luminaire), node.to_world.translation()});

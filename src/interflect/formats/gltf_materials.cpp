@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr auto most_reflected = static_cast<float>(largest_reflectance);
+constexpr auto max_reflected = static_cast<float>(largest_reflectance);
 
 /// The default material of glTF does not reflect diffusely.
 constexpr float default_reflectance = 0.5f;
@@ -128,7 +128,7 @@ void GltfMaterials::apply_alpha(const GltfValue& owner, Parts& parts, GltfSurfac
     }
     if (mode != "MASK" && mode != "BLEND") owner.fail("its alphaMode is unknown");
     const std::uint32_t image = parts.base_texture.image;
-    if (image != none && images_.means(image).least_alpha < 1) parts.coverage_texture = parts.base_texture;
+    if (image != none && images_.means(image).min_alpha < 1) parts.coverage_texture = parts.base_texture;
     if (mode != "MASK") return;
     parts.cutoff = static_cast<float>(owner.amount("alphaCutoff", 0.5));
     surface.is_invisible = parts.coverage < parts.cutoff;
@@ -167,13 +167,13 @@ void GltfMaterials::reflect(const GltfValue& owner, const Parts& parts, Material
     bool is_reduced = false;
     if (colour == none && metallic == none && parts.coverage_texture.image == none) {
         material.reflectance *= 1 - parts.metallic;
-        is_reduced = largest_channel(material.reflectance) > most_reflected;
-        for (int c = 0; c < 3; ++c) material.reflectance[c] = std::min(material.reflectance[c], most_reflected);
+        is_reduced = largest_channel(material.reflectance) > max_reflected;
+        for (int c = 0; c < 3; ++c) material.reflectance[c] = std::min(material.reflectance[c], max_reflected);
     } else {
         GltfTexels texels{colour, metallic, parts.metallic, Rgb(1), parts.coverage_from_texture()};
         for (int c = 0; c < 3; ++c) {
-            texels.factor[c] = std::max(1.0f, material.reflectance[c] / most_reflected);
-            material.reflectance[c] = std::min(material.reflectance[c], most_reflected);
+            texels.factor[c] = std::max(1.0f, material.reflectance[c] / max_reflected);
+            material.reflectance[c] = std::min(material.reflectance[c], max_reflected);
         }
         std::tie(material.reflectance_texture, is_reduced) = images_.texture(texels);
     }

@@ -127,12 +127,12 @@ std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
 
 void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices) {
     const GltfValue ids = extension.object("attributes");
-    constexpr std::size_t most_ids = 1 << 16;
-    std::vector<std::uint32_t> wanted = {ids.required_index("POSITION", most_ids)};
+    constexpr std::size_t max_ids = 1 << 16;
+    std::vector<std::uint32_t> wanted = {ids.required_index("POSITION", max_ids)};
     const std::string texture_set = texture_set_of(primitive);
     const auto want = [&](const std::string& set) -> std::optional<std::size_t> {
         if (set.empty() || !ids.has(set.c_str())) return std::nullopt;
-        wanted.push_back(ids.index(set.c_str(), most_ids));
+        wanted.push_back(ids.index(set.c_str(), max_ids));
         return wanted.size() - 1;
     };
     const auto coordinates = want(texture_set), lightmap = want(lightmap_set), normals = want(normal_set);

@@ -125,8 +125,8 @@ void LdtReader::read_opening() {
 
 /// Reads number, type, flux, colour, colour rendering, power. Negative numbers mean absolute photometry.
 void LdtReader::read_lamps() {
-    constexpr std::size_t most_sets = 20;
-    const std::size_t sets = count_line("the number of sets of lamps", 1, most_sets);
+    constexpr std::size_t max_sets = 20;
+    const std::size_t sets = count_line("the number of sets of lamps", 1, max_sets);
     if (sets > 1) warn("ldt-lamps", "of several sets of lamps the first is taken");
     for (std::size_t i = 0; i < sets; ++i) {
         const double lamps = number_line("the number of lamps");

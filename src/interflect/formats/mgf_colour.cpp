@@ -40,12 +40,11 @@ V3d colour_matching_at(double wavelength) {
 }
 
 /// Minimum of |Y| and |X + Y + Z|, relative to |X| + |Y| + |Z|.
-constexpr double least_share = 1e-6;
+constexpr double min_share = 1e-6;
 
 Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
     const double size = std::abs(xyz.x) + std::abs(xyz.y) + std::abs(xyz.z), total = xyz.x + xyz.y + xyz.z;
-    if (!(std::abs(xyz.y) > least_share * size && std::abs(total) > least_share * size))
-        throw std::invalid_argument(fault);
+    if (!(std::abs(xyz.y) > min_share * size && std::abs(total) > min_share * size)) throw std::invalid_argument(fault);
     return {xyz.x / total, xyz.y / total};
 }
 
@@ -138,13 +137,13 @@ Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double larg
         luminance = largest;
     }
     V3d rgb = multiply(rec709_from_xyz(), xyz_of(colour.x, colour.y));
-    constexpr double least_channel = 1e-15;  // relative to white
+    constexpr double min_channel = 1e-15;  // relative to white
     // Adaptation changes Y, so the luminance is set later.
     const double in_gamut = smallest_saturation(rgb, std::numeric_limits<double>::infinity());
     result.out_of_gamut = in_gamut < 1;
     rgb = with_saturation(rgb, in_gamut);
     for (int c = 0; c < 3; ++c)
-        if (rgb[c] < least_channel) rgb[c] = 0;  // on the gamut's border
+        if (rgb[c] < min_channel) rgb[c] = 0;  // on the gamut's border
     rgb /= interflect::luminance(RgbD(rgb));
     if (luminance > 0) {
         const double under_bound = smallest_saturation(rgb, largest / luminance);

@@ -10,13 +10,13 @@
 namespace interflect::detail {
 
 void MgfReader::colour_xy(MgfWords words) {
-    constexpr double least_y = 1e-6;
+    constexpr double min_y = 1e-6;
     const Chromaticity c{number_argument(words[0]), number_argument(words[1])};
     if (c.x < 0 || c.y < 0 || c.x + c.y > 1)
         throw MgfFault(fmt::format("({}, {}) is no chromaticity: x >= 0, y >= 0, x + y <= 1", c.x, c.y));
-    if (c.y < least_y)
+    if (c.y < min_y)
         scene_.warn("no-luminance", "chromaticity without luminance (y = 0) is taken as one with y = 1e-6", here());
-    colours_.current() = {{c.x, std::max(c.y, least_y)}};
+    colours_.current() = {{c.x, std::max(c.y, min_y)}};
 }
 
 void MgfReader::colour_spectrum(MgfWords words) {

@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t most_lights = 1 << 16;
+constexpr std::size_t max_lights = 1 << 16;
 
 std::string identity(const Material& m) {
     std::string key = m.name;
@@ -64,9 +64,9 @@ std::uint32_t MgfSceneBuilder::texture(const MgfTexture& texture) {
         throw InputError(*texture.where.file, texture.where.line, fmt::format("the texture {}", unreadable.what()));
     }
     texels_ += scene_.textures.back().texels.size();
-    if (texels_ > most_texels)
+    if (texels_ > max_texels)
         throw InputError(*texture.where.file, texture.where.line,
-                         fmt::format("with this texture there are more than {} texels", most_texels));
+                         fmt::format("with this texture there are more than {} texels", max_texels));
     largest_texels_.push_back(largest_texel(scene_.textures.back()));
     add_file(texture.path);
     return entry->second;
@@ -96,8 +96,8 @@ Rgb MgfSceneBuilder::emitted(const MgfColour& colour, double luminance, const Lo
 }
 
 void MgfSceneBuilder::add_light(Luminaire luminaire, const std::string& name) {
-    if (scene_.luminaires.size() >= most_lights)
-        throw std::invalid_argument(fmt::format("this is one light more than the {} that are read", most_lights));
+    if (scene_.luminaires.size() >= max_lights)
+        throw std::invalid_argument(fmt::format("this is one light more than the {} that are read", max_lights));
     luminaire.name = fmt::format("{}-{}", name, scene_.luminaires.size() + 1);
     if (const std::string fault = luminaire_fault(luminaire); !fault.empty())
         throw std::invalid_argument("this light " + fault);
@@ -112,13 +112,13 @@ std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view 
     const auto reflected = [&](const MgfColour& colour, double share) {
         return converted(colour, share, largest_reflectance, material.defined);
     };
-    const double most_transmitted = material.ts_texture.path.empty() ? largest_reflectance : 1;  // 1 is a hole
+    const double max_transmitted = material.ts_texture.path.empty() ? largest_reflectance : 1;  // 1 is a hole
     Material result{.name = std::string(name),
                     .reflectance = reflected(material.rd_colour, material.rd),
                     .exitance = emitted(material.ed_colour, material.ed, material.defined),
                     .reflectance_texture = texture(material.rd_texture),
                     .exitance_texture = texture(material.ed_texture),
-                    .transmittance = converted(material.ts_colour, material.ts, most_transmitted, material.defined),
+                    .transmittance = converted(material.ts_colour, material.ts, max_transmitted, material.defined),
                     .transmittance_texture = texture(material.ts_texture),
                     .specular_reflectance = is_mirror(material.rs, material.rs_roughness)
                                                 ? reflected(material.rs_colour, material.rs)

@@ -49,7 +49,7 @@ bool has_transparency(const StoredImage& image) {
     return false;
 }
 
-std::size_t most_arguments(std::string_view option) {
+std::size_t max_arguments(std::string_view option) {
     if (option == "-mm") return 2;
     return option == "-o" || option == "-s" || option == "-t" ? 3 : 1;
 }
@@ -117,7 +117,7 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
     while (words.size() > 1 && words[0].starts_with('-')) {
         warn("texture-option", "option of a texture map is ignored", where);
         std::size_t taken = 1;
-        const std::size_t most = std::min(1 + most_arguments(words[0]), words.size() - 1);
+        const std::size_t most = std::min(1 + max_arguments(words[0]), words.size() - 1);
         // A single argument may be any word; several are optional numbers.
         while (taken < most && (most == 2 || parse_number(words[taken]))) ++taken;
         words = words.subspan(taken);
@@ -157,12 +157,12 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
         result.transmittance = Rgb(1 - definition.opacity);
         result.reflectance_texture = texture(definition);
     }
-    if (texels_ > most_texels) {
+    if (texels_ > max_texels) {
         reduce_textures(model_.textures);
         texels_ = texel_count(model_.textures);
         warn("textures-reduced",
              fmt::format("the largest images are halved in width and height, so that all have {} texels at most",
-                         most_texels),
+                         max_texels),
              definition.where);
     }
     bool limited = limit_reflectance(result.reflectance);
@@ -212,7 +212,7 @@ Texture ObjMaterials::read_colours(const Definition& definition) {
 
 StoredImage ObjMaterials::read_mask(const Definition& definition) {
     try {
-        StoredImage mask = decode_stored_image(read_bytes(definition.mask), static_cast<std::int64_t>(most_texels));
+        StoredImage mask = decode_stored_image(read_bytes(definition.mask), static_cast<std::int64_t>(max_texels));
         model_.files.push_back(definition.mask.string());
         return mask;
     } catch (const std::runtime_error& unreadable) {

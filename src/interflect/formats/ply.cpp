@@ -35,7 +35,7 @@ class PlyReader {
         for (const PlyElement& element : header_.elements) {
             if (element.count > 0 && !values_.may_hold(1, 1)) throw std::invalid_argument(too_short(element));
             if (!element.properties.empty() &&
-                (element.count > most_elements ||
+                (element.count > max_elements ||
                  !values_.may_hold(element.count * element.fewest_values(), element.count * element.fewest_bytes())))
                 throw std::invalid_argument(too_short(element));
             if (element.name == "vertex")
@@ -54,7 +54,7 @@ class PlyReader {
     }
 
   private:
-    static constexpr std::uint64_t most_elements = std::uint64_t{1} << 40;  // keeps products below 2^64
+    static constexpr std::uint64_t max_elements = std::uint64_t{1} << 40;  // keeps products below 2^64
 
     static std::string too_short(const PlyElement& element) {
         return fmt::format("the file is too short for {} of '{}'", element.count, element.name.substr(0, 40));

@@ -12,8 +12,8 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t most_ply_properties = 256;
-constexpr std::size_t most_shown = 40;  // [characters]
+constexpr std::size_t max_ply_properties = 256;
+constexpr std::size_t max_shown = 40;  // [characters]
 
 PlyType ply_type(std::string_view name) {
     constexpr std::pair<std::string_view, PlyType> types[] = {
@@ -95,11 +95,11 @@ PlyHeader parse_ply_header(std::string_view bytes, std::int64_t& line) {
             PlyProperty property = ply_property(words);
             if (header.elements.back().find(property.name))
                 throw std::invalid_argument(fmt::format("property '{}' of the element '{}' is repeated",
-                                                        property.name.substr(0, most_shown),
-                                                        header.elements.back().name.substr(0, most_shown)));
+                                                        property.name.substr(0, max_shown),
+                                                        header.elements.back().name.substr(0, max_shown)));
             header.elements.back().properties.push_back(std::move(property));
-            if (header.elements.back().properties.size() > most_ply_properties)
-                throw std::invalid_argument(fmt::format("an element has more than {} properties", most_ply_properties));
+            if (header.elements.back().properties.size() > max_ply_properties)
+                throw std::invalid_argument(fmt::format("an element has more than {} properties", max_ply_properties));
         } else if (words[0] == "end_header") {
             if (!has_form) throw std::invalid_argument("the header lacks a format");
             header.size = lines.position().offset;

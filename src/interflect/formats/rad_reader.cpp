@@ -22,7 +22,7 @@ using Imath::V3d;
 namespace {
 
 /// Per file; each takes about 170 bytes.
-constexpr std::size_t most_copies = 1 << 20;
+constexpr std::size_t max_copies = 1 << 20;
 
 V3d point(const std::vector<double>& numbers, std::size_t first) {
     return {numbers[first], numbers[first + 1], numbers[first + 2]};
@@ -149,11 +149,11 @@ void RadReader::refuse_recursion(const SourceFile& source, const OpenFile& file)
 std::vector<RadReader::Copy> RadReader::copies_of(const RadXform& xform, const std::vector<Copy>& outer) {
     double count = static_cast<double>(outer.size());
     for (const int size : xform.transform.array_sizes()) count *= size;
-    if (count > static_cast<double>(std::min<std::uint64_t>(most_copies, options_.max_patches)))
+    if (count > static_cast<double>(std::min<std::uint64_t>(max_copies, options_.max_patches)))
         throw PatchLimit(
             fmt::format("an array of {:.0f} copies, of which at most {} are read and each counts as a patch "
                         "at least (max_patches)",
-                        count, most_copies));
+                        count, max_copies));
     repeated_.add(RepeatedWork::words_per_include + RepeatedWork::words_per_copy * static_cast<std::uint64_t>(count),
                   static_cast<std::uint64_t>(patches_));
     std::vector<Copy> result;

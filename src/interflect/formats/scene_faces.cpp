@@ -10,7 +10,7 @@ namespace interflect::detail {
 namespace {
 
 /// Minimum doubled area / size^2 of faces that affect the origin.
-constexpr double least_shape = 1e-6;
+constexpr double min_shape = 1e-6;
 
 /// Relative to the scene's reach. Narrower slivers are common.
 constexpr double largest_lost_width = 0x1p-16;
@@ -40,7 +40,7 @@ void SceneFaces::place(std::span<const Imath::V3d> outline) {
     const double size = box.size().length();
     const double width = size > 0 ? doubled_area.length() / size : 0;
     placed_ = {width, box.center(), {}};
-    if (width > least_shape * size && sample_.wants_next()) sample_.add({box.center(), size});
+    if (width > min_shape * size && sample_.wants_next()) sample_.add({box.center(), size});
 }
 
 void SceneFaces::add(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,

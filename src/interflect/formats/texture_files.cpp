@@ -23,7 +23,7 @@ std::shared_ptr<const Texture> read_environment(const std::filesystem::path& pat
     require_regular_file(path);
     if (needs_tone_mapping(require_image_format(path)))
         throw InputError(path, 0, "an image of 8 bits has no radiances, expected .exr or .hdr");
-    return std::make_shared<Texture>(read_texture(path, most_environment_texels));
+    return std::make_shared<Texture>(read_texture(path, max_environment_texels));
 }
 
 std::string texture_extension(const Texture& texture) {

@@ -10,7 +10,7 @@
 namespace interflect::detail {
 
 /// Reads .png or .jpg (sRGB), .exr or .hdr (linear). @param most  Texel limit. @throws InputError
-Texture read_texture(const std::filesystem::path& path, std::uint64_t most = most_texels);
+Texture read_texture(const std::filesystem::path& path, std::uint64_t most = max_texels);
 
 /// Reads radiances from .exr or .hdr. @throws InputError
 std::shared_ptr<const Texture> read_environment(const std::filesystem::path& path);

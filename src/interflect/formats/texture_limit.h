@@ -8,7 +8,7 @@
 namespace interflect::detail {
 
 /// Halves the largest textures by area means, to at most `most` texels in total. Equal sizes stay equal.
-bool reduce_textures(std::vector<Texture>& textures, std::uint64_t most = most_texels);
+bool reduce_textures(std::vector<Texture>& textures, std::uint64_t most = max_texels);
 
 std::uint64_t texel_count(const std::vector<Texture>& textures);
 

@@ -47,8 +47,8 @@ void add_textures(Scene& scene, const Palette& palette, std::uint32_t floor) {
 }  // namespace
 
 Scene make_boxes(const BoxesOptions& options) {
-    if (options.boxes < 1 || options.boxes > BoxesOptions::most_boxes)
-        throw InputError(fmt::format("there can be 1 to {} boxes, not {}", BoxesOptions::most_boxes, options.boxes));
+    if (options.boxes < 1 || options.boxes > BoxesOptions::max_boxes)
+        throw InputError(fmt::format("there can be 1 to {} boxes, not {}", BoxesOptions::max_boxes, options.boxes));
     // The first cell stays free for the camera.
     const auto columns = std::max(4u, static_cast<std::uint32_t>(std::ceil(std::sqrt(options.boxes + 1.0))));
     const float half = cell * static_cast<float>(columns) / 2;

@@ -7,9 +7,9 @@
 namespace interflect::detail {
 
 struct BoxesOptions {
-    static constexpr std::uint32_t most_boxes = 100'000;
+    static constexpr std::uint32_t max_boxes = 100'000;
 
-    std::uint32_t boxes = 20;  ///< 1 to most_boxes.
+    std::uint32_t boxes = 20;  ///< 1 to max_boxes.
     std::uint64_t seed = 1;
     bool texture = false;
 };

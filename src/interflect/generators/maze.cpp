@@ -27,8 +27,8 @@ const std::array wall_furniture{&bookcase, &bookcase, &workstation, &workstation
                                 &radiator, &picture,  &picture,     &cartons,     &waste_bin};
 
 void require_valid(const MazeOptions& options) {
-    if (options.rooms < 1 || options.rooms > MazeOptions::most_rooms)
-        throw InputError(fmt::format("a maze has 1 to {} rooms, not {}", MazeOptions::most_rooms, options.rooms));
+    if (options.rooms < 1 || options.rooms > MazeOptions::max_rooms)
+        throw InputError(fmt::format("a maze has 1 to {} rooms, not {}", MazeOptions::max_rooms, options.rooms));
     if (!(options.extra_doors >= 0 && options.extra_doors <= 1))
         throw InputError(fmt::format("the share of extra doors must be 0 to 1, not {}", options.extra_doors));
 }
@@ -71,7 +71,7 @@ Scene make_maze(const MazeOptions& options) {
         furnisher.add_luminaires(room, plan.room_height, one_luminaire, random[i].chance(.5f));
         const LookOut look_out = building::look_out(plan, i);
         if (options.furniture) furnish(plan, room, look_out, furnisher, random[i]);
-        if (i < most_room_views) scene.views.push_back(look_out.view);
+        if (i < max_room_views) scene.views.push_back(look_out.view);
     }
     scene.views.push_back(bird_view(plan));
     return scene;
@@ -83,9 +83,9 @@ std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options) 
     small.rooms = sample;
     const double patches_per_room = static_cast<double>(make_maze(small).patches.size()) / sample;
     const double rooms = std::max(1.0, std::round(static_cast<double>(patches) / patches_per_room));
-    if (rooms > MazeOptions::most_rooms)
+    if (rooms > MazeOptions::max_rooms)
         throw InputError(fmt::format("{} patches would need {:.0f} rooms of about {:.0f} patches; at most {} are made",
-                                     patches, rooms, patches_per_room, MazeOptions::most_rooms));
+                                     patches, rooms, patches_per_room, MazeOptions::max_rooms));
     return static_cast<std::uint32_t>(rooms);
 }
 

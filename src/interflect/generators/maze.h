@@ -7,9 +7,9 @@
 namespace interflect::detail {
 
 struct MazeOptions {
-    static constexpr std::uint32_t most_rooms = 10'000;
+    static constexpr std::uint32_t max_rooms = 10'000;
 
-    std::uint32_t rooms = 9;  ///< 1 to most_rooms.
+    std::uint32_t rooms = 9;  ///< 1 to max_rooms.
     bool furniture = false;
     float extra_doors = 0.15f;  ///< Fraction of other walls with a doorway, 0 to 1.
     std::uint64_t seed = 1;
@@ -21,7 +21,7 @@ struct MazeOptions {
 /// @throws InputError if an option is out of range.
 Scene make_maze(const MazeOptions& options);
 
-/// Returns the number for about `patches` patches; ignores options.rooms. @throws InputError above most_rooms.
+/// Returns the number for about `patches` patches; ignores options.rooms. @throws InputError above max_rooms.
 std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options);
 
 }  // namespace interflect::detail

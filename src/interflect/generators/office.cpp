@@ -26,9 +26,9 @@ void require_valid(const OfficeOptions& options) {
         if (value < 1 || value > most)
             throw InputError(fmt::format("an office has 1 to {} {}, not {}", most, what, value));
     };
-    require(options.rooms, OfficeOptions::most_rooms, "rooms");
-    require(options.desk_rows, OfficeOptions::most_rows, "rows of desks in a room");
-    require(options.desks_per_row, OfficeOptions::most_desks_per_row, "desks in a row");
+    require(options.rooms, OfficeOptions::max_rooms, "rooms");
+    require(options.desk_rows, OfficeOptions::max_rows, "rows of desks in a room");
+    require(options.desks_per_row, OfficeOptions::max_desks_per_row, "desks in a row");
 }
 
 FloorPlan plan_office(const OfficeOptions& options) {
@@ -84,7 +84,7 @@ Scene make_office(const OfficeOptions& options) {
         floor.reserve(look_out.standing_room);
         for (const Furniture* piece : furniture_along_walls(options.desk_rows))
             if (const auto place = floor.against_wall(*piece, random)) furnisher.add(*piece, *place);
-        if (i < most_room_views) scene.views.push_back(look_out.view);
+        if (i < max_room_views) scene.views.push_back(look_out.view);
     }
     scene.views.push_back(bird_view(plan));
     return scene;

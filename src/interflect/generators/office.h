@@ -7,11 +7,11 @@
 namespace interflect::detail {
 
 struct OfficeOptions {
-    static constexpr std::uint32_t most_rooms = 256, most_rows = 20, most_desks_per_row = 20;
+    static constexpr std::uint32_t max_rooms = 256, max_rows = 20, max_desks_per_row = 20;
 
-    std::uint32_t rooms = 1;          ///< 1 to most_rooms.
-    std::uint32_t desk_rows = 3;      ///< Per room, 1 to most_rows.
-    std::uint32_t desks_per_row = 4;  ///< 1 to most_desks_per_row.
+    std::uint32_t rooms = 1;          ///< 1 to max_rooms.
+    std::uint32_t desk_rows = 3;      ///< Per room, 1 to max_rows.
+    std::uint32_t desks_per_row = 4;  ///< 1 to max_desks_per_row.
     std::uint64_t seed = 1;
 };
 

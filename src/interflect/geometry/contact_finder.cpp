@@ -18,7 +18,7 @@ using Imath::V2d;
 using Imath::V3d;
 
 /// Flatter intersections (1 degree) bound no shadow.
-constexpr double least_angle_sine = 0.0175;
+constexpr double min_angle_sine = 0.0175;
 
 }  // namespace
 
@@ -53,13 +53,13 @@ void ContactFinder::add_contacts_with(const Facet& other) {
     if (std::max(highest, -lowest) <= touching)
         add_outline(other);
     else if ((highest > touching || is_two_sided(facet_)) &&
-             facet_.normal.cross(other.normal).length() >= least_angle_sine)
+             facet_.normal.cross(other.normal).length() >= min_angle_sine)
         add_section(other, height, touching);
 }
 
-std::vector<PlanarSegment> ContactFinder::segments(double least_extent) {
+std::vector<PlanarSegment> ContactFinder::segments(double min_extent) {
     std::vector<PlanarSegment> all = distinct_segments();
-    if (least_extent <= 0) return all;
+    if (min_extent <= 0) return all;
     std::vector<std::uint32_t> chain = connected(all);
     std::vector<Imath::Box2d> extent(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -68,7 +68,7 @@ std::vector<PlanarSegment> ContactFinder::segments(double least_extent) {
     }
     std::vector<PlanarSegment> large;
     for (std::size_t i = 0; i < all.size(); ++i)
-        if (extent[chain[i]].size().length() >= least_extent) large.push_back(all[i]);
+        if (extent[chain[i]].size().length() >= min_extent) large.push_back(all[i]);
     return large;
 }
 

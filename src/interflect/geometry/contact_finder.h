@@ -31,8 +31,8 @@ class ContactFinder {
     float reach() const;
     bool plane_meets(const Imath::Box3f& box) const;
     void add_contacts_with(const Facet& other);
-    /// Returns the connected components at least `least_extent` [m] wide.
-    std::vector<PlanarSegment> segments(double least_extent);
+    /// Returns the connected components at least `min_extent` [m] wide.
+    std::vector<PlanarSegment> segments(double min_extent);
 
   private:
     /// Removes duplicates and shared borders of coplanar faces.

@@ -28,7 +28,7 @@ namespace {
 /// Relative to the face's diameter. Narrower strips are not divided across.
 constexpr double narrow = 2e-3;
 
-constexpr std::size_t facets_at_once = 256;
+constexpr std::size_t facets_per_task = 256;
 
 /// Maximum length of a sliver, relative to the width of its flat surface. Reduces the error of pixel blocks in
 /// `slivers` (experiments/run audit) from 8.8% to 1.3%.
@@ -50,14 +50,14 @@ double longest_sliver(const Facet& facet, double surface_area) {
 
 CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_area, const ContactOptions& options) {
     CutFacet result;
-    std::vector<PlanarSegment> segments = finder.segments(static_cast<double>(options.least_extent));
-    CutPolygon cut = cut_polygon(finder.polygon(), std::move(segments), facet.detail(), options.most_pieces_per_face);
+    std::vector<PlanarSegment> segments = finder.segments(static_cast<double>(options.min_extent));
+    CutPolygon cut = cut_polygon(finder.polygon(), std::move(segments), facet.detail(), options.max_pieces_per_face);
     result.reached_limit = cut.reached_limit;
     result.contacts = std::move(cut.contacts);
     PieceShape shape{.longest_sliver = longest_sliver(facet, surface_area)};
     if (cut.pieces.size() > 1) {
         shape.largest_aspect = static_cast<double>(options.largest_aspect);
-        shape.least_width = std::max(2 * static_cast<double>(options.least_extent), narrow * facet.diameter);
+        shape.min_width = std::max(2 * static_cast<double>(options.min_extent), narrow * facet.diameter);
     }
     for (const PlanarPolygon& piece : cut.pieces) divide_into_patches(piece, shape, result.patches);
     if (result.patches.size() == 1) result.patches.clear();
@@ -81,10 +81,9 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
     for (std::uint32_t i = 0; i < facets.size(); ++i) tree.push_back({facets[i].box(0), i});
     arrange_box_tree(tree);
     std::vector<CutFacet> cut(facets.size());
-    parallel_for_ranges(facets.size(), facets_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(facets.size(), facets_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            if (facets[i].area() <
-                static_cast<double>(options.least_extent) * static_cast<double>(options.least_extent))
+            if (facets[i].area() < static_cast<double>(options.min_extent) * static_cast<double>(options.min_extent))
                 continue;
             ContactFinder finder(scene, facets[i], rank, static_cast<double>(options.touch_distance));
             const Imath::Box3f box = facets[i].box(finder.reach());
@@ -162,7 +161,7 @@ std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<F
             if (cut[i].reached_limit)
                 warnings.add("contact-cuts", fmt::format("a face was cut into no more than {} pieces: elements may "
                                                          "still lie on both sides of what stands on it",
-                                                         options.most_pieces_per_face));
+                                                         options.max_pieces_per_face));
         }
         if (!is_cut) continue;
         if (count + patches - sides <= options.max_patches) {

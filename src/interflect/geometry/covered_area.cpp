@@ -19,7 +19,7 @@ using Imath::V3d;
 /// Relative area of rounding errors.
 constexpr double negligible_share = 1e-12;
 constexpr std::size_t cut_at_once = 4;
-constexpr int most_halvings = 24;
+constexpr int max_halvings = 24;
 
 double area_of(const PlanarPolygon& polygon) { return 0.5 * doubled_area(polygon); }
 
@@ -56,7 +56,7 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
     if (is_inside_one) return 0;
     if (others.empty()) return area;
     double outside = 0;
-    if (others.size() > cut_at_once && halvings < most_halvings) {
+    if (others.size() > cut_at_once && halvings < max_halvings) {
         V2d low = polygon[0].position, high = low;
         for (const auto& [p, vertex] : polygon) {
             low = {std::min(low.x, p.x), std::min(low.y, p.y)};

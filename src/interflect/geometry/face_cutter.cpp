@@ -162,15 +162,15 @@ PlanarPolygon part_of(const PlanarPolygon& polygon, std::size_t first, std::size
 }
 
 void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::vector<PlanarPolygon>& patches) {
-    constexpr double most_parts = 16;
+    constexpr double max_parts = 16;
     const auto edge = [&](std::size_t i) {
         return (quadrilateral[(i + 1) % 4].position - quadrilateral[i].position).length();
     };
     if (edge(0) + edge(2) < edge(1) + edge(3))
         std::rotate(quadrilateral.begin(), quadrilateral.begin() + 1, quadrilateral.end());
     const double length = (edge(0) + edge(2)) / 2, width = doubled_area(quadrilateral) / 2 / length;
-    const bool is_long = length > shape.largest_aspect * width && width >= shape.least_width;
-    const double parts = is_long ? std::min(most_parts, std::ceil(length / (shape.largest_aspect * width))) : 1;
+    const bool is_long = length > shape.largest_aspect * width && width >= shape.min_width;
+    const double parts = is_long ? std::min(max_parts, std::ceil(length / (shape.largest_aspect * width))) : 1;
     const auto between = [&](std::size_t from, std::size_t to, double share) -> PlanarCorner {
         const PlanarCorner &a = quadrilateral[from], &b = quadrilateral[to];
         return share == 0 ? a : share == 1 ? b : PlanarCorner{a.position + (b.position - a.position) * share, none};
@@ -181,7 +181,7 @@ void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::ve
 }
 
 std::vector<PlanarPolygon> slices_of(const PlanarPolygon& polygon, double longest) {
-    constexpr double most_parts = 64, sliver_aspect = 16;
+    constexpr double max_parts = 64, sliver_aspect = 16;
     PlanarSegment edge{polygon[0].position, polygon[0].position};
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const PlanarSegment next{polygon[i].position, polygon[(i + 1) % polygon.size()].position};
@@ -189,7 +189,7 @@ std::vector<PlanarPolygon> slices_of(const PlanarPolygon& polygon, double longes
     }
     const double length = edge.length(), width = doubled_area(polygon) / 2 / length;
     if (!(length > longest) || length < sliver_aspect * width) return {polygon};
-    const double parts = std::min(most_parts, std::ceil(length / longest));
+    const double parts = std::min(max_parts, std::ceil(length / longest));
     const V2d along = (edge.b - edge.a) / parts, across(-along.y, along.x);
     const double rounding = length * std::numeric_limits<float>::epsilon();
     std::vector<PlanarPolygon> slices;
@@ -231,14 +231,14 @@ bool clip_to_interior(const PlanarPolygon& polygon, double tolerance, PlanarSegm
 }
 
 CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segments, double tolerance,
-                       std::size_t most_pieces) {
+                       std::size_t max_pieces) {
     CutPolygon result;
     std::vector<Piece> to_do;
     to_do.push_back({std::move(polygon), std::move(segments)});
     while (!to_do.empty()) {
         Piece piece = std::move(to_do.back());
         to_do.pop_back();
-        if (!piece.segments.empty() && result.pieces.size() + to_do.size() + 1 >= most_pieces) {
+        if (!piece.segments.empty() && result.pieces.size() + to_do.size() + 1 >= max_pieces) {
             result.reached_limit = true;
             piece.segments.clear();
         }
@@ -266,7 +266,7 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
 void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches) {
     if (const std::vector<PlanarPolygon> slices = slices_of(polygon, shape.longest_sliver); slices.size() > 1) {
         for (const PlanarPolygon& slice : slices)
-            divide_into_patches(slice, {shape.largest_aspect, shape.least_width}, patches);
+            divide_into_patches(slice, {shape.largest_aspect, shape.min_width}, patches);
         return;
     }
     const std::size_t n = polygon.size();

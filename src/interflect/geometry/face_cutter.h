@@ -20,13 +20,13 @@ struct CutPolygon {
 
 /// Partitions a convex polygon by segments in its interior (BSP).
 /// @param tolerance  Width of lines and minimum width of pieces [m].
-/// @param most_pieces  > 0.
+/// @param max_pieces  > 0.
 CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segments, double tolerance,
-                       std::size_t most_pieces);
+                       std::size_t max_pieces);
 
 struct PieceShape {
     double largest_aspect = std::numeric_limits<double>::infinity();  ///< Length over width of a quadrilateral.
-    double least_width = 0;  ///< Narrower quadrilaterals may have any length [m].
+    double min_width = 0;  ///< Narrower quadrilaterals may have any length [m].
     /// Longer slivers are cut across first [m].
     double longest_sliver = std::numeric_limits<double>::infinity();
 };

@@ -16,7 +16,7 @@ namespace {
 using V3d = Imath::V3d;
 
 /// Minimum cosine: rejects low upright faces, tolerates noisy normals of small faces.
-constexpr double least_facing = 0.7;
+constexpr double min_facing = 0.7;
 
 constexpr std::size_t search_grain = 1024;
 
@@ -93,7 +93,7 @@ class LargerFace {
             if (lies_outside(shared, narrowed(inside_[i]))) return false;  // true for most neighbours
         const V3d area = doubled_area_vector<double>(shared.face_corners());
         const double facing = area.dot(plane_.normal);
-        if (!is_smaller(face, area.length()) || std::abs(facing) < least_facing * area.length()) return false;
+        if (!is_smaller(face, area.length()) || std::abs(facing) < min_facing * area.length()) return false;
         if (facing < 0 && is_one_sided(face_) && is_one_sided(face)) return false;
         for (std::size_t i = 0; i < polygon_.count && shared.count > 0; ++i)
             shared = clipped(shared, narrowed(inside_[i]));

@@ -14,7 +14,7 @@ namespace {
 using Imath::V3d;
 
 /// Relative to a face's diameter: 40 um at 10 m.
-constexpr double least_detail = 4e-6;
+constexpr double min_detail = 4e-6;
 
 /// Four float roundings of the largest coordinate.
 constexpr double relative_rounding = 0x1p-22;
@@ -36,7 +36,7 @@ Facet::Facet(const Scene& scene, std::uint32_t face_index, std::span<const std::
     normal = doubled.normalized();
 }
 
-double Facet::detail() const { return std::max(least_detail * diameter, rounding); }
+double Facet::detail() const { return std::max(min_detail * diameter, rounding); }
 
 Imath::Box3f Facet::box(float margin) const {
     Imath::Box3f result;

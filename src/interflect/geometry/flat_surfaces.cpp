@@ -19,9 +19,9 @@ namespace {
 /// 0.8 degrees: tolerates rounded normals of small patches, keeps modelled creases.
 constexpr float same_plane_cosine = 0.9999f;
 
-constexpr std::size_t patches_at_once = 4096;
+constexpr std::size_t patches_per_task = 4096;
 
-constexpr std::size_t most_faces_at_edge = 8;
+constexpr std::size_t max_faces_at_edge = 8;
 
 /// Relative difference after division and rounding.
 constexpr double equal_areas = 1e-4;
@@ -91,7 +91,7 @@ std::vector<std::uint32_t> order_of_surfaces(const Scene& scene, const std::vect
 std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     std::vector<V3f> normal(count);
-    parallel_for_ranges(count, patches_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(count, patches_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
             if (is_back(scene, i)) continue;
             normal[i] = PatchGeometry(scene, scene.patches[i]).normal();
@@ -106,7 +106,7 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
     DisjointSets surfaces(count);
     const std::vector<Edge> edges = sorted_edges(scene);
     for (std::size_t i = 1; i < edges.size(); ++i)
-        for (std::size_t j = i; j-- > 0 && i - j < most_faces_at_edge && edges[j].vertices == edges[i].vertices;)
+        for (std::size_t j = i; j-- > 0 && i - j < max_faces_at_edge && edges[j].vertices == edges[i].vertices;)
             if (continues(edges[i].patch, edges[j].patch)) surfaces.unite(edges[i].patch, edges[j].patch);
 
     std::unordered_map<std::uint32_t, std::uint32_t> first_patch;  // per numbered surface

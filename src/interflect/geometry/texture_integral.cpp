@@ -11,10 +11,10 @@ namespace {
 constexpr std::int64_t texels_per_sum = 8;
 
 /// Texel lines crossed by a border; takes 0.1 s.
-constexpr double most_crossings = 1 << 20;
+constexpr double max_crossings = 1 << 20;
 
 /// Minimum height of a triangle [texels]; avoids division by zero.
-constexpr double least_height = 1e-3;
+constexpr double min_height = 1e-3;
 
 std::int64_t floor_of(double x) { return static_cast<std::int64_t>(std::floor(x)); }
 
@@ -32,8 +32,7 @@ void widen(std::array<Imath::V2d, 3>& x) {
         if (edge(i).length2() > edge(longest).length2()) longest = i;
     const Imath::V2d along = edge(longest).normalized();
     const double height = doubled_area(x) / edge(longest).length();
-    if (std::abs(height) < least_height)
-        x[(longest + 2) % 3] += Imath::V2d(-along.y, along.x) * (least_height - height);
+    if (std::abs(height) < min_height) x[(longest + 2) % 3] += Imath::V2d(-along.y, along.x) * (min_height - height);
 }
 
 }  // namespace
@@ -132,7 +131,7 @@ RgbD TextureIntegral::mean_of_wide(std::array<V2d, 3> x) const {
         const V2d edge = x[(i + 1) % 3] - x[i];
         crossings += std::abs(edge.x) + std::abs(edge.y);
     }
-    if (crossings > most_crossings) return mean_;
+    if (crossings > max_crossings) return mean_;
     widen(x);
     const std::int64_t origin = floor_of(x[0].x);
     RgbD sum(0, 0, 0);

@@ -16,7 +16,7 @@ namespace {
 using Imath::V3d;
 
 /// Minimum sine of the turn at a corner.
-constexpr double least_turn = 0.1;
+constexpr double min_turn = 0.1;
 constexpr double coordinate_tolerance = 1e-4;
 
 struct Edge {
@@ -99,7 +99,7 @@ class PairFinder {
         const V3d normal = (c - a).cross(d - a).normalized();
         if (!is_planar(scene_, face)) return false;
         const auto turns = [&](const V3d& in, const V3d& out) {
-            return in.cross(out).dot(normal) > least_turn * in.length() * out.length();
+            return in.cross(out).dot(normal) > min_turn * in.length() * out.length();
         };
         return turns(a - d, b - a) && turns(b - a, c - b) && turns(c - b, d - c) && turns(d - c, a - d);
     }

@@ -129,11 +129,11 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, std::s
     return sink.release();
 }
 
-Image read_exr(const std::filesystem::path& path, std::int64_t most_pixels) {
+Image read_exr(const std::filesystem::path& path, std::int64_t max_pixels) {
     Imf::InputFile file(path.c_str());
     const Imath::Box2i window = file.header().dataWindow();
     require_allowed_size(std::int64_t{window.max.x} - window.min.x + 1, std::int64_t{window.max.y} - window.min.y + 1,
-                         most_pixels);
+                         max_pixels);
     require_channels(file.header().channels());
     Image image(window.max.x - window.min.x + 1, window.max.y - window.min.y + 1);
     file.setFrameBuffer(frame_buffer(image, window));

@@ -8,7 +8,7 @@ namespace interflect::detail {
 namespace {
 
 constexpr double ignored_value_share = 0.005;  // at each end
-constexpr float most_ratio = 1e6f;
+constexpr float max_ratio = 1e6f;
 
 /// Oklab [Ottosson 2020] to linear Rec. 709.
 Rgb rgb_of_oklab(const V3f& lab) {
@@ -44,7 +44,7 @@ ColourScale fit_scale(std::vector<float> values, Spacing spacing) {
     std::sort(values.begin(), values.end());
     if (!logarithmic) return {std::min(0.0f, values.front()), values.back() > 0 ? values.back() : 1, spacing};
     const auto ignored = static_cast<std::size_t>(ignored_value_share * static_cast<double>(values.size()));
-    const float high = values[values.size() - 1 - ignored], low = std::max(values[ignored], high / most_ratio);
+    const float high = values[values.size() - 1 - ignored], low = std::max(values[ignored], high / max_ratio);
     return low < high ? ColourScale{low, high, spacing} : ColourScale{high / 10, high, spacing};
 }
 

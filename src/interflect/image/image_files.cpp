@@ -66,18 +66,18 @@ std::string encode(ImageFormat format, const Image& image, const ImageMetadata& 
     return codecs::encode_exr(image, metadata, layers);
 }
 
-Image read_as(ImageFormat format, const fs::path& path, std::int64_t most_pixels) {
+Image read_as(ImageFormat format, const fs::path& path, std::int64_t max_pixels) {
     switch (format) {
         case ImageFormat::png:
-            return codecs::decode_png(read_bytes(path), most_pixels);
+            return codecs::decode_png(read_bytes(path), max_pixels);
         case ImageFormat::jpeg:
             throw std::runtime_error("JPEG loses detail and is only written, expected .png .exr .hdr");
         case ImageFormat::hdr:
-            return codecs::decode_radiance(read_bytes(path), most_pixels);
+            return codecs::decode_radiance(read_bytes(path), max_pixels);
         case ImageFormat::exr:
             break;
     }
-    return codecs::read_exr(path, most_pixels);
+    return codecs::read_exr(path, max_pixels);
 }
 
 /// Errors name the file.
@@ -97,10 +97,10 @@ auto read_with(const fs::path& path, const Read& read) {
 
 }  // namespace
 
-void codecs::require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t most_pixels) {
-    if (width < 1 || height < 1 || width > most_pixels / height)
+void codecs::require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t max_pixels) {
+    if (width < 1 || height < 1 || width > max_pixels / height)
         throw std::runtime_error(
-            fmt::format("claims to have {} x {} pixels, expected 1 to {} in all", width, height, most_pixels));
+            fmt::format("claims to have {} x {} pixels, expected 1 to {} in all", width, height, max_pixels));
 }
 
 ImageFormat require_image_format(const fs::path& path) {
@@ -131,15 +131,14 @@ void detail::write_image(PendingFile& file, const Image& image, const ImageMetad
     file.commit();
 }
 
-Image read_image(const fs::path& path, std::int64_t most_pixels) {
-    return read_with(path,
-                     [=](ImageFormat format, const fs::path& file) { return read_as(format, file, most_pixels); });
+Image read_image(const fs::path& path, std::int64_t max_pixels) {
+    return read_with(path, [=](ImageFormat format, const fs::path& file) { return read_as(format, file, max_pixels); });
 }
 
-Image detail::read_photograph(const fs::path& path, std::int64_t most_pixels) {
+Image detail::read_photograph(const fs::path& path, std::int64_t max_pixels) {
     return read_with(path, [=](ImageFormat format, const fs::path& file) {
-        return format == ImageFormat::jpeg ? codecs::decode_jpeg(read_bytes(file), most_pixels)
-                                           : read_as(format, file, most_pixels);
+        return format == ImageFormat::jpeg ? codecs::decode_jpeg(read_bytes(file), max_pixels)
+                                           : read_as(format, file, max_pixels);
     });
 }
 

@@ -176,13 +176,13 @@ void place_labels(const Contour& contour, float level, int dot, const Image& ima
     Label label{.text = fmt::format("{:.4g}", level)};
     label.width = text_width(label.text, dot) + 2 * label_margin * dot;
     label.height = (text_height + 2 * label_margin) * dot;
-    const float least_length = 3 * static_cast<float>(label.width);
+    const float min_length = 3 * static_cast<float>(label.width);
     std::vector<Segment> places = contour.segments();
     const auto off_centre = [&](const Segment& s) { return std::abs(s.a.y - static_cast<float>(image.height) / 2); };
     std::stable_sort(places.begin(), places.end(),
                      [&](const Segment& s, const Segment& t) { return off_centre(s) < off_centre(t); });
     for (const Segment& segment : places) {
-        if (contour.length(segment) < least_length) continue;
+        if (contour.length(segment) < min_length) continue;
         label.left = static_cast<int>(segment.a.x) - label.width / 2;
         label.top = static_cast<int>(segment.a.y) - label.height / 2;
         const bool fits = label.left >= 0 && label.top >= 0 && label.left + label.width <= image.width &&

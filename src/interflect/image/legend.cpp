@@ -16,7 +16,7 @@ namespace {
 /// Offsets from the legend's top [dots].
 constexpr int margin = 6, title_top = 5, strip_top = 17, strip_bottom = 27, tick_bottom = 30, numbers_top = 32,
               legend_bottom = 43;
-constexpr int least_values = 3;
+constexpr int min_values = 3;
 /// [dots]
 constexpr int number_width = 64, number_gap = 8;
 
@@ -72,7 +72,7 @@ void draw_strip(Image& image, int top, int dot) {
 void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
     const int left = margin * dot, length = strip_length(image, dot);
     int free_from = left;
-    for (const float value : round_values(scale, std::max(least_values, length / (number_width * dot)))) {
+    for (const float value : round_values(scale, std::max(min_values, length / (number_width * dot)))) {
         const int x = left + static_cast<int>(scale.position(value) * static_cast<float>(length - dot));
         fill(image, x, top + strip_bottom * dot, x + dot, top + tick_bottom * dot, ink);
         const std::string number = fmt::format("{:.6g}", value);
@@ -88,7 +88,7 @@ void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
 
 std::vector<float> round_values(const ColourScale& scale, int most) {
     require_valid(scale);
-    if (most < least_values) throw InputError(fmt::format("{} round values: expected 3 or more", most));
+    if (most < min_values) throw InputError(fmt::format("{} round values: expected 3 or more", most));
     const auto fits = [&](const std::vector<float>& values) { return static_cast<int>(values.size()) <= most; };
     if (scale.spacing == Spacing::logarithmic && scale.high >= 10 * scale.low) {
         std::vector<float> values = multiples_of_powers(scale, {1, 2, 5}, 1);
@@ -106,7 +106,7 @@ int legend_height(int width) { return legend_bottom * dot_size(width); }
 bool legend_fits(int width, int height, const std::string& title) {
     require_printable(title);
     const int dot = dot_size(width), room = width - 2 * margin * dot;
-    return room >= text_width(title, dot) && room >= least_values * number_width * dot &&
+    return room >= text_width(title, dot) && room >= min_values * number_width * dot &&
            legend_height(width) <= height / 2;
 }
 
@@ -115,9 +115,9 @@ Image with_legend(const Image& picture, const ColourScale& scale, const std::str
     require_valid(scale);
     const int top = picture.height, dot = dot_size(picture.width);
     const std::int64_t height = std::int64_t{top} + legend_height(picture.width);
-    if (picture.width > most_image_pixels / height)
+    if (picture.width > max_image_pixels / height)
         throw InputError(fmt::format("a picture of {} x {} pixels with its legend: expected at most {} pixels in all",
-                                     picture.width, height, most_image_pixels));
+                                     picture.width, height, max_image_pixels));
     require_pixels(picture);
     Image image(picture.width, static_cast<int>(height), paper);
     std::copy(picture.pixels.begin(), picture.pixels.end(), image.pixels.begin());

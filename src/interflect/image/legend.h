@@ -11,7 +11,7 @@ namespace interflect::detail {
 /// Adds a title and a colour strip below a picture; clips parts without room.
 /// @param picture  Tone-mapped, linear Rec. 709 in [0, 1].
 /// @param title    Printable ASCII.
-/// @throws InputError for more than most_image_pixels or an invalid title or scale.
+/// @throws InputError for more than max_image_pixels or an invalid title or scale.
 Image with_legend(const Image& picture, const ColourScale& scale, const std::string& title);
 
 /// [pixels]

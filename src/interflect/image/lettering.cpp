@@ -28,8 +28,8 @@ void write_text(Image& image, int left, int top, std::string text, int dot) {
         std::array<unsigned char, 4> colour;
     };
     using Rectangle = std::array<Vertex, 4>;  // clockwise from the top left
-    constexpr std::size_t most_a_letter = 24;
-    std::vector<Rectangle> rectangles(most_a_letter * text.size());
+    constexpr std::size_t max_per_letter = 24;
+    std::vector<Rectangle> rectangles(max_per_letter * text.size());
     const int count = stb_easy_font_print(0, 0, text.data(), nullptr, rectangles.data(),
                                           static_cast<int>(rectangles.size() * sizeof(Rectangle)));
     rectangles.resize(static_cast<std::size_t>(count));

@@ -5,6 +5,6 @@
 namespace interflect::detail {
 
 /// As read_image(), but also JPEG, which is too lossy for measurements.
-Image read_photograph(const std::filesystem::path& path, std::int64_t most_pixels);
+Image read_photograph(const std::filesystem::path& path, std::int64_t max_pixels);
 
 }  // namespace interflect::detail

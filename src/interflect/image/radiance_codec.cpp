@@ -18,10 +18,10 @@ using Rgbe = std::array<std::uint8_t, 4>;
 
 constexpr int exponent_bias = 128, mantissa_bits = 8;
 /// Widths for run-length encoding; other scanlines are flat.
-constexpr int least_encoded_width = 8, most_encoded_width = 0x7fff;
+constexpr int min_encoded_width = 8, max_encoded_width = 0x7fff;
 /// Larger length bytes repeat the next byte (length - longest_literal) times.
 constexpr int longest_literal = 128, longest_run = 127;
-constexpr int least_run = 4;
+constexpr int min_run = 4;
 
 constexpr float largest_value = 0x1p126f;
 
@@ -63,14 +63,14 @@ void append_encoded(const std::vector<Rgbe>& line, int component, std::string& f
     const int width = static_cast<int>(line.size());
     for (int x = 0; x < width;) {
         const int run = run_length(line, component, x);
-        if (run >= least_run) {
+        if (run >= min_run) {
             file.push_back(static_cast<char>(longest_literal + run));
             file.push_back(static_cast<char>(line[x][component]));
             x += run;
             continue;
         }
         const int start = x;
-        while (x < width && x - start < longest_literal && run_length(line, component, x) < least_run) ++x;
+        while (x < width && x - start < longest_literal && run_length(line, component, x) < min_run) ++x;
         file.push_back(static_cast<char>(x - start));
         for (int i = start; i < x; ++i) file.push_back(static_cast<char>(line[i][component]));
     }
@@ -173,7 +173,7 @@ void read_encoded_line(RadianceReader& reader, std::vector<Rgbe>& line) {
 
 std::string encode_radiance(const Image& image) {
     std::string file = fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
-    const bool encoded = image.width >= least_encoded_width && image.width <= most_encoded_width;
+    const bool encoded = image.width >= min_encoded_width && image.width <= max_encoded_width;
     std::vector<Rgbe> line(image.width);
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) line[x] = to_rgbe(image.at(x, y));
@@ -188,14 +188,14 @@ std::string encode_radiance(const Image& image) {
     return file;
 }
 
-Image decode_radiance(std::string_view bytes, std::int64_t most_pixels) {
+Image decode_radiance(std::string_view bytes, std::int64_t max_pixels) {
     RadianceReader reader(bytes);
     read_header(reader);
     const Size size = parse_resolution(reader.line());
-    require_allowed_size(size.width, size.height, most_pixels);
+    require_allowed_size(size.width, size.height, max_pixels);
     // Eight bytes for at most 127 pixels.
-    const std::int64_t least_bytes = std::int64_t{size.width} * size.height / 16;
-    if (static_cast<std::int64_t>(reader.bytes_left()) < least_bytes) throw std::runtime_error("it ends too early");
+    const std::int64_t min_bytes = std::int64_t{size.width} * size.height / 16;
+    if (static_cast<std::int64_t>(reader.bytes_left()) < min_bytes) throw std::runtime_error("it ends too early");
 
     Image image(size.width, size.height);
     std::vector<Rgbe> line(size.width);

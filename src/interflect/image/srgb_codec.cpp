@@ -49,11 +49,11 @@ void append(void* text, void* data, int size) {
 
 std::string encode_png(const Image& image, std::span<const float> opacity) {
     const int all_channels = opacity.empty() ? channels : channels + 1;
-    if (png_bytes(image.width, image.height, all_channels) > most_png_bytes)
+    if (png_bytes(image.width, image.height, all_channels) > max_png_bytes)
         throw InputError(
             fmt::format("{} x {} pixels are too many for a PNG, which may have {} MiB before compression: "
                         "expected fewer, or .exr or .hdr",
-                        image.width, image.height, most_png_bytes >> 20));
+                        image.width, image.height, max_png_bytes >> 20));
     std::string file;
     if (!stbi_write_png_to_func(append, &file, image.width, image.height, all_channels,
                                 srgb_bytes(image, opacity).data(), all_channels * image.width))
@@ -71,12 +71,12 @@ std::string encode_jpeg(const Image& image) {
     return file;
 }
 
-Image decode_png(std::string_view bytes, std::int64_t most_pixels) {
-    return linear_image(decode_stored_png(bytes, most_pixels));
+Image decode_png(std::string_view bytes, std::int64_t max_pixels) {
+    return linear_image(decode_stored_png(bytes, max_pixels));
 }
 
-Image decode_jpeg(std::string_view bytes, std::int64_t most_pixels) {
-    return linear_image(decode_stored_image(bytes, most_pixels));
+Image decode_jpeg(std::string_view bytes, std::int64_t max_pixels) {
+    return linear_image(decode_stored_image(bytes, max_pixels));
 }
 
 }  // namespace interflect::detail::codecs

@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t most_chunk_bytes = std::size_t{1} << 24;  // of unused text and profiles
+constexpr std::size_t max_chunk_bytes = std::size_t{1} << 24;  // of unused text and profiles
 
 struct FreePng {
     void operator()(spng_ctx* context) const { spng_ctx_free(context); }
@@ -31,7 +31,7 @@ void require_png(int error) {
     throw std::runtime_error(fmt::format("it is no usable PNG ({})", spng_strerror(error)));
 }
 
-StoredImage decode_jpeg(std::string_view bytes, std::int64_t most_pixels) {
+StoredImage decode_jpeg(std::string_view bytes, std::int64_t max_pixels) {
     const std::unique_ptr<void, FreeJpeg> decoder(tjInitDecompress());
     if (!decoder) throw std::runtime_error("no JPEG decoder can be made: out of memory");
     const auto require = [&](int status) {
@@ -44,7 +44,7 @@ StoredImage decode_jpeg(std::string_view bytes, std::int64_t most_pixels) {
     int subsampling = 0, colour_space = 0;
     require(tjDecompressHeader3(decoder.get(), data, bytes.size(), &image.width, &image.height, &subsampling,
                                 &colour_space));
-    codecs::require_allowed_size(image.width, image.height, most_pixels);
+    codecs::require_allowed_size(image.width, image.height, max_pixels);
     std::vector<std::uint8_t> narrow(image.pixel_count() * StoredImage::channels);
     // Rejects progressive files that would take hours.
     require(tjDecompress2(decoder.get(), data, bytes.size(), narrow.data(), image.width, 0, image.height, TJPF_RGBA,
@@ -56,14 +56,14 @@ StoredImage decode_jpeg(std::string_view bytes, std::int64_t most_pixels) {
 
 }  // namespace
 
-StoredImage decode_stored_png(std::string_view bytes, std::int64_t most_pixels) {
+StoredImage decode_stored_png(std::string_view bytes, std::int64_t max_pixels) {
     const std::unique_ptr<spng_ctx, FreePng> context(spng_ctx_new(0));
     if (!context) throw std::runtime_error("no PNG decoder can be made: out of memory");
-    require_png(spng_set_chunk_limits(context.get(), most_chunk_bytes, most_chunk_bytes));
+    require_png(spng_set_chunk_limits(context.get(), max_chunk_bytes, max_chunk_bytes));
     require_png(spng_set_png_buffer(context.get(), bytes.data(), bytes.size()));
     spng_ihdr header{};
     require_png(spng_get_ihdr(context.get(), &header));
-    codecs::require_allowed_size(header.width, header.height, most_pixels);
+    codecs::require_allowed_size(header.width, header.height, max_pixels);
     StoredImage image;
     image.width = static_cast<int>(header.width);
     image.height = static_cast<int>(header.height);
@@ -76,9 +76,9 @@ StoredImage decode_stored_png(std::string_view bytes, std::int64_t most_pixels) 
     return image;
 }
 
-StoredImage decode_stored_image(std::string_view bytes, std::int64_t most_pixels) {
-    if (bytes.starts_with("\x89PNG")) return decode_stored_png(bytes, most_pixels);
-    if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes, most_pixels);
+StoredImage decode_stored_image(std::string_view bytes, std::int64_t max_pixels) {
+    if (bytes.starts_with("\x89PNG")) return decode_stored_png(bytes, max_pixels);
+    if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes, max_pixels);
     throw std::runtime_error("it begins neither as a PNG nor as a JPEG does");
 }
 

@@ -22,9 +22,9 @@ struct StoredImage {
 };
 
 /// @throws std::runtime_error if the data is no PNG, truncated, damaged or too large.
-StoredImage decode_stored_png(std::string_view bytes, std::int64_t most_pixels);
+StoredImage decode_stored_png(std::string_view bytes, std::int64_t max_pixels);
 
 /// @throws as decode_stored_png().
-StoredImage decode_stored_image(std::string_view bytes, std::int64_t most_pixels);
+StoredImage decode_stored_image(std::string_view bytes, std::int64_t max_pixels);
 
 }  // namespace interflect::detail

@@ -60,13 +60,13 @@ std::array<BoxSide, 6> sides_of(const V3f& low, const V3f& size) {
     return sides;
 }
 
-float least_channel(const Rgb& c) { return std::min({c.x, c.y, c.z}); }
+float min_channel(const Rgb& c) { return std::min({c.x, c.y, c.z}); }
 /// Grey part of a map (least channel), and the excess of each channel over it.
 constexpr std::array<SkyComponent, 4> map_components = {
-    {{Rgb(1, 1, 1), least_channel},
-     {Rgb(1, 0, 0), [](const Rgb& c) { return c.x - least_channel(c); }},
-     {Rgb(0, 1, 0), [](const Rgb& c) { return c.y - least_channel(c); }},
-     {Rgb(0, 0, 1), [](const Rgb& c) { return c.z - least_channel(c); }}}};
+    {{Rgb(1, 1, 1), min_channel},
+     {Rgb(1, 0, 0), [](const Rgb& c) { return c.x - min_channel(c); }},
+     {Rgb(0, 1, 0), [](const Rgb& c) { return c.y - min_channel(c); }},
+     {Rgb(0, 0, 1), [](const Rgb& c) { return c.z - min_channel(c); }}}};
 
 DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<const Rgb> integrals,
                          const SkyComponent& component, const V3f& normal) {

@@ -19,11 +19,11 @@ double invert_linear(double a, double b, double share) {
 
 /// Returns t in [t0, t1] [rad] where the integral of sin t times a linear function from a to b reaches `target`.
 double invert_band(double t0, double t1, double a, double b, double target) {
-    constexpr int most_steps = 24;
+    constexpr int max_steps = 24;
     constexpr double precision = 1e-9;  // [radians]
     const double slope = (b - a) / (t1 - t0);
     double low = t0, high = t1, t = (t0 + t1) / 2;
-    for (int i = 0; i < most_steps; ++i) {
+    for (int i = 0; i < max_steps; ++i) {
         const double value = a + slope * (t - t0);
         const double excess = a * std::cos(t0) - value * std::cos(t) + slope * (std::sin(t) - std::sin(t0)) - target;
         (excess > 0 ? high : low) = t;

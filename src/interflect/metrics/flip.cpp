@@ -22,7 +22,7 @@ namespace {
 using Imath::M33d;
 using Imath::V3d;
 
-constexpr double most_pixels_per_degree = 1000;  // eight times the resolution of the eye
+constexpr double max_pixels_per_degree = 1000;  // eight times the resolution of the eye
 
 // --- Colour spaces
 
@@ -102,8 +102,8 @@ void add_scaled(std::span<float> sum, float factor, const float* values) {
 
 template <class Body>
 void for_each_row(int height, const Body& body) {
-    constexpr std::size_t rows_at_once = 16;
-    parallel_for_ranges(static_cast<std::size_t>(height), rows_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t rows_per_task = 16;
+    parallel_for_ranges(static_cast<std::size_t>(height), rows_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t y = begin; y < end; ++y) body(static_cast<int>(y));
     });
 }
@@ -247,9 +247,9 @@ double feature_difference(const Features& a, const Features& b, std::size_t pixe
 Image flip_map(const Image& image, const Image& reference, const FlipOptions& options) {
     require_same_size(image, reference);
     const double pixels_per_degree = options.pixels_per_degree;
-    if (!(pixels_per_degree > 0 && pixels_per_degree <= most_pixels_per_degree))
+    if (!(pixels_per_degree > 0 && pixels_per_degree <= max_pixels_per_degree))
         throw InputError(fmt::format("{} pixels per degree: expected above 0, at most {}", pixels_per_degree,
-                                     most_pixels_per_degree));
+                                     max_pixels_per_degree));
     const Opponent a = opponent_colours(image), b = opponent_colours(reference);
     const Features features_a = find_features(a[0], pixels_per_degree);
     const Features features_b = find_features(b[0], pixels_per_degree);

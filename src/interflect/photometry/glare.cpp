@@ -128,7 +128,7 @@ class SourcePlaces {
 Rgb transmittance_to(const Place& place, Ray ray, Hit hit, const Panes& panes, const RayCaster& ray_caster) {
     Rgb transmittance(1);
     float left = place.distance;
-    for (int passed = 0; passed <= Panes::most_in_a_row; ++passed) {
+    for (int passed = 0; passed <= Panes::max_consecutive_panes; ++passed) {
         if (hit.patch == place.patch || (place.patch == none && hit.distance > left)) return transmittance;
         transmittance *= panes.transmittance(ray, hit);
         if (!(largest_channel(transmittance) > 0)) return Rgb(0);

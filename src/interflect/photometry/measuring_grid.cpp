@@ -28,9 +28,9 @@ void require_valid(const GridOptions& options) {
 
 int cell_count(double side, double spacing, const std::string& name) {
     const double count = std::max(1.0, std::ceil(side / spacing * (1 - rounding)));
-    if (count > static_cast<double>(most_measuring_points))
-        throw InputError(fmt::format("'{}': {:.3g} measuring points a row, expected at most {}", name, count,
-                                     most_measuring_points));
+    if (count > static_cast<double>(max_measuring_points))
+        throw InputError(
+            fmt::format("'{}': {:.3g} measuring points a row, expected at most {}", name, count, max_measuring_points));
     return static_cast<int>(count);
 }
 
@@ -55,9 +55,9 @@ MeasuringGrid area_grid(const Scene& scene, const PlanarArea& area, const GridOp
     MeasuringGrid grid{.name = area.name, .normal = area.normal};
     grid.columns = cell_count(sides.x, spacing, area.name);
     grid.rows = cell_count(sides.y, spacing, area.name);
-    if (static_cast<double>(grid.columns) * grid.rows > static_cast<double>(most_measuring_points))
+    if (static_cast<double>(grid.columns) * grid.rows > static_cast<double>(max_measuring_points))
         throw InputError(fmt::format("'{}': {} x {} measuring points, expected at most {}", area.name, grid.columns,
-                                     grid.rows, most_measuring_points));
+                                     grid.rows, max_measuring_points));
     grid.column_spacing = sides.x / grid.columns;
     grid.row_spacing = sides.y / grid.rows;
     grid.along_row = outline.u;
@@ -87,8 +87,8 @@ MeasuringGrid area_grid(const Scene& scene, const PlanarArea& area, const GridOp
 }
 
 MeasuringGrid line_grid(const Imath::V3d& a, const Imath::V3d& b, int count) {
-    if (count < 2 || static_cast<std::size_t>(count) > most_measuring_points)
-        throw InputError(fmt::format("a line of {} points: expected 2 to {}", count, most_measuring_points));
+    if (count < 2 || static_cast<std::size_t>(count) > max_measuring_points)
+        throw InputError(fmt::format("a line of {} points: expected 2 to {}", count, max_measuring_points));
     if (!((b - a).length() > 0)) throw InputError("a line whose ends are one point: expected two");
     MeasuringGrid grid{.name = "line"};
     grid.column_spacing = (b - a).length() / (count - 1);

@@ -28,13 +28,13 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 /// Lists the most similar names. "top" also finds "desk.top".
 inline std::string text_of_nearest(const std::string& name, std::span<const std::string> names) {
-    constexpr std::size_t most_told = 5, most_compared = 10'000;
+    constexpr std::size_t max_reported = 5, max_compared = 10'000;
     struct Candidate {
         std::size_t distance;
         std::string_view name;
     };
     std::vector<Candidate> candidates;
-    for (const std::string& n : names.first(std::min(names.size(), most_compared))) {
+    for (const std::string& n : names.first(std::min(names.size(), max_compared))) {
         if (n.empty()) continue;
         std::size_t distance = edit_distance(name, n);
         for (std::size_t dot = n.find('.'); dot != n.npos; dot = n.find('.', dot + 1))
@@ -45,9 +45,9 @@ inline std::string text_of_nearest(const std::string& name, std::span<const std:
     std::stable_sort(candidates.begin(), candidates.end(),
                      [](const Candidate& a, const Candidate& b) { return a.distance < b.distance; });
     std::string text = "expected one of";
-    for (std::size_t i = 0; i < std::min(candidates.size(), most_told); ++i)
+    for (std::size_t i = 0; i < std::min(candidates.size(), max_reported); ++i)
         text.append(i > 0 ? ", '" : " '").append(candidates[i].name).append("'");
-    return candidates.size() > most_told ? text + ", ..." : text;
+    return candidates.size() > max_reported ? text + ", ..." : text;
 }
 
 }  // namespace interflect::detail

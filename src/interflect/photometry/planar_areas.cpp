@@ -24,7 +24,7 @@ constexpr float same_plane_cosine = 0.9999f;
 /// Relative to the extent of all faces.
 constexpr double same_plane_distance = 1e-4;
 /// Objects with more planes are curved.
-constexpr std::size_t most_planes = 256;
+constexpr std::size_t max_planes = 256;
 /// Relative difference.
 constexpr double equal_areas = 0.01;
 /// Cosine of 10 degrees.
@@ -88,7 +88,7 @@ std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<std::uint32_t>
                    std::abs(static_cast<double>(planes[plane].normal.dot(centre - on_plane[plane]))) < tolerance;
         };
         while (p < planes.size() && !holds(p)) ++p;
-        if (p == most_planes) continue;
+        if (p == max_planes) continue;
         if (p == planes.size()) {
             planes.push_back({name, normal, {}, 0});
             on_plane.push_back(centre);
@@ -112,12 +112,12 @@ std::string text_of_direction(const V3f& direction) {
 }
 
 std::string text_of_directions(const std::vector<PlanarArea>& planes) {
-    constexpr std::size_t most_told = 6;
+    constexpr std::size_t max_reported = 6;
     std::string text;
-    for (std::size_t i = 0; i < std::min(planes.size(), most_told); ++i) {
+    for (std::size_t i = 0; i < std::min(planes.size(), max_reported); ++i) {
         text += (i > 0 ? "; " : "") + text_of_direction(planes[i].normal);
     }
-    return planes.size() > most_told ? text + "; ..." : text;
+    return planes.size() > max_reported ? text + "; ..." : text;
 }
 
 }  // namespace

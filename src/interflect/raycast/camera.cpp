@@ -28,10 +28,10 @@ Camera::Camera(const View& view, int width, int height, const V3d& origin)
     : is_orthographic_(view.extent > 0), eye_(view.eye - origin) {
     if (const std::string fault = view_fault(view); !fault.empty())
         throw InputError(fmt::format("view '{}': {}", view.name, fault));
-    if (width < 1 || height < 1 || width > most_image_pixels / height)
+    if (width < 1 || height < 1 || width > max_image_pixels / height)
         throw InputError(
             fmt::format("a picture of {} x {} pixels: expected 1 x 1 or more, and at most {} pixels in all", width,
-                        height, most_image_pixels));
+                        height, max_image_pixels));
 
     const V3d forward = (view.look_at - view.eye).normalized();
     const V3d right = forward.cross(V3d(view.up).normalized()).normalized(), up = right.cross(forward);

@@ -10,7 +10,7 @@ class Camera {
   public:
     /// @param origin  Scene::origin; rays are relative to it.
     /// @throws InputError for a view_fault(), pixels below 2^-22 rad or the resolution of coordinates, and sizes
-    ///     outside 1 ... most_image_pixels.
+    ///     outside 1 ... max_image_pixels.
     Camera(const View& view, int width, int height, const Imath::V3d& origin);
 
     /// @param x, y  From the top left corner [pixels].

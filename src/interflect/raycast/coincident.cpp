@@ -98,8 +98,8 @@ void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::u
     std::vector<KeyedFace> faces;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
         if (is_face(scene, i)) faces.push_back({0, rank[i], i});
-    constexpr std::size_t faces_at_once = 4096;
-    parallel_for_ranges(faces.size(), faces_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t faces_per_task = 4096;
+    parallel_for_ranges(faces.size(), faces_per_task, [&](std::size_t begin, std::size_t end) {
         for (KeyedFace& face : std::span(faces).subspan(begin, end - begin))
             face.key = corners_key(scene, scene.patches[face.face]);
     });
@@ -179,8 +179,8 @@ void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const floa
             sides.push_back({i, 0});
             if (scene.patches[i].other_side != none) sides.push_back({scene.patches[i].other_side, 0});
         }
-    constexpr std::size_t sides_at_once = 16;
-    parallel_for_ranges(sides.size(), sides_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t sides_per_task = 16;
+    parallel_for_ranges(sides.size(), sides_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> others;
         for (auto& [patch, share] : std::span(sides).subspan(begin, end - begin)) {
             const std::uint32_t face = std::min(patch, scene.patches[patch].other_side);

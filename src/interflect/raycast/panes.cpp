@@ -41,7 +41,7 @@ void Panes::trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vec
     };
     for (std::uint32_t i = 0; i < rays.size(); ++i) pass(i, Rgb(1), hits[i]);
     std::vector<Hit> found;
-    for (int round = 0; round < most_in_a_row && !passing.empty(); ++round) {
+    for (int round = 0; round < max_consecutive_panes && !passing.empty(); ++round) {
         found.resize(rest.size());
         ray_caster_.trace(rest, found);
         for (std::size_t k = 0; k < passing.size(); ++k) {

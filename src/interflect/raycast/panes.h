@@ -30,7 +30,7 @@ class Panes {
     /// Finds all hits behind panes, sorted by ray, then depth.
     void trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vector<HitBehind>& behind) const;
 
-    static constexpr int most_in_a_row = 32;
+    static constexpr int max_consecutive_panes = 32;
 
   private:
     const Scene& scene_;

@@ -18,7 +18,7 @@ namespace {
 constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2, mean_radius = 3;  // [pixels]
 /// k^2 of Rousselle et al. 2012.
 constexpr float noise_share = 0.45f * 0.45f;
-constexpr float least_albedo = 0.01f;
+constexpr float min_albedo = 0.01f;
 constexpr float normal_scale = 0.1f;  // about 18 degrees
 constexpr float plane_scale = 1.5f;   // relative to the pixel spacing
 
@@ -55,7 +55,7 @@ std::vector<float> box_mean(const std::vector<float>& values, int width, int hei
 }
 
 Rgb floored(const Rgb& albedo) {
-    return {std::max(albedo.x, least_albedo), std::max(albedo.y, least_albedo), std::max(albedo.z, least_albedo)};
+    return {std::max(albedo.x, min_albedo), std::max(albedo.y, min_albedo), std::max(albedo.z, min_albedo)};
 }
 
 Field make_field(const Image& light, const std::vector<float>& variance, const Image& albedo) {

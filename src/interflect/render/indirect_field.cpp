@@ -17,18 +17,18 @@ namespace interflect::detail {
 namespace {
 
 /// Paths of a record come in groups, whose spread tells its error.
-constexpr std::size_t paths_per_group = 16, groups_of_first_round = 8, most_groups = 64, groups_per_tile = 128;
+constexpr std::size_t paths_per_group = 16, groups_of_first_round = 8, max_groups = 64, groups_per_tile = 128;
 /// Groups of a record: this many times the standard deviation of a group, relative to all irradiance there (in dark
 /// places, to a share of its mean), times the record's reach in spacings. With one factor for all records the squared
 /// error of the picture is least: a record's error counts for all pixels in its reach.
 constexpr float groups_per_deviation = 7, share_of_mean = 0.25f;
 /// Reach of a record: relative to the harmonic mean length of its rays, and its limits in spacings of the points. More
 /// records of fewer paths are better: with 0.35 and 512 paths, errors are 1.1 to 1.8 times as large.
-constexpr float reach_share = 0.15f, least_spacings = 4, most_spacings = 100;
+constexpr float reach_share = 0.15f, min_spacings = 4, max_spacings = 100;
 /// Sum of weights, at most 1 each, at a covered point.
 constexpr float covering_weight = 1.5f;
 constexpr std::size_t points_of_first_round = 256;  // each round doubles them
-constexpr std::size_t points_at_once = 1024, records_at_once = 64;
+constexpr std::size_t points_per_task = 1024, records_per_task = 64;
 
 V3f nearest_on(const Contact& contact, const V3f& x) {
     const V3f along = contact.b - contact.a;
@@ -53,7 +53,7 @@ void separate(std::span<const SurfacePoint> points, std::vector<SurfacePoint>& f
     first.clear(), others.clear();
     std::unordered_set<std::uint64_t> taken;
     for (const SurfacePoint& p : points) {
-        const V3f cell = p.position / (least_spacings * p.spacing);
+        const V3f cell = p.position / (min_spacings * p.spacing);
         std::uint64_t key = mix(std::uint64_t{0}, p.patch);
         for (int axis = 0; axis < 3; ++axis)
             key = mix(key, static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(cell[axis]))));
@@ -100,7 +100,7 @@ void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> 
 
 std::vector<SurfacePoint> IndirectField::uncovered_among(std::span<const SurfacePoint> points) const {
     std::vector<std::uint8_t> is_covered(points.size(), 0);
-    parallel_for_ranges(points.size(), points_at_once, [&](std::size_t first, std::size_t last) {
+    parallel_for_ranges(points.size(), points_per_task, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
             is_covered[i] = fit_at(points[i].position, points[i].normal, points[i].patch).weight() >= covering_weight;
     });
@@ -157,9 +157,9 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
     constexpr float paths = paths_per_group * groups_of_first_round;
     for (std::size_t i = 0; i < points.size(); ++i) {
         Record& r = records_[first + i];
-        const float most = most_spacings * points[i].spacing;
+        const float most = max_spacings * points[i].spacing;
         r.reach = r.nearness > 0 ? reach_share * paths / r.nearness : most;
-        r.reach = std::clamp(r.reach, least_spacings * points[i].spacing, most);
+        r.reach = std::clamp(r.reach, min_spacings * points[i].spacing, most);
         r.reach_in_spacings = r.reach / points[i].spacing;
         r.reach_elsewhere = distance_to_contact(r.position, r.reach);
         r.level = luminance(Rgb(r.gathered.mean));
@@ -179,14 +179,14 @@ void IndirectField::gather_more_where_noisy(const PathScene& scene, const std::a
     for (const Record& r : records_) sum += r.level;
     const float floor = share_of_mean * static_cast<float>(sum / static_cast<double>(records_.size()));
     std::vector<float> wanted(records_.size());
-    parallel_for_ranges(records_.size(), records_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(records_.size(), records_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Record& r = records_[i];
             const float deviation = std::sqrt(pooled_variance(r)) / std::max(floor, r.level);
             wanted[i] = groups_per_deviation * deviation * r.reach_in_spacings;
         }
     });
-    for (std::size_t groups = groups_of_first_round; groups < most_groups && !(stop && *stop); groups *= 2) {
+    for (std::size_t groups = groups_of_first_round; groups < max_groups && !(stop && *stop); groups *= 2) {
         std::vector<std::uint32_t> noisy;
         for (std::uint32_t i = 0; i < records_.size(); ++i)
             if (wanted[i] > static_cast<float>(groups)) noisy.push_back(i);
@@ -217,13 +217,13 @@ float IndirectField::distance_to_contact(const V3f& x, float most) const {
 }
 
 float IndirectField::Record::distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const {
-    constexpr float least_cosine = 0.97f;  // at the end of the reach: 14 degrees
-    constexpr float height_factor = 10;    // distances along the normal count more: parallel surfaces differ
+    constexpr float min_cosine = 0.97f;  // at the end of the reach: 14 degrees
+    constexpr float height_factor = 10;  // distances along the normal count more: parallel surfaces differ
     const float cosine = normal.dot(n);
-    if (cosine <= least_cosine) return 1;
+    if (cosine <= min_cosine) return 1;
     const V3f d = position - x;
     const float farthest = of_patch == patch ? reach : reach_elsewhere, height = height_factor * d.dot(n);
-    return (d.length2() + height * height) / (farthest * farthest) + (1 - cosine) / (1 - least_cosine);
+    return (d.length2() + height * height) / (farthest * farthest) + (1 - cosine) / (1 - min_cosine);
 }
 
 LocalFit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const {
@@ -242,9 +242,9 @@ LocalFit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch) 
 }
 
 std::optional<Rgb> IndirectField::at(const V3f& x, const V3f& n, std::uint32_t patch) const {
-    constexpr float least_weight = 0.1f;
+    constexpr float min_weight = 0.1f;
     const LocalFit fit = fit_at(x, n, patch);
-    if (!(fit.weight() > least_weight)) return std::nullopt;
+    if (!(fit.weight() > min_weight)) return std::nullopt;
     return fit.value();
 }
 

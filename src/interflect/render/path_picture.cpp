@@ -25,11 +25,11 @@ namespace interflect::detail {
 namespace {
 
 /// Minimum batches per pixel: 7 degrees of freedom for its standard error.
-constexpr int least_batches = 8;
+constexpr int min_batches = 8;
 /// Hybrid shading begins with fewer. Without a target, only pixels of a larger relative error get all.
 constexpr std::uint32_t first_hybrid_batches = 2;
 /// Each batch looks up its indirect and unoccluded light.
-constexpr std::size_t least_hybrid_batch = 2;
+constexpr std::size_t min_hybrid_batch = 2;
 /// Amortises the cost of a call.
 constexpr std::size_t paths_per_tile = 2048;
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
@@ -228,8 +228,8 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     ray_caster.require_made_for(scene);
     const TracedScene traced(scene, ray_caster, known);
     const bool is_hybrid = known && known->is_interpolated;
-    PathScene path_scene = traced.paths(start, options, TracedScene::batch_size(options.samples, least_batches));
-    if (is_hybrid) path_scene.batch_size = std::max(path_scene.batch_size, least_hybrid_batch);
+    PathScene path_scene = traced.paths(start, options, TracedScene::batch_size(options.samples, min_batches));
+    if (is_hybrid) path_scene.batch_size = std::max(path_scene.batch_size, min_hybrid_batch);
     std::optional<IndirectField> indirect_field;
     if (is_hybrid) {
         indirect_field.emplace(path_scene, first_points(path_scene, monitor.stop), monitor.stop);

@@ -120,9 +120,9 @@ void PathWavefront::advance_paths() {
 
 void PathWavefront::split_paths() {
     if (!s_.splits || shows_irradiance()) return;
-    constexpr int most_splits = Panes::most_in_a_row;
+    constexpr int max_splits = Panes::max_consecutive_panes;
     std::size_t first = 0;
-    for (int round = 0; round < most_splits && first < rays_.size(); ++round) {
+    for (int round = 0; round < max_splits && first < rays_.size(); ++round) {
         const std::size_t end = rays_.size();
         for (std::size_t i = first; i < end; ++i) {
             const Hit hit = hits_[i];
@@ -146,11 +146,11 @@ void PathWavefront::split_paths() {
 }
 
 void PathWavefront::add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance) {
-    constexpr float least_throughput = 1e-3f;  // further reflections in facing mirrors are invisible
+    constexpr float min_throughput = 1e-3f;  // further reflections in facing mirrors are invisible
     Path added = path;
     added.throughput *= share;
     added.sets_first_hit = path.sets_first_hit && largest_channel(reflectance) <= 0;
-    if (largest_channel(added.throughput) < least_throughput) return;
+    if (largest_channel(added.throughput) < min_throughput) return;
     rays_.push_back(ray);
     paths_.push_back(added);
 }
@@ -436,7 +436,7 @@ void PathWavefront::pass_panes() {
     std::vector<std::size_t> passing;
     std::vector<Ray> rest;
     std::vector<Hit> behind;
-    for (int round = 0; round < Panes::most_in_a_row; ++round) {
+    for (int round = 0; round < Panes::max_consecutive_panes; ++round) {
         passing.clear(), rest.clear();
         for (std::size_t i = 0; i < connections_.size(); ++i) {
             Connection& c = connections_[i];

@@ -82,8 +82,8 @@ class LightAround {
         IrradianceProbe probe;
         gather(rays, hits, probe);
         for (const Luminaire& luminaire : scene_.luminaires) add_luminaire(luminaire, x, probe);
-        constexpr float most_backs = 0.25f;
-        probe.is_inside = probe.coefficients[0] == Rgb(0) || share_of_backs(rays, hits) > most_backs;
+        constexpr float max_backs = 0.25f;
+        probe.is_inside = probe.coefficients[0] == Rgb(0) || share_of_backs(rays, hits) > max_backs;
         return probe;
     }
 
@@ -121,7 +121,7 @@ class LightAround {
 
     Rgb transmittance(Ray ray, float distance) const {
         Rgb through(1);
-        for (int panes = 0; panes < Panes::most_in_a_row; ++panes) {
+        for (int panes = 0; panes < Panes::max_consecutive_panes; ++panes) {
             Hit hit;
             ray_caster_.trace({&ray, 1}, {&hit, 1});
             if (hit.patch == none || hit.distance >= distance) return through;
@@ -178,9 +178,9 @@ ProbeGrid empty_grid(const Scene& scene, const ProbeOptions& options) {
         grid.step[k] = extent / count[k];
         grid.first[k] = scene.origin[k] + bounds.min[k] + grid.step[k] / 2;
     }
-    if (probes > most_probes)
+    if (probes > max_probes)
         throw InputError(fmt::format("probes: a spacing of {} m makes {:.3g} probes, more than {}", options.spacing,
-                                     probes, most_probes));
+                                     probes, max_probes));
     for (int k = 0; k < 3; ++k) grid.count[k] = static_cast<int>(count[k]);
     grid.probes.resize(static_cast<std::size_t>(probes));
     return grid;

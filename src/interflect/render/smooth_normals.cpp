@@ -114,11 +114,11 @@ SmoothNormals::Gradient SmoothNormals::gradient(const ElementForest& forest, std
 
 void SmoothNormals::apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const {
     std::vector<Gradient> gradients(curved_.size());
-    constexpr std::size_t patches_at_once = 256;
-    parallel_for_ranges(curved_.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t patches_per_task = 256;
+    parallel_for_ranges(curved_.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) gradients[i] = gradient(forest, irradiance, curved_[i]);
     });
-    parallel_for_ranges(curved_.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(curved_.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const CurvedPatch& curved = curved_[i];
             const bool is_triangle = forest.geometry(curved.patch).is_triangle();

@@ -25,7 +25,7 @@ namespace interflect::detail {
 namespace {
 
 /// Edges with more patches count as creases.
-constexpr std::size_t most_patches_at_an_edge = 64;
+constexpr std::size_t max_patches_at_an_edge = 64;
 
 /// Relative; eight float steps, above the rounding of a point on an edge.
 constexpr float weld_share = 0x1p-20f;
@@ -124,17 +124,17 @@ std::vector<PatchEdge> sorted_edges(const Scene& scene) {
 class CreaseTest {
   public:
     CreaseTest(const Scene& scene, float crease_angle)
-        : scene_(scene), normals_(patch_normals(scene)), least_cosine_(cosine_of(crease_angle)) {}
+        : scene_(scene), normals_(patch_normals(scene)), min_cosine_(cosine_of(crease_angle)) {}
 
     bool is_smooth(std::uint32_t p, std::uint32_t q) const {
-        return has_one_material(p, q) && normals_[p].dot(normals_[q]) >= least_cosine_;
+        return has_one_material(p, q) && normals_[p].dot(normals_[q]) >= min_cosine_;
     }
     /// Scene::normals decide if all corners of the edge have them.
     bool is_smooth(const PatchEdge& a, const PatchEdge& b) const {
         const Comparison start = compare_normals(a.start, b.end), end = compare_normals(a.end, b.start);
         if (start == Comparison::unknown || end == Comparison::unknown) return is_smooth(a.patch(), b.patch());
         return start == Comparison::equal && end == Comparison::equal && has_one_material(a.patch(), b.patch()) &&
-               normals_[a.patch()].dot(normals_[b.patch()]) >= least_cosine_of_smooth_;
+               normals_[a.patch()].dot(normals_[b.patch()]) >= min_cosine_of_smooth_;
     }
 
   private:
@@ -158,11 +158,11 @@ class CreaseTest {
 
     const Scene& scene_;
     const std::vector<V3f> normals_;
-    const float least_cosine_;
+    const float min_cosine_;
     // Readers round normals by 0.2 degrees.
     const float cosine_of_equal_ = cosine_of(1);
     // Some programs average normals across room corners.
-    const float least_cosine_of_smooth_ = cosine_of(60);
+    const float min_cosine_of_smooth_ = cosine_of(60);
 };
 
 SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
@@ -271,7 +271,7 @@ class ContactTree {
 };
 
 /// Relative; ignores gaps between consecutive walls.
-constexpr double least_seam_share = 1e-3;
+constexpr double min_seam_share = 1e-3;
 
 class SeamFinder {
   public:
@@ -315,7 +315,7 @@ class SeamFinder {
         const double b_start = line.along(start(b)), b_end = line.along(end(b));
         if (b_end >= b_start) return;
         const LineInterval shared{std::max(0.0, b_end), std::min(line.length(), b_start)};
-        const double least = std::max(2.0 * tolerance_, least_seam_share * std::min(line.length(), other.length()));
+        const double least = std::max(2.0 * tolerance_, min_seam_share * std::min(line.length(), other.length()));
         if (shared.to - shared.from <= least) return;
         for (const LineInterval& part : uncovered_parts(shared, contacts_.along(start(a), end(a)), least)) {
             const auto on_a = [&](double x) { return snapped(x / line.length(), line.length()); };
@@ -367,7 +367,7 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
     for (auto first = edges.begin(); first != edges.end();) {
         const auto last = std::find_if(first, edges.end(), [&](const PatchEdge& e) { return !e.same_place(*first); });
         const bool may_continue =
-            static_cast<std::size_t>(last - first) <= most_patches_at_an_edge && !std::any_of(first, last, has_contact);
+            static_cast<std::size_t>(last - first) <= max_patches_at_an_edge && !std::any_of(first, last, has_contact);
         if (may_continue)
             for (auto a = first; a != last; ++a)
                 for (auto b = a + 1; b != last; ++b)

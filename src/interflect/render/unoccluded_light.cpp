@@ -14,7 +14,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 /// Beyond this number, the sum would take longer than the shadow rays.
-constexpr std::size_t most_sources = 64;
+constexpr std::size_t max_sources = 64;
 
 /// Angle between unit vectors, times the component along n of their plane's unit normal.
 float edge_integral(const V3f& a, const V3f& b, const V3f& n) {
@@ -51,8 +51,8 @@ UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeomet
     }
     for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i)
         if (!is_sky(scene.luminaires[i])) luminaires_.push_back(i);
-    has_patches_ = is_uniform && patches_.size() <= most_sources;
-    has_luminaires_ = luminaires_.size() <= most_sources;
+    has_patches_ = is_uniform && patches_.size() <= max_sources;
+    has_luminaires_ = luminaires_.size() <= max_sources;
 }
 
 Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n, std::uint32_t own) const {

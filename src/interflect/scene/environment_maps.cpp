@@ -18,13 +18,13 @@ std::string sky_count_fault(const Scene& scene) {
     const auto count = std::count_if(scene.luminaires.begin(), scene.luminaires.end(), [](const Luminaire& l) {
         return is_sky(l) && !std::holds_alternative<UniformSky>(l.kind);
     });
-    if (count > std::ptrdiff_t{most_skies})
-        return fmt::format("has {} skies that are not uniform; expected at most {}", count, most_skies);
+    if (count > std::ptrdiff_t{max_skies})
+        return fmt::format("has {} skies that are not uniform; expected at most {}", count, max_skies);
     std::uint64_t texels = 0;
     for (const auto& image : environment_maps(scene)) texels += image ? image->texels.size() : 0;
-    if (texels > most_environment_texels)
+    if (texels > max_environment_texels)
         return fmt::format("has environment maps of {} texels together; expected at most {}", texels,
-                           most_environment_texels);
+                           max_environment_texels);
     return {};
 }
 

@@ -60,8 +60,8 @@ void require_names(const std::vector<LightGroup>& groups) {
 }
 
 void require_count(std::size_t groups) {
-    if (groups > most_light_groups)
-        throw InputError(fmt::format("{} light groups; at most {} are kept", groups, most_light_groups));
+    if (groups > max_light_groups)
+        throw InputError(fmt::format("{} light groups; at most {} are kept", groups, max_light_groups));
 }
 
 void scale(Luminaire& luminaire, float factor) {
@@ -149,11 +149,11 @@ std::vector<LightGroup> groups_by_name(const Scene& scene) {
     std::vector<LightGroup> groups;
     for (const std::string& name : chosen)
         if (!name.empty()) groups.push_back({name, name});
-    if (groups.size() > most_light_groups)
+    if (groups.size() > max_light_groups)
         throw InputError(
             fmt::format("the sources of light have {} names, at most {} light groups are kept: name the "
                         "groups, with patterns of what is in them",
-                        groups.size(), most_light_groups));
+                        groups.size(), max_light_groups));
     return groups;
 }
 

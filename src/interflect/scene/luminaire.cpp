@@ -51,8 +51,8 @@ std::string placement_fault(const SkyDome& sky) {
 std::string placement_fault(const EnvironmentMap& map) {
     for (const std::string& fault : {direction_fault(map.zenith), direction_fault(map.north)})
         if (!fault.empty()) return fault;
-    constexpr float least_sine = 1e-4f;
-    const bool is_frame = map.zenith.normalized().cross(map.north.normalized()).length() > least_sine;
+    constexpr float min_sine = 1e-4f;
+    const bool is_frame = map.zenith.normalized().cross(map.north.normalized()).length() > min_sine;
     return is_frame ? std::string() : std::string("has its north at the zenith");
 }
 std::string placement_fault(const SpotLight& light) {
@@ -65,11 +65,11 @@ std::string placement_fault(const SpotLight& light) {
     return fault.empty() ? direction_fault(light.direction) : fault;
 }
 std::string placement_fault(const MeasuredLight& light) {
-    constexpr float least_sine = 1e-4f;  // of the angle between nadir and C0 direction
+    constexpr float min_sine = 1e-4f;  // of the angle between nadir and C0 direction
     for (const std::string& fault :
          {position_fault(light.position), direction_fault(light.direction), direction_fault(light.c0)})
         if (!fault.empty()) return fault;
-    const bool is_frame = light.direction.normalized().cross(light.c0.normalized()).length() > least_sine;
+    const bool is_frame = light.direction.normalized().cross(light.c0.normalized()).length() > min_sine;
     return is_frame ? std::string() : std::string("has a C0 plane along its own axis");
 }
 

@@ -129,10 +129,10 @@ ModelledDaylight perez_daylight(double direct_normal, double diffuse_horizontal,
     const double brightness = diffuse_horizontal * air_mass(sun_altitude) / solar_constant;
     const auto bin =
         static_cast<std::size_t>(std::upper_bound(bin_ends.begin(), bin_ends.end(), clearness) - bin_ends.begin());
-    constexpr double clearer = 1.065, clear = 2.8, least_brightness = 0.2;
+    constexpr double clearer = 1.065, clear = 2.8, min_brightness = 0.2;
     const bool is_between = clearness > clearer && clearness < clear;
     ModelledDaylight result{
-        luminance_model(bin, zenith_angle, is_between ? std::max(brightness, least_brightness) : brightness)};
+        luminance_model(bin, zenith_angle, is_between ? std::max(brightness, min_brightness) : brightness)};
     const FourNumbers &sky = diffuse_efficacies[bin], &sun = direct_efficacies[bin];
     result.sky_illuminance =
         diffuse_horizontal * std::max(0.0, sky[0] + sky[1] * precipitable_water + sky[2] * std::cos(zenith_angle) +

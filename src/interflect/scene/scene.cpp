@@ -103,8 +103,8 @@ void check_textures(const Scene& scene, Faults& faults) {
         faults.add(texture_fault(texture), [&] { return fmt::format("texture '{}' ", texture.name); });
         texels += texture.texels.size();
     }
-    faults.check(texels <= most_texels, [&] {
-        return fmt::format("the textures have {} texels together; at most {} can be computed", texels, most_texels);
+    faults.check(texels <= max_texels, [&] {
+        return fmt::format("the textures have {} texels together; at most {} can be computed", texels, max_texels);
     });
     if (scene.texture_coordinates.empty()) return;
     faults.check(scene.texture_coordinates.size() == scene.vertices.size(), [&] {

@@ -15,8 +15,8 @@ namespace interflect {
 namespace {
 
 double gradation(const SkyModel& m, double zenith_cosine) {
-    constexpr double least_cosine = 1e-6;  // exp(b / cos Z) has reached its limit
-    return std::max(0.0, 1 + double{m.a} * std::exp(double{m.b} / std::max(zenith_cosine, least_cosine)) +
+    constexpr double min_cosine = 1e-6;  // exp(b / cos Z) has reached its limit
+    return std::max(0.0, 1 + double{m.a} * std::exp(double{m.b} / std::max(zenith_cosine, min_cosine)) +
                              double{m.g} * zenith_cosine);
 }
 

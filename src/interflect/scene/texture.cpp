@@ -42,9 +42,9 @@ Rgb largest_texel(const Texture& texture) {
 }
 
 std::string texture_fault(const Texture& texture) {
-    if (texture.width < 1 || texture.height < 1 || std::max(texture.width, texture.height) > most_texels_of_side)
+    if (texture.width < 1 || texture.height < 1 || std::max(texture.width, texture.height) > max_texels_of_side)
         return fmt::format("has {} x {} texels; expected 1 to {} a side", texture.width, texture.height,
-                           most_texels_of_side);
+                           max_texels_of_side);
     if (texture.texels.size() != std::size_t{texture.width} * texture.height)
         return fmt::format("of {} x {} texels holds {}", texture.width, texture.height, texture.texels.size());
     const auto is_wrong = [](const Rgb& t) { return !is_finite(t) || std::min({t.x, t.y, t.z}) < 0; };

@@ -21,7 +21,7 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require(o.limits.until >= 0 && o.limits.until < 1, "until: expected a relative error from 0 to below 1");
     require(o.experimental.warm_up >= 0, "warm_up: expected 0 or more");
     require(o.experimental.iterations >= 0, "iterations: expected 0 or more");
-    require(o.experimental.rays_per_iteration >= 0 && o.experimental.rays_per_iteration <= most_rays_per_iteration,
+    require(o.experimental.rays_per_iteration >= 0 && o.experimental.rays_per_iteration <= max_rays_per_iteration,
             "rays_per_iteration: expected 0 to 100 thousand million");
     require(o.experimental.epsilon > 0, "epsilon: expected more than 0");
     require(o.experimental.epsilon_decay >= 0 && o.experimental.epsilon_decay <= 1, "epsilon_decay: expected 0 to 1");
@@ -35,7 +35,7 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
             "inherited_weight: expected 0 to 1");
     require(o.importance.smoothing >= 0 && o.importance.smoothing <= 1, "importance_smoothing: expected 0 to 1");
     require(o.importance.exponent >= 0 && o.importance.exponent <= 1, "importance_exponent: expected 0 to 1");
-    require(o.importance.camera_rays > 0 && o.importance.camera_rays <= most_camera_rays,
+    require(o.importance.camera_rays > 0 && o.importance.camera_rays <= max_camera_rays,
             "camera_rays: expected 1 to 2^22");
     for (const WeightedView& v : o.views)
         require(v.view.extent == 0, "view '" + v.view.name + "': orthographic, expected none or perspective ones");

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float wall_thickness = 0.2f;  // [m]
 constexpr float door_width = 0.9f;      // [m]
-constexpr float least_pier = 0.5f;      // between a doorway and a corner [m]
+constexpr float min_pier = 0.5f;        // between a doorway and a corner [m]
 
 struct SharedWall {
     std::array<std::uint32_t, 2> rooms;
@@ -78,7 +78,7 @@ std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanO
 
 /// Evenly spaced places align opposite doorways or keep them apart.
 Interval draw_opening(const Interval& wall, RandomSequence& random) {
-    const float places = std::floor((wall.length() - 2 * least_pier) / door_width);
+    const float places = std::floor((wall.length() - 2 * min_pier) / door_width);
     const float first = wall.middle() - places * door_width / 2;
     const auto place = static_cast<float>(random.below(static_cast<std::uint32_t>(places)));
     return {first + place * door_width, first + (place + 1) * door_width};

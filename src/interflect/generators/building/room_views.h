@@ -19,6 +19,6 @@ LookOut look_out(const FloorPlan& plan, std::uint32_t index);
 /// Returns "overview" from above and south, through the backs of the ceilings.
 View bird_view(const FloorPlan& plan);
 
-inline constexpr std::uint32_t most_room_views = 64;
+inline constexpr std::uint32_t max_room_views = 64;
 
 }  // namespace interflect::detail::building

@@ -48,7 +48,7 @@ class ContributionSums {
     }
     /// Frees collected memory. Small forests keep it: clearing new pages is slower than the additions.
     void release(std::size_t begin, std::size_t end) {
-        if (elements_ <= most_kept) return;
+        if (elements_ <= max_kept) return;
         sums_.release(begin, end);
         if (group_terms_ > 0) group_sums_.release(begin * group_terms_, end * group_terms_);
     }
@@ -70,7 +70,7 @@ class ContributionSums {
         void add(std::uint32_t element, std::uint32_t source, bool power, bool importance) {
             const std::size_t region = element >> sums_->region_shift_ & (regions - 1);
             Bin& bin = bins_[region];
-            bin.deposits[bin.count++] = {element, source & (most_sources - 1), power, importance};
+            bin.deposits[bin.count++] = {element, source & (max_sources - 1), power, importance};
             if (bin.count == bin.deposits.size()) flush(region);
         }
         void release_sources() {
@@ -104,10 +104,10 @@ class ContributionSums {
 
   private:
     static constexpr std::size_t regions = 64;
-    static constexpr std::uint32_t most_sources = 1u << 30;  // width of Deposit::source
-    static constexpr std::size_t enough_sources = 8192;      // a quarter of a second-level cache
+    static constexpr std::uint32_t max_sources = 1u << 30;  // width of Deposit::source
+    static constexpr std::size_t enough_sources = 8192;     // a quarter of a second-level cache
 
-    static constexpr std::size_t most_kept = std::size_t{1} << 20;  // elements
+    static constexpr std::size_t max_kept = std::size_t{1} << 20;  // elements
 
     std::int64_t* group_sum(std::size_t element, std::size_t group) {
         return &group_sums_[element * group_terms_ + 3 * group];

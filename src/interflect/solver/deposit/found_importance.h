@@ -15,8 +15,8 @@ namespace interflect::detail {
 /// importance (Eq. 7, Prikryl et al. 2000).
 class FoundImportance {
   public:
-    FoundImportance(double most_per_ray, std::int64_t rays, std::size_t sources)
-        : unit_(most_per_ray * static_cast<double>(rays)), sums_(sources) {}
+    FoundImportance(double max_per_ray, std::int64_t rays, std::size_t sources)
+        : unit_(max_per_ray * static_cast<double>(rays)), sums_(sources) {}
 
     /// Thread-safe.
     void add(std::size_t source, double found) { add_concurrently(sums_[source], unit_.from(found)); }

@@ -16,7 +16,7 @@ struct ElementProxy {
     V3f normal{0, 0, 0};
     float area = 0;  ///< [m^2]
     /// Lower bound of the cosine; 1 for an isotropic source.
-    float least_cosine = 0;
+    float min_cosine = 0;
 };
 
 /// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j) for a disk, times
@@ -31,7 +31,7 @@ inline float form_factor_estimate(const ElementProxy& shooter, const ElementProx
     const float per_distance = 1 / std::sqrt(larger(d2, std::numeric_limits<float>::min()));
     const float least = smaller(1, 2 * f);
     const float from_shooter =
-        smaller(1, larger(larger(least, shooter.least_cosine), shooter.normal.dot(d) * per_distance));
+        smaller(1, larger(larger(least, shooter.min_cosine), shooter.normal.dot(d) * per_distance));
     const float to_receiver = smaller(1, larger(least, -receiver.normal.dot(d) * per_distance));
     return f * from_shooter * to_receiver;
 }

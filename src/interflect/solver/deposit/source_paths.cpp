@@ -36,8 +36,8 @@ SourcePaths::Path SourcePaths::append_part(std::uint32_t part, const Ray& ray, c
     const float area = std::max(share_of_view * std::min(squared, 4 * step_.oracle.min_area), tiny);
     Rgb radiosity = proxy.intensity * (std::numbers::pi_v<float> / area);
     for (int c = 0; c < 3; ++c) radiosity[c] = std::min(radiosity[c], std::numeric_limits<float>::max());
-    const float least_cosine = proxy.normal == V3f(0) ? 1.0f : 0.0f;
-    sources_.push_back({none, Cell(), proxy.position, proxy.normal, area, least_cosine, radiosity});
+    const float min_cosine = proxy.normal == V3f(0) ? 1.0f : 0.0f;
+    sources_.push_back({none, Cell(), proxy.position, proxy.normal, area, min_cosine, radiosity});
     const auto number = static_cast<std::uint32_t>(sources_.size() - 1);
     return {number, number};
 }

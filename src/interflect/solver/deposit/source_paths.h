@@ -30,7 +30,7 @@ class SourcePaths {
     void begin(RayPairs& pairs, std::size_t i, const Path& path, const Rgb& reflectance) const {
         pairs.lowest_shooter[i] = path.last;
         pairs.shooter_normal.set(i, sources_[path.first].normal);
-        pairs.shooter_least_cosine[i] = sources_[path.first].least_cosine;
+        pairs.shooter_least_cosine[i] = sources_[path.first].min_cosine;
         take(pairs, i, path.first, reflectance);
     }
 
@@ -56,7 +56,7 @@ class SourcePaths {
         Cell cell;
         V3f centre, normal;
         float area;  // [m^2]
-        float least_cosine;
+        float min_cosine;
         Rgb radiosity{0, 0, 0};
     };
 

@@ -14,7 +14,7 @@ namespace interflect::detail {
 namespace {
 
 /// Bounds of the decay of mean squared differences per level: 1/4 for smooth irradiance, 1/2 at edges.
-constexpr double least_decay = 0.25, most_decay = 0.7;
+constexpr double min_decay = 0.25, max_decay = 0.7;
 
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
@@ -30,7 +30,7 @@ struct ErrorSums {
 
 ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const ElementErrors& errors) {
     const ElementForest& forest = *state.forest;
-    return parallel_sum(forest.size(), elements_at_once, ErrorSums(), [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(forest.size(), elements_per_task, ErrorSums(), [&](std::size_t begin, std::size_t end) {
         ErrorSums sums;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;
@@ -52,7 +52,7 @@ double error_within_leaves(const RiskCheck& check) {
     if (!(check.weight > 0)) return 0;
     const bool is_known = check.signal > 0 && check.signal_of_parents > 0;
     const double decay =
-        is_known ? std::clamp(check.signal / check.signal_of_parents, least_decay, most_decay) : least_decay;
+        is_known ? std::clamp(check.signal / check.signal_of_parents, min_decay, max_decay) : min_decay;
     double sum = 0, of_level = 1;
     for (const double within : check.within) sum += std::max(0.0, within) * (of_level *= decay);
     return sum / check.weight;
@@ -73,7 +73,7 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
     ElementErrors errors;
     errors.noise.assign(forest.size(), 0);
     errors.bias.assign(forest.size(), 0);
-    parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto root = static_cast<std::uint32_t>(begin); root < end; ++root) {
             const float shown = shown_of_patch(state, measure, root);
             const float rays = std::max(state.history[root], 1.0f);

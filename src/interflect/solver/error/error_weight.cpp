@@ -28,7 +28,7 @@ double error_reference(const SolverState& state, ErrorMeasure measure) {
         double light = 0, weight = 0;
         Sums& operator+=(const Sums& o) { return light += o.light, weight += o.weight, *this; }
     };
-    const Sums sums = parallel_sum(forest.size(), elements_at_once, Sums(), [&](std::size_t begin, std::size_t end) {
+    const Sums sums = parallel_sum(forest.size(), elements_per_task, Sums(), [&](std::size_t begin, std::size_t end) {
         Sums sum;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;

@@ -54,7 +54,7 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
                 sum.within[level] += of_leaf * shown_of_level[level] * signal;
         }
     };
-    RiskCheck sum = parallel_sum((forest.size() - roots) / 4, elements_at_once, RiskCheck(),
+    RiskCheck sum = parallel_sum((forest.size() - roots) / 4, elements_per_task, RiskCheck(),
                                  [&](std::size_t begin, std::size_t end) {
                                      RiskCheck part;
                                      for (std::size_t i = begin; i < end; ++i)

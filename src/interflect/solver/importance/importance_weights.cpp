@@ -109,7 +109,7 @@ std::vector<float> importance_weight(const ElementForest& forest, const Importan
                                      double exponent) {
     const auto share = static_cast<float>(from_parent), power = static_cast<float>(exponent);
     std::vector<float> weights(forest.size());
-    parallel_for_ranges(weights.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(weights.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) weights[e] = importance[e];
     });
     forest.for_siblings_from_roots([&](std::uint32_t first) {
@@ -117,7 +117,7 @@ std::vector<float> importance_weight(const ElementForest& forest, const Importan
         for (std::uint32_t e = first; e < first + 4; ++e) weights[e] += share * (parent - weights[e]);
     });
     if (power == 1) return weights;
-    parallel_for_ranges(weights.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(weights.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         pow_each(std::span(weights).subspan(begin, end - begin), power);
     });
     return weights;

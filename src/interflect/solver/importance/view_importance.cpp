@@ -44,12 +44,12 @@ void ViewImportance::add_points_behind(const ElementForest& forest, const Panes&
 
 void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
                                      int rays_per_view) {
-    constexpr std::size_t rays_at_once = 4096;
+    constexpr std::size_t rays_per_task = 4096;
     for (std::size_t v = 0; v < views_.size(); ++v) {
         const std::vector<Ray> rays =
             camera_rays(views_[v], ray_caster.origin(), rays_per_view, mix(mix(seed_, v), rounds_));
         std::vector<Hit> hits(rays.size());
-        parallel_for_ranges(rays.size(), rays_at_once, [&](std::size_t begin, std::size_t end) {
+        parallel_for_ranges(rays.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
             ray_caster.trace(std::span(rays).subspan(begin, end - begin), std::span(hits).subspan(begin, end - begin));
         });
         const auto share = static_cast<float>(views_[v].weight * rays_per_view / static_cast<double>(rays.size()));
@@ -86,16 +86,16 @@ bool ViewImportance::fits(const ElementForest& forest) const {
 }
 
 std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) {
-    constexpr std::size_t points_at_once = 4096;
+    constexpr std::size_t points_per_task = 4096;
     if (!at_patches)
-        parallel_for_ranges(points_.size(), points_at_once, [&](std::size_t begin, std::size_t end) {
+        parallel_for_ranges(points_.size(), points_per_task, [&](std::size_t begin, std::size_t end) {
             for (Point& p : std::span(points_).subspan(begin, end - begin))
                 if (!forest.is_leaf(p.leaf)) p.leaf = forest.leaf_below(p.leaf, forest.cell(p.leaf), p.parameters);
         });
     std::vector<float> v(forest.size(), 0.0f);
     for (const Point& p : points_) v[at_patches ? p.patch : p.leaf] += p.share;
     const double per_share = 1 / hit_weight_;
-    parallel_for_ranges(v.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(v.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             v[e] = static_cast<float>(v[e] * per_share / forest.area(e));
     });

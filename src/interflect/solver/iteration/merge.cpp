@@ -29,14 +29,14 @@ Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
 
 template <class T>
 void merge_into(const SolverState& state, std::vector<T>& mean, const std::vector<T>& received,
-                const IterationPlan& plan, float most_history = std::numeric_limits<float>::infinity()) {
+                const IterationPlan& plan, float max_history = std::numeric_limits<float>::infinity()) {
     const ElementForest& forest = *state.forest;
     const auto rays = static_cast<float>(plan.rays);
     const auto merge_one = [&](std::uint32_t e) {
-        const float tau = plan.warms_up ? 1.0f : rays / (std::min(state.history[e], most_history) + rays);
+        const float tau = plan.warms_up ? 1.0f : rays / (std::min(state.history[e], max_history) + rays);
         mean[e] += tau * (received[e] - mean[e]);
     };
-    parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) merge_one(e);
     });
     forest.for_siblings_from_roots([&](std::uint32_t first) {
@@ -66,7 +66,7 @@ void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const s
     const auto merged = [&](std::uint32_t e) {
         return mean[e] + (received[e] - mean[e]) * (rays / (state.history[e] + rays));
     };
-    parallel_for_ranges(forest.patch_count(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) mean[e] = merged(e);
     });
     forest.for_siblings_from_roots([&](std::uint32_t first) {
@@ -112,7 +112,7 @@ void merge_escaped_power(SolverState& state, const RgbD& escaped, const Iteratio
 void update_history(SolverState& state, const IterationPlan& plan) {
     const auto rays = static_cast<float>(plan.rays),
                inherited = static_cast<float>(state.options.experimental.inherited_weight);
-    parallel_for_ranges(state.history.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(state.history.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e)
             state.history[e] =
                 plan.warms_up ? 0.0f : (state.history[e] + rays) * (e < plan.old_elements ? 1.0f : inherited);

@@ -18,7 +18,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t rays_at_once = 1024;
+constexpr std::size_t rays_per_task = 1024;
 constexpr std::uint64_t aiming_stream = 0x61696d;
 
 struct LineFinder {
@@ -101,9 +101,9 @@ std::vector<OutdoorLine> outdoor_lines(const SolverState& state, std::int64_t ra
     const Panes panes(state.scene, state.ray_caster);
     const LineFinder finder{state, plan, maker, payload, panes, key};
     const auto count = static_cast<std::size_t>(rays);
-    std::vector<std::vector<OutdoorLine>> found((count + rays_at_once - 1) / rays_at_once);
-    parallel_for_ranges(count, rays_at_once, [&](std::size_t begin, std::size_t end) {
-        found[begin / rays_at_once] = finder.find(begin, end);
+    std::vector<std::vector<OutdoorLine>> found((count + rays_per_task - 1) / rays_per_task);
+    parallel_for_ranges(count, rays_per_task, [&](std::size_t begin, std::size_t end) {
+        found[begin / rays_per_task] = finder.find(begin, end);
     });
     std::vector<OutdoorLine> lines;
     for (const std::vector<OutdoorLine>& some : found) lines.insert(lines.end(), some.begin(), some.end());
@@ -164,18 +164,18 @@ Imath::Box3f best_half(const std::vector<WeightedLine>& lines, const Imath::Box3
 
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box) {
-    constexpr std::size_t most_lines = 4096, fewest_lines = 16;
-    static_assert(most_targets % most_chains == 0);
+    constexpr std::size_t max_lines = 4096, fewest_lines = 16;
+    static_assert(max_targets % max_chains == 0);
     constexpr double share_of_rest = 0.05;      // minimum weight for another chain
     constexpr double worthwhile_share = 0.4;    // evenly spread lines: 0.25
     constexpr float widest_target = 1.0f / 16;  // of the diagonal; the scene's box resolves wider ones
     std::vector<WeightedLine> rest;
-    const std::size_t stride = std::max<std::size_t>(1, lines.size() / most_lines);
+    const std::size_t stride = std::max<std::size_t>(1, lines.size() / max_lines);
     for (std::size_t i = 0; i < lines.size(); i += stride)
         if (weights[i] > 0) rest.push_back({lines[i].light, weights[i]});
     const double all = weight_of(rest);
     std::vector<Imath::Box3f> targets;
-    for (int chain = 0; chain < most_chains && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
+    for (int chain = 0; chain < max_chains && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
          ++chain) {
         // Start from the last target that most lines cross.
         Imath::Box3f box = scene_box;
@@ -186,7 +186,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
         }
         std::vector<Imath::Box3f> halves;
         std::size_t worthwhile = 0;
-        for (int level = 0; level < most_targets / most_chains && inside.size() >= fewest_lines; ++level) {
+        for (int level = 0; level < max_targets / max_chains && inside.size() >= fewest_lines; ++level) {
             box = best_half(inside, box);
             std::vector<WeightedLine> in_half = crossing(inside, box);
             halves.push_back(box);
@@ -250,12 +250,12 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 
 std::int64_t aim_outdoor_light(SolverState& state) {
     // Many rays: a small window transmits little importance. `all` is the run's limit.
-    constexpr std::int64_t most_rays = 1 << 18, all_over_rays = 32;
+    constexpr std::int64_t max_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.solution) != ImportanceUse::full) return 0;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());
     const std::int64_t sources = suns + (state.emission.has_sky() ? 1 : 0);
     if (sources == 0) return 0;
-    const std::int64_t rays = std::min(most_rays, state.options.limits.rays / all_over_rays) / sources;
+    const std::int64_t rays = std::min(max_rays, state.options.limits.rays / all_over_rays) / sources;
     if (rays == 0) return 0;
     const std::vector<OutdoorLine> lines = outdoor_lines(state, rays);
     std::vector<Imath::Box3f> targets =

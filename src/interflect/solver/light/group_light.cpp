@@ -11,7 +11,7 @@ void accumulate(GroupLight& sum, const GroupLight& more) {
         return;
     }
     for (std::size_t g = 0; g < sum.size(); ++g)
-        parallel_for_ranges(sum[g].size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+        parallel_for_ranges(sum[g].size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t e = begin; e < end; ++e) sum[g][e] += more[g][e];
         });
 }

@@ -32,7 +32,7 @@ Materials::Materials(const Scene& scene, std::vector<float> exitance_share)
                              [](const Material& m) { return largest_channel(m.transmittance) > 0; })),
       elements_(scene, exitance_share) {
     if (exitance_share.empty() && elements_.empty()) return;
-    constexpr std::size_t patches_at_once = 64;
+    constexpr std::size_t patches_per_task = 64;
     std::vector<std::uint32_t> patches;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Material& material = scene.materials[scene.patches[i].material];
@@ -42,7 +42,7 @@ Materials::Materials(const Scene& scene, std::vector<float> exitance_share)
     if (patches.empty()) return;
     has_own_ = RankedBits(scene.patches.size(), patches);
     own_materials_.resize(patches.size());
-    parallel_for_ranges(patches.size(), patches_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(patches.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Patch& patch = scene.patches[patches[i]];
             Material& own = own_materials_[i] = scene.materials[patch.material];

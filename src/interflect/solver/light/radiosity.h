@@ -59,7 +59,7 @@ inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::u
 
 /// Returns the power of all patches [lm or W], summed in fixed order.
 inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) {
-    return parallel_sum(forest.patch_count(), elements_at_once, RgbD(0), [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(forest.patch_count(), elements_per_task, RgbD(0), [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) sum += power_of(forest, light, i);
         return sum;

@@ -30,7 +30,7 @@ MeanSurface TexturedElements::mean(std::uint32_t patch, const PatchGeometry& geo
 
 void TexturedElements::grow(const ElementForest& forest) {
     if (empty()) return;
-    constexpr std::size_t slots_at_once = 64;
+    constexpr std::size_t slots_per_task = 64;
     const auto first_slot = static_cast<std::uint32_t>(surfaces_.size() / 4);
     std::vector<std::uint32_t> first_children;
     for (auto e = static_cast<std::uint32_t>(patch_count_ + 4 * slot_of_block_.size()); e < forest.size(); e += 4) {
@@ -39,7 +39,7 @@ void TexturedElements::grow(const ElementForest& forest) {
         if (is_textured) first_children.push_back(e);
     }
     surfaces_.resize(surfaces_.size() + 4 * first_children.size());
-    parallel_for_ranges(first_children.size(), slots_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(first_children.size(), slots_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t first = first_children[i], patch = forest.patch(first);
             for (std::uint32_t k = 0; k < 4; ++k)

@@ -10,7 +10,7 @@ namespace {
 /// Random walks replace the remaining bounces if the next one would get fewer rays.
 constexpr double fewest_rays_of_bounce = 2;
 /// Random walks also replace bounces below this share of a pass: each bounce takes time for every element.
-constexpr double least_share_left = 0.05;
+constexpr double min_share_left = 0.05;
 /// Fewer make small passes noisy. Rays beyond the plan are not counted.
 constexpr std::int64_t fewest_walks = 32;
 /// Value of bounces() until measured.
@@ -34,7 +34,7 @@ BounceRays BounceBudget::next(double unshot) {
     const double to_come = is_known_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;
     const double share = std::min(left * unshot / to_come, static_cast<double>(rays_) * unshot / bounces_);
     const double to_walk = std::max(planned, geometric);
-    is_last_ = share < fewest_rays_of_bounce || share + 1 > left || to_walk < least_share_left * bounces_;
+    is_last_ = share < fewest_rays_of_bounce || share + 1 > left || to_walk < min_share_left * bounces_;
     const double starting = is_last_ ? left * unshot / to_walk : share;  // a walk has to_walk / unshot rays
     const std::int64_t fewest = is_last_ ? fewest_walks : 1;
     const std::int64_t started = std::max<std::int64_t>(fewest, std::llround(starting));

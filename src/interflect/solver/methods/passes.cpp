@@ -50,7 +50,7 @@ void add(Estimate& sum, Received& received) {
         sum.variance = std::move(received.variance);
         return;
     }
-    parallel_for_ranges(sum.irradiance.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(sum.irradiance.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e) {
             sum.irradiance[e] += received.irradiance[e];
             sum.variance[e] += received.variance[e];

@@ -48,7 +48,7 @@ std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<c
 void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
                      std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight) {
     const Spread spread =
-        parallel_sum(forest.size(), elements_at_once, Spread(), [&](std::size_t begin, std::size_t end) {
+        parallel_sum(forest.size(), elements_per_task, Spread(), [&](std::size_t begin, std::size_t end) {
             Spread sum;
             for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
                 const float m = history[e];
@@ -64,7 +64,7 @@ void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::sp
             }
             return sum;
         });
-    parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e) {
             const float share = iterations_ == 0 ? 1 : rays / (rays + std::max(history[e], rays));
             per_ray_[e] += share * (rays * fresh.variance[e] - per_ray_[e]);

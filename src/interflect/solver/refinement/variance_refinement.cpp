@@ -21,7 +21,7 @@ constexpr float expected_decay = 0.3f;
 /// Relative to squared irradiance, for a root.
 constexpr float assumed_square = 0.04f;
 /// Minimum expected signal relative to the children's noise, which shrinkage suppresses at first.
-constexpr float least_signal = 0.12f;
+constexpr float min_signal = 0.12f;
 /// Reduction of the total squared error by a split.
 constexpr double negligible_gain = 2e-7;
 /// Share of the pictures' light that a leaf reflects from wrong places.
@@ -43,30 +43,30 @@ class VarianceOracle {
                    ? std::span<const float>(state.solution.indirect_importance)
                    : std::span<const float>()) {
         const double reference = reference_power();
-        least_misplaced_power_ = negligible_misplacement * reference;
-        most_misplaced_power_ = tolerable_misplacement * reference;
+        min_misplaced_power_ = negligible_misplacement * reference;
+        max_misplaced_power_ = tolerable_misplacement * reference;
     }
 
     /// Returns the least reduction of the squared error by a split [weight times irradiance^2].
-    double least_gain() const {
+    double min_gain() const {
         const double error = estimate_error(state_, measure_).total();
         return std::isfinite(error) ? negligible_gain * error * error * weighted_mean_square() : 0;
     }
 
-    bool splits(std::uint32_t leaf, double least_gain) const {
+    bool splits(std::uint32_t leaf, double min_gain) const {
         const auto [signal, noise] = expected_children(leaf);
-        if (!(signal > least_signal * noise)) return false;
+        if (!(signal > min_signal * noise)) return false;
         const bool blurs =
-            weight(leaf) * static_cast<double>(signal) > least_gain && forest_.area(leaf) >= 4 * min_area(state_, leaf);
+            weight(leaf) * static_cast<double>(signal) > min_gain && forest_.area(leaf) >= 4 * min_area(state_, leaf);
         const bool misplaces =
-            misplaced_power(leaf, signal) > least_misplaced_power_ && forest_.area(leaf) >= 4 * state_.floor.unseen();
+            misplaced_power(leaf, signal) > min_misplaced_power_ && forest_.area(leaf) >= 4 * state_.floor.unseen();
         return blurs || misplaces;
     }
 
     /// True if unknown.
     bool may_misplace(std::uint32_t leaf) const {
         if (state_.history[leaf] == 0 || !state_.noise.is_known()) return true;
-        return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > most_misplaced_power_;
+        return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > max_misplaced_power_;
     }
 
   private:
@@ -116,8 +116,8 @@ class VarianceOracle {
     const SolverState& state_;
     const ElementForest& forest_;
     ErrorMeasure measure_;
-    std::span<const float> psi_;                                   // indirect importance, if used
-    double least_misplaced_power_ = 0, most_misplaced_power_ = 0;  // [lm or W, times importance]
+    std::span<const float> psi_;                                // indirect importance, if used
+    double min_misplaced_power_ = 0, max_misplaced_power_ = 0;  // [lm or W, times importance]
 };
 
 }  // namespace
@@ -126,7 +126,7 @@ std::vector<std::uint8_t> leaves_reflecting_where_received(const SolverState& st
     if (!refines_by_variance(state.options)) return {};
     const VarianceOracle oracle(state);
     std::vector<std::uint8_t> blurs(state.forest->size(), 0);
-    parallel_for_ranges(blurs.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(blurs.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             blurs[e] = state.forest->is_leaf(e) && oracle.may_misplace(e);
     });
@@ -137,11 +137,11 @@ void refine_by_variance(SolverState& state) {
     ElementForest& forest = *state.forest;
     const std::uint32_t before = forest.size();
     const VarianceOracle oracle(state);
-    const double least_gain = oracle.least_gain();
+    const double min_gain = oracle.min_gain();
     std::vector<std::uint8_t> splits(before, 0);
-    parallel_for_ranges(before, elements_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(before, elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
-            splits[e] = forest.is_leaf(e) && state.history[e] > 0 && oracle.splits(e, least_gain);
+            splits[e] = forest.is_leaf(e) && state.history[e] > 0 && oracle.splits(e, min_gain);
     });
     for (std::uint32_t e = 0; e < before && forest.size() + 4 <= state.options.refinement.max_elements; ++e)
         if (splits[e]) forest.subdivide(e);

@@ -8,9 +8,9 @@
 namespace interflect::detail {
 
 PayloadTotals total_payload(const RayPlan& plan, const RayAllocation& allocation, const Payload& payload) {
-    constexpr std::size_t blocks_at_once = 16;
+    constexpr std::size_t blocks_per_task = 16;
     return parallel_sum(
-        allocation.block_count(), blocks_at_once, PayloadTotals(), [&](std::size_t begin, std::size_t end) {
+        allocation.block_count(), blocks_per_task, PayloadTotals(), [&](std::size_t begin, std::size_t end) {
             PayloadTotals sum;
             for (std::size_t block = begin; block < end; ++block)
                 allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {

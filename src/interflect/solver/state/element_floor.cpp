@@ -12,7 +12,7 @@ namespace interflect::detail {
 namespace {
 
 /// Minimum cosine: at grazing angles, a pixel covers a long, narrow area.
-constexpr float least_cosine = 0.1f;
+constexpr float min_cosine = 0.1f;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ float ElementFloor::pixel_area(const V3f& centre, const V3f& normal) const {
         const V3f d = centre - eye;
         const float width = pixel * d.length();
         const float along_normal = std::abs(normal.dot(d)) / std::max(d.length(), std::numeric_limits<float>::min());
-        smallest = std::min(smallest, width * width / std::max(least_cosine, along_normal));
+        smallest = std::min(smallest, width * width / std::max(min_cosine, along_normal));
     }
     return smallest;
 }

@@ -84,7 +84,7 @@ void SolverState::archive(StateArchive& archive) {
             const Imath::Box3f& box = emission.scene_box();
             return !target.isEmpty() && box.intersects(target.min) && box.intersects(target.max);
         };
-        require(emission.part_count() > 0 && targets.size() <= most_targets &&
+        require(emission.part_count() > 0 && targets.size() <= max_targets &&
                     std::all_of(targets.begin(), targets.end(), is_inside),
                 "expected targets within the scene");
         emission = Emission(*lit, targets);

@@ -39,15 +39,15 @@ void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
 
 /// Returns the rays for the remaining time at the current speed; 0 if too few to be useful.
 std::int64_t Schedule::affordable_rays(double seconds) {
-    constexpr double share_of_time = 0.85;    // of the remaining time; speed varies
-    constexpr double least_share = 1.0 / 32;  // of the rays averaged before
+    constexpr double share_of_time = 0.85;  // of the remaining time; speed varies
+    constexpr double min_share = 1.0 / 32;  // of the rays averaged before
     const double time_left = options_.limits.time - seconds, took = seconds - planned_at_;
     const std::int64_t traced = rays_ - planned_after_;
     planned_at_ = seconds, planned_after_ = rays_;
     if (time_left <= 0) return 0;
     if (traced == 0) return first_rays_;
     const double rays = share_of_time * time_left / took * static_cast<double>(traced);
-    const bool is_worth_while = rays >= least_share * static_cast<double>(averaged_rays_);
+    const bool is_worth_while = rays >= min_share * static_cast<double>(averaged_rays_);
     return is_worth_while ? std::llround(std::clamp(rays, 1.0, static_cast<double>(options_.limits.rays))) : 0;
 }
 

@@ -17,7 +17,7 @@ namespace {
 /// address space.
 std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
-    const std::size_t groups = std::min(scene.light_groups.size() + 1, most_light_groups);
+    const std::size_t groups = std::min(scene.light_groups.size() + 1, max_light_groups);
     const std::size_t per_element = ElementForest::reserved_per_element +
                                     ContributionSums::reserved_per_element(scene.light_groups.empty() ? 0 : groups);
     if (!options.method.refines) return scene.patches.size();
@@ -143,7 +143,7 @@ void refine_view_importance(SolverState& state) {
     constexpr std::int64_t rays_per_camera_ray = 64;
     if (state.view.empty()) return;
     const std::int64_t wanted =
-        std::min<std::int64_t>(state.schedule.averaged_rays() / rays_per_camera_ray, most_camera_rays);
+        std::min<std::int64_t>(state.schedule.averaged_rays() / rays_per_camera_ray, max_camera_rays);
     if (wanted < 2 * state.view.rays()) return;
     state.view.trace_view_rays(*state.forest, state.ray_caster, Panes(state.scene, state.ray_caster),
                                static_cast<int>((wanted - state.view.rays()) / state.view.views()));

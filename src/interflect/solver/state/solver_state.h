@@ -28,7 +28,7 @@
 namespace interflect::detail {
 
 /// 20 halvings in each chain reach from 10 km to 1 cm.
-inline constexpr int most_chains = 4, most_targets = 80;
+inline constexpr int max_chains = 4, max_targets = 80;
 
 /// State of a run that persists between iterations.
 struct SolverState {

@@ -57,8 +57,8 @@ void blend(const ElementForest& forest, const TransportStep& step, const RayAllo
            const FoundImportance& found, const PayloadTotals& payload, std::size_t elements,
            std::vector<float>& received) {
     const double rays_per_importance = payload.importance > 0 ? payload.importance / payload.importance_square : 0;
-    constexpr std::size_t blocks_at_once = 16;
-    parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t blocks_per_task = 16;
+    parallel_for_ranges(allocation.block_count(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block)
             allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
                 if (s >= elements) return false;

@@ -34,10 +34,10 @@ constexpr std::size_t batch_rays = 1024;
 constexpr std::size_t rays_ahead = 32;
 
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
-    constexpr std::size_t blocks_at_once = 16;
+    constexpr std::size_t blocks_per_task = 16;
     streams.used.resize(std::max(streams.used.size(), elements), 0);
     streams.used_by_parts.resize(std::max(streams.used_by_parts.size(), parts), 0);
-    parallel_for_ranges(allocation.block_count(), blocks_at_once, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(allocation.block_count(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block)
             allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
                 std::uint64_t& used = s < elements ? streams.used[s] : streams.used_by_parts[s - elements];
@@ -50,7 +50,7 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
 
 /// Returns the `visits` of ContributionUnits: their expected number, at most 1 / (1 - rho), times 2^12 for chance and
 /// panes. The expected sum of power then still has 2^49 of the 2^61 units of FixedPoint.
-double most_visits(const Scene& scene) {
+double max_visits(const Scene& scene) {
     constexpr double headroom = 0x1p12;
     double rho = 0;
     for (const Material& m : scene.materials) rho = std::max(rho, static_cast<double>(largest_channel(m.reflectance)));
@@ -63,7 +63,7 @@ struct StepData {
         : rays(forest, ray_caster, step, streams),
           payload(materials, forest, step, rays.allocation().q_sum()),
           total(total_payload(step, rays.allocation(), payload)),
-          units(total, step.completes_by_walks ? most_visits(materials.scene()) : 1),
+          units(total, step.completes_by_walks ? max_visits(materials.scene()) : 1),
           panes(materials.scene(), ray_caster) {}
 
     RayMaker rays;
@@ -94,15 +94,15 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
-    std::vector<double> largest((forest.size() + elements_at_once - 1) / elements_at_once, 0.0);
-    parallel_for_ranges(forest.size(), elements_at_once, [&](std::size_t begin, std::size_t end) {
-        double& most = largest[begin / elements_at_once];
+    std::vector<double> largest((forest.size() + elements_per_task - 1) / elements_per_task, 0.0);
+    parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
+        double& most = largest[begin / elements_per_task];
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
-    const double most_hits_per_ray = materials.has_panes() ? Panes::most_in_a_row + 1.0 : 1;
+    const double max_hits_per_ray = materials.has_panes() ? Panes::max_consecutive_panes + 1.0 : 1;
     return std::optional<FoundImportance>(std::in_place,
-                                          most_hits_per_ray * *std::max_element(largest.begin(), largest.end()),
+                                          max_hits_per_ray * *std::max_element(largest.begin(), largest.end()),
                                           step.rays, forest.size() + step.part_count());
 }
 

@@ -12,7 +12,7 @@
 namespace interflect::detail {
 
 /// 4.5 GiB of links.
-inline constexpr std::size_t most_links = std::size_t{1} << 27;
+inline constexpr std::size_t max_links = std::size_t{1} << 27;
 
 struct Link {
     ElementPair ends;
@@ -44,7 +44,7 @@ struct RefinementCandidate;
 class LinkedElements : public IterationMethod {
   public:
     /// The state must outlive this.
-    explicit LinkedElements(SolverState& state, std::size_t link_limit = most_links);
+    explicit LinkedElements(SolverState& state, std::size_t link_limit = max_links);
 
     /// Links all patches that face each other. @throws InputError for too many links.
     void prepare(SolverState& state) override;

@@ -24,7 +24,7 @@ namespace interflect::detail {
 /// Enough for long Embree batches.
 inline constexpr std::size_t paths_per_task = 4096;
 /// Maximum copies of a particle at a hit.
-inline constexpr double most_copies = 8;
+inline constexpr double max_copies = 8;
 /// Received over expected power at which sums overflow; leaves 2^45 units for the expected power.
 inline constexpr double sum_headroom = 0x1p16;
 enum class WalkPurpose : std::uint64_t {
@@ -60,11 +60,11 @@ struct PathSums {
 
     /// @param hits  Maximum per ray; more than 1 with panes.
     PathSums(const WalkSource& payload, double hits)
-        : unit(sum_headroom * hits * most_expected(payload)),
+        : unit(sum_headroom * hits * max_expected(payload)),
           received(payload.reflectance.size()),
           started(payload.reflectance.size(), 0) {}
 
-    static double most_expected(const WalkSource& payload) {
+    static double max_expected(const WalkSource& payload) {
         double power = 0, rho = 0;
         for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
         for (const Rgb& r : payload.reflectance) rho = std::max(rho, static_cast<double>(largest_channel(r)));
@@ -106,7 +106,7 @@ class PathBatch {
           payload_(payload),
           paths_(paths),
           key_(key),
-          sums_(payload, panes_.empty() ? 1 : 1 + Panes::most_in_a_row) {
+          sums_(payload, panes_.empty() ? 1 : 1 + Panes::max_consecutive_panes) {
         const auto weight = [&](std::size_t i) {
             return static_cast<double>(channel_sum(payload.emitted[i])) * payload.density[i];
         };
@@ -199,7 +199,7 @@ class PathBatch {
         double cumulative = offset;
         for (const auto& [patch, power] : w.reflected) {
             const double n =
-                std::min(most_copies, static_cast<double>(channel_sum(power)) * payload_.density[patch] / unit_power_);
+                std::min(max_copies, static_cast<double>(channel_sum(power)) * payload_.density[patch] / unit_power_);
             const double before = std::floor(cumulative);
             cumulative += n;
             const auto copies = static_cast<std::size_t>(std::floor(cumulative) - before);
