@@ -16,19 +16,19 @@ namespace interflect::detail {
 
 namespace {
 
-/// Paths of a record come in groups, whose spread tells its error.
-constexpr std::size_t paths_per_group = 16, groups_of_first_round = 8, max_groups = 64, groups_per_tile = 128;
-/// Groups of a record: this many times the standard deviation of a group, relative to all irradiance there (in dark
-/// places, to a share of its mean), times the record's reach in spacings. With one factor for all records the squared
-/// error of the picture is least: a record's error counts for all pixels in its reach.
-constexpr float groups_per_deviation = 7, share_of_mean = 0.25f;
-/// Reach of a record: relative to the harmonic mean length of its rays, and its limits in spacings of the points. More
-/// records of fewer paths are better: with 0.35 and 512 paths, errors are 1.1 to 1.8 times as large.
-constexpr float reach_share = 0.15f, min_spacings = 4, max_spacings = 100;
-/// Sum of weights, at most 1 each, at a covered point.
+/// A record's paths are traced in groups; the variance between groups estimates its error. 128 to 1,024 paths.
+constexpr std::size_t paths_per_group = 16, min_groups = 8, max_groups = 64;
+/// Groups of a record: groups_per_deviation x sigma / E x reach / spacing, with the standard deviation sigma of a group
+/// and all irradiance E at the record, but at least min_share_of_mean of the mean E. For a given number of rays, this
+/// gives the picture the least squared error (Neyman allocation): a record affects all pixels in its reach.
+constexpr float groups_per_deviation = 7, min_share_of_mean = 0.25f;
+/// Reach of a record: 0.15 of the harmonic mean length of its rays, 4 to 100 spacings of the points. With 0.35 and 512
+/// paths, errors are 1.1 to 1.8 times as large in the same time.
+constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
+/// A point is covered if the weights of the records there, at most 1 each, have this sum.
 constexpr float covering_weight = 1.5f;
-constexpr std::size_t points_of_first_round = 256;  // each round doubles them
-constexpr std::size_t points_per_task = 1024, records_per_task = 64;
+constexpr std::size_t points_of_first_round = 256;  // the total doubles with each round
+constexpr std::size_t points_per_task = 1024, records_per_task = 64, groups_per_task = 128;
 
 V3f nearest_on(const Contact& contact, const V3f& x) {
     const V3f along = contact.b - contact.a;
@@ -36,7 +36,7 @@ V3f nearest_on(const Contact& contact, const V3f& x) {
     return length2 > 0 ? contact.a + along * std::clamp((x - contact.a).dot(along) / length2, 0.0f, 1.0f) : contact.a;
 }
 
-std::vector<Boxed> tree_of(const std::vector<Contact>& contacts) {
+std::vector<Boxed> make_tree(const std::vector<Contact>& contacts) {
     std::vector<Boxed> tree;
     for (std::uint32_t i = 0; i < contacts.size(); ++i) {
         Imath::Box3f box(contacts[i].a);
@@ -61,14 +61,14 @@ void separate(std::span<const SurfacePoint> points, std::vector<SurfacePoint>& f
     }
 }
 
-/// Random order, the same for the same seed.
+/// Returns a random permutation, the same for the same seed.
 std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
     const auto key = [seed](std::uint32_t i) { return mix(seed, i); };
     parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {
-        const auto of_a = key(a), of_b = key(b);
-        return of_a < of_b || (of_a == of_b && a < b);
+        const auto key_a = key(a), key_b = key(b);
+        return key_a < key_b || (key_a == key_b && a < b);
     });
     return order;
 }
@@ -77,23 +77,21 @@ std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
 
 IndirectField::IndirectField(const PathScene& scene, std::span<const SurfacePoint> points,
                              const std::atomic<bool>* stop)
-    : contacts_(scene.scene.contacts), contact_tree_(tree_of(contacts_)) {
+    : contacts_(scene.scene.contacts), contact_tree_(make_tree(contacts_)) {
     cover(scene, points, stop);
-    gather_more_where_noisy(scene, stop);
+    refine_noisy_records(scene, stop);
 }
 
 void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop) {
     const std::vector<std::uint32_t> order = shuffled(points.size(), scene.options.seed);
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
         end = std::min(points.size(), std::max(points_of_first_round, 2 * begin));
-        std::vector<SurfacePoint> left;
-        for (std::size_t i = begin; i < end; ++i) left.push_back(points[order[i]]);
-        while (!left.empty()) {
+        std::vector<SurfacePoint> candidates, chosen;
+        for (std::size_t i = begin; i < end; ++i) candidates.push_back(points[order[i]]);
+        while (!candidates.empty()) {
             if (stop && *stop) return;
-            const std::vector<SurfacePoint> uncovered = uncovered_among(left);
-            std::vector<SurfacePoint> apart;
-            separate(uncovered, apart, left);
-            add_records(scene, apart, stop);
+            separate(uncovered_among(candidates), chosen, candidates);
+            add_records(scene, chosen, stop);
         }
     }
 }
@@ -126,45 +124,49 @@ void IndirectField::gather(const PathScene& scene, std::span<const std::uint32_t
     gathering.start = &start;
     gathering.batch_size = paths_per_group;
     gathering.is_indirect_only = true;
-    std::vector<std::int64_t> rays((batches.size() + groups_per_tile - 1) / groups_per_tile);
-    parallel_for_ranges(batches.size(), groups_per_tile, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::int64_t> rays((batches.size() + groups_per_task - 1) / groups_per_task);
+    parallel_for_ranges(batches.size(), groups_per_task, [&](std::size_t begin, std::size_t end) {
         if (stop && *stop) return;
         PathWavefront wavefront(gathering);
         wavefront.trace(std::span(batches).subspan(begin, end - begin));
-        rays[begin / groups_per_tile] = wavefront.counts().rays;
+        rays[begin / groups_per_task] = wavefront.counts().rays;
     });
     rays_ = std::accumulate(rays.begin(), rays.end(), rays_);
-    // A batch is in the unit of the picture.
+    // Batches contain irradiance in pictures of irradiance, else radiance of a white surface.
     const double per_path =
         (scene.options.quantity == PathQuantity::irradiance ? 1 : std::numbers::pi) / paths_per_group;
     for (const BatchOfPaths& batch : batches) {
         if (!batch.done) continue;
         Record& r = records_[batch.pixel];
         r.gathered.add(batch.indirect * per_path);
-        r.nearness += static_cast<float>(batch.first.nearness);
+        r.inverse_length += static_cast<float>(batch.first.inverse_length);
     }
 }
 
 void IndirectField::add_records(const PathScene& scene, std::span<const SurfacePoint> points,
                                 const std::atomic<bool>* stop) {
-    const std::size_t first = records_.size();
+    const std::size_t old_count = records_.size();
     for (const SurfacePoint& p : points)
         records_.push_back({.position = p.position, .normal = p.normal, .patch = p.patch});
     std::vector<std::uint32_t> added(points.size());
-    std::iota(added.begin(), added.end(), static_cast<std::uint32_t>(first));
-    gather(scene, added, groups_of_first_round, stop);
-    if (stop && *stop) return records_.resize(first);
-    constexpr float paths = paths_per_group * groups_of_first_round;
+    std::iota(added.begin(), added.end(), static_cast<std::uint32_t>(old_count));
+    gather(scene, added, min_groups, stop);
+    if (stop && *stop) {
+        records_.resize(old_count);  // without a reach yet
+        return;
+    }
+    constexpr float paths_per_record = paths_per_group * min_groups;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        Record& r = records_[first + i];
-        const float most = max_spacings * points[i].spacing;
-        r.reach = r.nearness > 0 ? reach_share * paths / r.nearness : most;
-        r.reach = std::clamp(r.reach, min_spacings * points[i].spacing, most);
+        Record& r = records_[old_count + i];
+        const float max_reach = max_spacings * points[i].spacing;
+        r.reach = r.inverse_length > 0 ? reach_over_length * paths_per_record / r.inverse_length : max_reach;
+        r.reach = std::clamp(r.reach, min_spacings * points[i].spacing, max_reach);
         r.reach_in_spacings = r.reach / points[i].spacing;
         r.reach_elsewhere = distance_to_contact(r.position, r.reach);
-        r.level = luminance(Rgb(r.gathered.mean));
+        r.irradiance = luminance(Rgb(r.gathered.mean));
         if (r.patch != none)
-            r.level = std::max(r.level, luminance(scene.known->irradiance(scene.known->place(r.patch, r.position))));
+            r.irradiance =
+                std::max(r.irradiance, luminance(scene.known->irradiance(scene.known->place(r.patch, r.position))));
     }
     tree_.resize(records_.size());
     for (std::uint32_t i = 0; i < records_.size(); ++i) {
@@ -174,56 +176,59 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
     arrange_box_tree(tree_);
 }
 
-void IndirectField::gather_more_where_noisy(const PathScene& scene, const std::atomic<bool>* stop) {
+void IndirectField::refine_noisy_records(const PathScene& scene, const std::atomic<bool>* stop) {
+    if (records_.empty()) return;
     double sum = 0;
-    for (const Record& r : records_) sum += r.level;
-    const float floor = share_of_mean * static_cast<float>(sum / static_cast<double>(records_.size()));
-    std::vector<float> wanted(records_.size());
+    for (const Record& r : records_) sum += r.irradiance;
+    const float min_irradiance = min_share_of_mean * static_cast<float>(sum / static_cast<double>(records_.size()));
+    std::vector<float> needed(records_.size());
     parallel_for_ranges(records_.size(), records_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Record& r = records_[i];
-            const float deviation = std::sqrt(pooled_variance(r)) / std::max(floor, r.level);
-            wanted[i] = groups_per_deviation * deviation * r.reach_in_spacings;
+            const float deviation = std::sqrt(pooled_variance(r)) / std::max(min_irradiance, r.irradiance);
+            needed[i] = groups_per_deviation * deviation * r.reach_in_spacings;
         }
     });
-    for (std::size_t groups = groups_of_first_round; groups < max_groups && !(stop && *stop); groups *= 2) {
+    // All noisy records have as many groups as they are given: each round doubles them.
+    for (std::size_t groups = min_groups; groups < max_groups && !(stop && *stop); groups *= 2) {
         std::vector<std::uint32_t> noisy;
         for (std::uint32_t i = 0; i < records_.size(); ++i)
-            if (wanted[i] > static_cast<float>(groups)) noisy.push_back(i);
+            if (needed[i] > static_cast<float>(groups)) noisy.push_back(i);
         if (noisy.empty()) return;
         gather(scene, noisy, groups, stop);
     }
 }
 
 float IndirectField::pooled_variance(const Record& record) const {
-    double sum = 0, count = 0;
+    double squares = 0, degrees_of_freedom = 0;
     visit_box_tree(
         std::span<const Boxed>(tree_), [&](const Imath::Box3f& box) { return box.intersects(record.position); },
         [&](std::uint32_t i) {
             const Record& r = records_[i];
-            if (!(r.distance2(record.position, record.normal, record.patch) < 1)) return;
-            sum += r.gathered.squares, count += r.gathered.batches - 1.0;
+            if (!(r.relative_distance2(record.position, record.normal, record.patch) < 1)) return;
+            squares += r.gathered.squares, degrees_of_freedom += r.gathered.batches - 1.0;
         });
-    return static_cast<float>(sum / count);
+    return static_cast<float>(squares / degrees_of_freedom);
 }
 
-float IndirectField::distance_to_contact(const V3f& x, float most) const {
+float IndirectField::distance_to_contact(const V3f& x, float max_distance) const {
+    float nearest = max_distance;
     const auto is_near = [&](const Imath::Box3f& box) {
-        return (Imath::closestPointInBox(x, box) - x).length() < most;
+        return (Imath::closestPointInBox(x, box) - x).length() < nearest;
     };
     visit_box_tree(std::span<const Boxed>(contact_tree_), is_near,
-                   [&](std::uint32_t i) { most = std::min(most, (nearest_on(contacts_[i], x) - x).length()); });
-    return most;
+                   [&](std::uint32_t i) { nearest = std::min(nearest, (nearest_on(contacts_[i], x) - x).length()); });
+    return nearest;
 }
 
-float IndirectField::Record::distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const {
-    constexpr float min_cosine = 0.97f;  // at the end of the reach: 14 degrees
+float IndirectField::Record::relative_distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const {
+    constexpr float min_cosine = 0.97f;  // between normals at the record itself: 14 degrees
     constexpr float height_factor = 10;  // distances along the normal count more: parallel surfaces differ
     const float cosine = normal.dot(n);
     if (cosine <= min_cosine) return 1;
     const V3f d = position - x;
-    const float farthest = of_patch == patch ? reach : reach_elsewhere, height = height_factor * d.dot(n);
-    return (d.length2() + height * height) / (farthest * farthest) + (1 - cosine) / (1 - min_cosine);
+    const float max_distance = of_patch == patch ? reach : reach_elsewhere, height = height_factor * d.dot(n);
+    return (d.length2() + height * height) / (max_distance * max_distance) + (1 - cosine) / (1 - min_cosine);
 }
 
 LocalFit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const {
@@ -233,7 +238,7 @@ LocalFit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch) 
         std::span<const Boxed>(tree_), [&](const Imath::Box3f& box) { return box.intersects(x); },
         [&](std::uint32_t i) {
             const Record& r = records_[i];
-            const float distance2 = r.distance2(x, n, patch);
+            const float distance2 = r.relative_distance2(x, n, patch);
             if (!(distance2 < 1)) return;
             const V3f d = r.position - x;
             fit.add((1 - distance2) * (1 - distance2), d.dot(frame.s), d.dot(frame.t), Rgb(r.gathered.mean));
@@ -242,7 +247,7 @@ LocalFit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch) 
 }
 
 std::optional<Rgb> IndirectField::at(const V3f& x, const V3f& n, std::uint32_t patch) const {
-    constexpr float min_weight = 0.1f;
+    constexpr float min_weight = 0.1f;  // less: at the end of the reach of a single record
     const LocalFit fit = fit_at(x, n, patch);
     if (!(fit.weight() > min_weight)) return std::nullopt;
     return fit.value();

@@ -48,12 +48,12 @@ class IndirectField {
         float reach = 0;            // on its own patch, which no contact crosses [m]
         float reach_elsewhere = 0;  // at most the distance to the nearest contact [m]
         float reach_in_spacings = 0;
-        float level = 0;            // luminance of all irradiance there, to which errors are relative [as H]
-        float nearness = 0;         // sum of 1 / length over the first rays of its paths [1/m]
+        float irradiance = 0;       // luminance of all irradiance there, to which errors are relative [as H]
+        float inverse_length = 0;   // sum of 1 / length over the first rays of its paths [1/m]
         PartStatistics gathered{};  // irradiance by groups of paths [as H]
 
         /// Squared distance relative to the reach; 1 or more beyond it.
-        float distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const;
+        float relative_distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const;
     };
 
     LocalFit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
@@ -62,9 +62,10 @@ class IndirectField {
     void gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,
                 const std::atomic<bool>* stop);
     void add_records(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
-    void gather_more_where_noisy(const PathScene& scene, const std::atomic<bool>* stop);
+    void refine_noisy_records(const PathScene& scene, const std::atomic<bool>* stop);
     float pooled_variance(const Record& record) const;
-    float distance_to_contact(const V3f& x, float most) const;
+    /// At most max_distance.
+    float distance_to_contact(const V3f& x, float max_distance) const;
 
     std::vector<Contact> contacts_;
     std::vector<Boxed> contact_tree_;

@@ -185,7 +185,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
                                     path.travelled + hit.distance,
                                     s_.known ? static_cast<double>(s_.known->level(hit.patch, x)) : 0};
     const float distance = path.travelled + hit.distance;
-    if (vertex_ == 2 && !s_.start->camera) light_[path.index].first.nearness = 1 / static_cast<double>(distance);
+    if (vertex_ == 2 && !s_.start->camera) light_[path.index].first.inverse_length = 1 / static_cast<double>(distance);
     if (channel_sum(exitance) > 0) add_emission(hit, ray, path, exitance);
 
     if (path.place != none || end_at_known_light(hit, ray, path)) return false;

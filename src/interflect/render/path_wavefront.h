@@ -69,13 +69,13 @@ struct PathScene {
 struct FirstHit {
     RgbD albedo{0, 0, 0};
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
-    double distance = 0;  // from the camera, through panes and by mirrors [m]
-    double level = 0;     // of the element, with a known solution
-    double nearness = 0;  // 1 / length of the first ray from a gauge [1/m]
+    double distance = 0;        // from the camera, through panes and by mirrors [m]
+    double level = 0;           // of the element, with a known solution
+    double inverse_length = 0;  // 1 / length of the first ray from a gauge [1/m]
 
     FirstHit& operator+=(const FirstHit& o) {
         albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance, level += o.level;
-        nearness += o.nearness;
+        inverse_length += o.inverse_length;
         return *this;
     }
 };
