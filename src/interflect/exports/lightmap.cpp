@@ -10,6 +10,7 @@
 #include <numbers>
 #include <optional>
 
+#include "interflect/base/monitor_section.h"
 #include "interflect/base/parallel.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
@@ -314,16 +315,6 @@ void add(const std::vector<Image>& images, std::vector<Image>& sum) {
         for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
 }
 
-Monitor part_of(const Monitor& whole, std::size_t part, std::size_t count) {
-    Monitor monitor = whole;
-    if (whole.on_progress)
-        monitor.on_progress = [&whole, part, count](Progress progress) {
-            progress.fraction = (static_cast<double>(part) + progress.fraction) / static_cast<double>(count);
-            whole.on_progress(progress);
-        };
-    return monitor;
-}
-
 /// The lightmap is the sum of its groups, including noise.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
                      const ExportOptions& options, Lightmap& lightmap) {
@@ -337,7 +328,8 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
         share.irradiance = std::move(share.groups[g]);
         share.groups.clear();
         ExportOptions of_group = options;
-        of_group.monitor = part_of(options.monitor, g, groups.size());
+        const auto count = static_cast<double>(groups.size()), before = static_cast<double>(g);
+        of_group.monitor = monitor_section(options.monitor, before / count, (before + 1) / count);
         lightmap.groups.push_back(lightmap.images);
         texels.evaluate(alone, IrradianceSource(alone, share, of_group), lightmap.groups.back());
     }

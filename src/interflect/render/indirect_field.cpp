@@ -75,24 +75,25 @@ std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
 
 }  // namespace
 
-IndirectField::IndirectField(const PathScene& scene, std::span<const SurfacePoint> points,
-                             const std::atomic<bool>* stop)
+IndirectField::IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor)
     : contacts_(scene.scene.contacts), contact_tree_(make_tree(contacts_)) {
-    cover(scene, points, stop);
-    refine_noisy_records(scene, stop);
+    cover(scene, points, monitor);
+    refine_noisy_records(scene, monitor.stop);
 }
 
-void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop) {
+void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor) {
     const std::vector<std::uint32_t> order = shuffled(points.size(), scene.options.seed);
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
         end = std::min(points.size(), std::max(points_of_first_round, 2 * begin));
         std::vector<SurfacePoint> candidates, chosen;
         for (std::size_t i = begin; i < end; ++i) candidates.push_back(points[order[i]]);
         while (!candidates.empty()) {
-            if (stop && *stop) return;
+            if (monitor.stop && *monitor.stop) return;
             separate(uncovered_among(candidates), chosen, candidates);
-            add_records(scene, chosen, stop);
+            add_records(scene, chosen, monitor.stop);
         }
+        if (monitor.on_progress)
+            monitor.on_progress({rays_, static_cast<double>(end) / static_cast<double>(points.size())});
     }
 }
 

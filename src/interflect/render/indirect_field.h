@@ -33,8 +33,8 @@ class IndirectField {
   public:
     /// Makes records until all points are covered.
     /// @param scene  With a known solution; its starts and batches are ignored.
-    /// @param stop   If set, ends within milliseconds, with fewer records; may be null.
-    IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
+    /// If stopped, ends within milliseconds, with fewer records.
+    IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor);
 
     /// Returns the irradiance [as H]; nullopt without a record in reach.
     std::optional<Rgb> at(const V3f& x, const V3f& n, std::uint32_t patch) const;
@@ -57,7 +57,7 @@ class IndirectField {
     };
 
     LocalFit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
-    void cover(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
+    void cover(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor);
     std::vector<SurfacePoint> uncovered_among(std::span<const SurfacePoint> points) const;
     void gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,
                 const std::atomic<bool>* stop);

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "interflect/base/monitor_section.h"
 #include "interflect/base/parallel.h"
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
@@ -222,6 +223,16 @@ void require_valid(const PathOptions& options) {
 
 }  // namespace
 
+namespace {
+
+PathTracing draw(const PathScene& scene, const PathOptions& options, const Monitor& monitor) {
+    PathPicture picture(scene, options, monitor);
+    picture.trace();
+    return picture.result();
+}
+
+}  // namespace
+
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                           const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
@@ -229,16 +240,14 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     const TracedScene traced(scene, ray_caster, known);
     const bool is_hybrid = known && known->is_interpolated;
     PathScene path_scene = traced.paths(start, options, TracedScene::batch_size(options.samples, min_batches));
-    if (is_hybrid) path_scene.batch_size = std::max(path_scene.batch_size, min_hybrid_batch);
-    std::optional<IndirectField> indirect_field;
-    if (is_hybrid) {
-        indirect_field.emplace(path_scene, first_points(path_scene, monitor.stop), monitor.stop);
-        path_scene.indirect_field = &*indirect_field;
-    }
-    PathPicture picture(path_scene, options, monitor);
-    picture.trace();
-    PathTracing result = picture.result();
-    if (indirect_field) result.rays += indirect_field->rays();
+    if (!is_hybrid) return draw(path_scene, options, monitor);
+    path_scene.batch_size = std::max(path_scene.batch_size, min_hybrid_batch);
+    constexpr double share_of_records = 0.25;  // of the time; roughly
+    const IndirectField field(path_scene, first_points(path_scene, monitor.stop),
+                              monitor_section(monitor, 0, share_of_records));
+    path_scene.indirect_field = &field;
+    PathTracing result = draw(path_scene, options, monitor_section(monitor, share_of_records, 1, field.rays()));
+    result.rays += field.rays();
     return result;
 }
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "interflect/base/monitor_section.h"
 #include "interflect/base/parallel.h"
 #include "interflect/render/part_statistics.h"
 #include "interflect/render/smooth_surfaces.h"
@@ -135,12 +136,14 @@ std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_cast
     PathStart start;
     start.gauges = gauges;
     PathScene paths = traced.paths(start, options, TracedScene::batch_size(options.samples, 8));
-    const IndirectField field(paths, first_points(paths, monitor.stop), monitor.stop);
+    constexpr double share_of_records = 0.6;  // of the time; roughly
+    const IndirectField field(paths, first_points(paths, monitor.stop), monitor_section(monitor, 0, share_of_records));
+    const Monitor rest = monitor_section(monitor, share_of_records, 1, field.rays());
     paths.indirect_field = &field;
     std::vector<Rgb> irradiance(gauges.size());
     constexpr std::size_t per_tile = 256;
     constexpr std::size_t tiles_per_report = 256;
-    std::int64_t rays = field.rays();
+    std::int64_t rays = 0;
     for (std::size_t first = 0; first < gauges.size(); first += per_tile * tiles_per_report) {
         const std::size_t count = std::min(per_tile * tiles_per_report, gauges.size() - first);
         std::vector<std::int64_t> rays_of_tile((count + per_tile - 1) / per_tile);
@@ -152,8 +155,8 @@ std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_cast
         if (monitor.stop && *monitor.stop)
             throw Stopped(fmt::format("stopped when {} of {} texels of the lightmap had light", first, gauges.size()));
         for (const std::int64_t of_tile : rays_of_tile) rays += of_tile;
-        if (monitor.on_progress)
-            monitor.on_progress({rays, static_cast<double>(first + count) / static_cast<double>(gauges.size())});
+        if (rest.on_progress)
+            rest.on_progress({rays, static_cast<double>(first + count) / static_cast<double>(gauges.size())});
     }
     return irradiance;
 }
