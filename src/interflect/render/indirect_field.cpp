@@ -92,8 +92,9 @@ void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> 
             separate(uncovered_among(candidates), chosen, candidates);
             add_records(scene, chosen, monitor.stop);
         }
-        if (monitor.on_progress)
-            monitor.on_progress({rays_, static_cast<double>(end) / static_cast<double>(points.size())});
+        // Few points of later rounds become records.
+        const double done = std::sqrt(static_cast<double>(end) / static_cast<double>(points.size()));
+        if (monitor.on_progress) monitor.on_progress({rays_, done});
     }
 }
 
