@@ -6,9 +6,9 @@
 
 namespace interflect::detail {
 
-/// Reports the progress of a section of the work as that of the whole, of which it is the fraction `begin` to `end`.
+/// Maps the progress of a section of the work to fractions in [begin, end] of the whole.
 /// @param whole        Must outlive the result.
-/// @param rays_before  Of earlier sections.
+/// @param rays_before  Rays of earlier sections.
 inline Monitor monitor_section(const Monitor& whole, double begin, double end, std::int64_t rays_before = 0) {
     Monitor monitor = whole;
     if (whole.on_progress)

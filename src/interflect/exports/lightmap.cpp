@@ -35,7 +35,7 @@ struct TexelPlace {
     Parameters at;
     std::array<Parameters, 2> sides{};  ///< Extent of the texel along columns and rows.
     bool is_inside = false;
-    bool is_near = false;  ///< Bilinear interpolation on the patch may use the texel.
+    bool is_near = false;  ///< Less than a texel from the patch: bilinear interpolation may use it.
 };
 
 std::array<Parameters, 2> texel_sides(const FlatPatch& flat, const Imath::V2d& spacing) {
@@ -247,7 +247,7 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
     return places;
 }
 
-/// Returns, for each texel of a chart, one nearby whose light it has: itself if a lookup on the surface may use it.
+/// Returns the texel whose light each texel of a chart takes: the nearest that bilinear interpolation may use.
 std::vector<std::size_t> lit_texels(std::span<const TexelPlace> places, std::size_t columns) {
     constexpr auto unknown = static_cast<std::size_t>(-1);
     std::vector<std::size_t> lit(places.size(), unknown), reached;
@@ -268,7 +268,7 @@ std::vector<std::size_t> lit_texels(std::span<const TexelPlace> places, std::siz
     return lit;
 }
 
-/// Texels of all charts. Those that no lookup on a surface uses have the light of their neighbours.
+/// Texels of all charts.
 class LightmapTexels {
   public:
     explicit LightmapTexels(const LightmapOptions& options) : options_(options) {}

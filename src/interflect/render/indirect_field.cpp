@@ -22,8 +22,8 @@ constexpr std::size_t paths_per_group = 16, min_groups = 8, max_groups = 64;
 /// and all irradiance E at the record, but at least min_share_of_mean of the mean E. For a given number of rays, this
 /// gives the picture the least squared error (Neyman allocation): a record affects all pixels in its reach.
 constexpr float groups_per_deviation = 7, min_share_of_mean = 0.25f;
-/// Reach of a record: 0.15 of the harmonic mean length of its rays, 4 to 100 spacings of the points. With 0.35 and 512
-/// paths, errors are 1.1 to 1.8 times as large in the same time.
+/// Reach of a record, relative to the harmonic mean length of its rays; limits in spacings of the points. With 0.35 and
+/// 512 paths, errors are 1.1 to 1.8 times as large.
 constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
 /// A point is covered if the weights of the records there, at most 1 each, have this sum.
 constexpr float covering_weight = 1.5f;
@@ -191,7 +191,7 @@ void IndirectField::refine_noisy_records(const PathScene& scene, const std::atom
             needed[i] = groups_per_deviation * deviation * r.reach_in_spacings;
         }
     });
-    // All noisy records have as many groups as they are given: each round doubles them.
+    // Each round doubles the groups of noisy records.
     for (std::size_t groups = min_groups; groups < max_groups && !(stop && *stop); groups *= 2) {
         std::vector<std::uint32_t> noisy;
         for (std::uint32_t i = 0; i < records_.size(); ++i)

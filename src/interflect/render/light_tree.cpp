@@ -97,7 +97,7 @@ struct LightTree::BinaryNode {
     Box box;
     Cone cone;
     float power;          // [W or lm]
-    std::uint32_t light;  // none: has children
+    std::uint32_t light;  // if a leaf
     std::uint32_t children[2];
 
     float radius() const { return 0.5f * (box.high - box.low).length(); }
@@ -238,7 +238,7 @@ LightTree::Choices LightTree::importance_of_children(const Node& node, const V3f
         const float dx = node.centre.x[i] - x.x, dy = node.centre.y[i] - x.y, dz = node.centre.z[i] - x.z;
         const float hx = node.half.x[i], hy = node.half.y[i], hz = node.half.z[i];
         const float ax = node.axis.x[i], ay = node.axis.y[i], az = node.axis.z[i];
-        // Of the box's highest point above the surface, and of x before the rearmost point.
+        // Height of the box above the surface; distance of x ahead of its rearmost point.
         const float height =
             n.x * dx + n.y * dy + n.z * dz + std::abs(n.x) * hx + std::abs(n.y) * hy + std::abs(n.z) * hz;
         const float ahead = std::abs(ax) * hx + std::abs(ay) * hy + std::abs(az) * hz - (ax * dx + ay * dy + az * dz);

@@ -13,7 +13,7 @@ struct StartPoint {
     std::uint32_t leaf;
     float power;                   ///< Sum of the channels; cumulative over the leaf in StartPoints.
     Parameters at;                 ///< On the leaf's patch.
-    std::uint32_t place_on_curve;  ///< Of `at`, on a Morton curve.
+    std::uint32_t place_on_curve;  ///< Morton code of `at`.
 
     StartPoint(std::uint32_t of_leaf, float of_power, const Parameters& point);
 };
