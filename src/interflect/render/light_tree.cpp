@@ -97,7 +97,7 @@ struct LightTree::BinaryNode {
     Box box;
     Cone cone;
     float power;          // [W or lm]
-    std::uint32_t light;  // if a leaf
+    std::uint32_t light;  // none: an inner node
     std::uint32_t children[2];
 
     float radius() const { return 0.5f * (box.high - box.low).length(); }
