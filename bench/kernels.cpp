@@ -112,7 +112,7 @@ BENCHMARK(trace_the_solvers_rays);
 void add_arrivals(benchmark::State& state) {
     const auto elements = static_cast<std::uint32_t>(state.range(0));
     ContributionSums sums(elements);
-    sums.begin(elements);
+    sums.begin_step(elements);
     ContributionSums::ScatterBuffer buffer(sums);
     std::uint32_t random = 1;
     for (auto _ : state) {

@@ -120,7 +120,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"NoSuchAccessor", put("/meshes/0/primitives/0/attributes/POSITION", 99), "POSITION is 99"},
         Fault{"PositionsOfTwo", put("/meshes/0/primitives/0/attributes/POSITION", 1), "type 'VEC2', expected VEC3"},
         Fault{"NoSuchMode", put("/meshes/0/primitives/0/mode", 7), "its mode is 7"},
-        Fault{"TwoCorners", put("/accessors/0/count", 2), "no whole number of triangles"},
+        Fault{"TwoCorners", put("/accessors/0/count", 2), "2 vertices, expected a multiple of 3"},
+        Fault{"FourIndices", index({0, 1, 2, 0}), "4 indices, expected a multiple of 3"},
         Fault{"TooManyElements", put("/accessors/0/count", 4), "end beyond its view"},
         Fault{"EnormousCount", put("/accessors/0/count", 1'000'000'000), "end beyond its view"},
         Fault{"CountBeyondIntegers", put("/accessors/0/count", 1e19), "count is not a whole number"},
@@ -137,8 +138,8 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"BufferWithoutData", [](GltfBuilder& f) { f.file["buffers"] = {{{"byteLength", 60}}, {{"byteLength", 36}}}; f.file["bufferViews"][0]["buffer"] = 1; },
               "buffers[1]: it has no uri"},
         Fault{"BadBase64", put("/buffers", {{{"byteLength", 60}, {"uri", "data:;base64,A*"}}}), "no valid base64"},
-        Fault{"IndexBeyondVertices", index({0, 1, 3}), "vertex 3 is used, but there are 3"},
-        Fault{"RestartIndex", index({0, 1, 65535}), "vertex 65535 is used"},
+        Fault{"IndexBeyondVertices", index({0, 1, 3}), "index 3 is outside the 3 vertices"},
+        Fault{"RestartIndex", index({0, 1, 65535}), "index 65535 is outside the 3 vertices"},
         Fault{"BillionIndices", index_zeros(999'999'999), "max_patches"},
         Fault{"FloatIndices", put("/meshes/0/primitives/0/indices", 0), "expected SCALAR"},
         Fault{"SparseBeyondEnd", [](GltfBuilder& f) {
@@ -155,6 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
                   f.file["accessors"][0].update({{"count", 999'999'999'999}, {"sparse", {{"count", 0}, {"indices", {{"bufferView", 0}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}}}});
               }, "max_model_bytes"},
         Fault{"CoordinatesAreFewer", [](GltfBuilder& f) { show_image(png_of_zeros(1, 1, 4))(f); put("/accessors/1/count", 2)(f); }, "2 texture coordinates for 3 vertices"},
+        Fault{"NormalsAreFewer", [](GltfBuilder& f) { f.file["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = f.add_vectors({{0, 0, 1}}); }, "1 normals for 3 vertices"},
         Fault{"MeshoptDamaged", [](GltfBuilder& f) { use_meshopt(f, "ATTRIBUTES", 3, 12); }, "its data are damaged"},
         Fault{"MeshoptTerabytes", [](GltfBuilder& f) { use_meshopt(f, "ATTRIBUTES", 1ull << 40, 256); }, "max_model_bytes"},
         Fault{"MeshoptStride", [](GltfBuilder& f) { use_meshopt(f, "ATTRIBUTES", 3, 6); }, "cannot have byteStride 6"},

@@ -360,5 +360,17 @@ TEST(GltfDraco, DamagedOnesAreRefused) {
     EXPECT_THAT(fewer.fault(), HasSubstr("more triangles or vertices than its accessors"));
 }
 
+TEST(GltfDraco, AttributesHaveTheExpectedComponents) {
+    const auto fault_if = [](const char* attribute, int id) {
+        GltfBuilder file = draco_file();
+        json& primitive = file.file["meshes"][0]["primitives"][0];
+        primitive["extensions"]["KHR_draco_mesh_compression"]["attributes"][attribute] = id;
+        return file.fault();
+    };
+    EXPECT_THAT(fault_if("POSITION", 1), HasSubstr("POSITION has 2 components, expected 3"));
+    EXPECT_THAT(fault_if("TEXCOORD_1", 0), HasSubstr("TEXCOORD_1 has 3 components, expected 2"));
+    EXPECT_THAT(fault_if("NORMAL", 1), HasSubstr("NORMAL has 2 components, expected 3"));
+}
+
 }  // namespace
 }  // namespace interflect

@@ -15,7 +15,7 @@ namespace {
 
 TEST(ContributionSums, GivesEachElementThePartsOfContributionsThatArriveThere) {
     ContributionSums sums(5);
-    sums.begin(3);
+    sums.begin_step(3);
     ContributionSums::ScatterBuffer buffer(sums);
     const std::uint32_t a = buffer.add_source({1, 10, 100, 5, 1000}), b = buffer.add_source({2, 20, 200, 7, 2000});
     buffer.add(0, a, true, true);
@@ -37,7 +37,7 @@ TEST(ContributionSums, AreTheSameWhateverThreadsBringThem) {
         contributions.push_back({s, 3 * s, -s, s * s, 1 + s});
     std::vector<Contribution> expected(elements, Contribution{});
     ContributionSums sums(elements);
-    sums.begin(elements);
+    sums.begin_step(elements);
     const auto element = [](std::size_t ray) { return static_cast<std::uint32_t>(ray * ray % elements); };
     for (std::size_t ray = 0; ray < rays; ++ray)
         for (std::size_t c = 0; c < contributions[0].size(); ++c)

@@ -144,26 +144,26 @@ const std::string& GltfAccessors::sparse(std::uint32_t index, const GltfElements
     return bytes;
 }
 
-GltfElements GltfAccessors::elements(std::uint32_t index, const std::string& types, const GltfValue& user) {
-    const GltfValue& owner = accessors_[index];
-    if (const std::string type = owner.text("type"); (' ' + types + ' ').find(' ' + type + ' ') == types.npos)
-        user.fail(fmt::format("{} has the type '{}', expected {}", owner.place(), type, types));
-    GltfElements result = shape_of(owner);
-    if (owner.has("bufferView")) {
-        result = in_view(owner, result);
+GltfElements GltfAccessors::elements(std::uint32_t index, const std::string& types, const GltfValue& owner) {
+    const GltfValue& accessor = accessors_[index];
+    if (const std::string type = accessor.text("type"); (' ' + types + ' ').find(' ' + type + ' ') == types.npos)
+        owner.fail(fmt::format("{} has the type '{}', expected {}", accessor.place(), type, types));
+    GltfElements result = shape_of(accessor);
+    if (accessor.has("bufferView")) {
+        result = in_view(accessor, result);
     } else {
         result.first = zeros;
         result.stride = 0;
     }
-    if (owner.has("sparse")) {
+    if (accessor.has("sparse")) {
         result.first = sparse(index, result).data();
         result.stride = element_size(result);
     }
     return result;
 }
 
-GltfElements GltfAccessors::indices(std::uint32_t index, const GltfValue& user) {
-    const GltfElements result = elements(index, "SCALAR", user);
+GltfElements GltfAccessors::indices(std::uint32_t index, const GltfValue& owner) {
+    const GltfElements result = elements(index, "SCALAR", owner);
     const int type = result.component_type;
     if (result.normalized || (type != unsigned_byte && type != unsigned_short && type != unsigned_int))
         accessors_[index].fail("indices must be unsigned whole numbers");

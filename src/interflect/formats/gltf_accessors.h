@@ -31,9 +31,9 @@ class GltfAccessors {
 
     std::size_t count() const { return accessors_.size(); }
     /// @param types  Accepted, such as "VEC3 VEC4". @return  Valid while this object lives. @throws GltfFault
-    GltfElements elements(std::uint32_t index, const std::string& types, const GltfValue& user);
+    GltfElements elements(std::uint32_t index, const std::string& types, const GltfValue& owner);
     /// Requires unsigned scalars.
-    GltfElements indices(std::uint32_t index, const GltfValue& user);
+    GltfElements indices(std::uint32_t index, const GltfValue& owner);
 
   private:
     GltfElements in_view(const GltfValue& owner, const GltfElements& shape);

@@ -95,45 +95,45 @@ void GltfAsset::warn(const char* kind, const std::string& message, const std::st
     model.warnings.add(kind, message, path().string() + ": " + place);
 }
 
-void GltfAsset::take_bytes(std::uint64_t count, const GltfValue& user) {
+void GltfAsset::take_bytes(std::uint64_t count, const GltfValue& owner) {
     if (count > options_.max_model_bytes - taken_)
-        user.fail(fmt::format("with its {} bytes, this file asks for more than {} (max_model_bytes)", count,
-                              options_.max_model_bytes));
+        owner.fail(fmt::format("with its {} bytes, this file asks for more than {} (max_model_bytes)", count,
+                               options_.max_model_bytes));
     taken_ += count;
 }
 
-std::string GltfAsset::read_uri(const std::string& uri, const GltfValue& user) {
+std::string GltfAsset::read_uri(const std::string& uri, const GltfValue& owner) {
     constexpr std::string_view data = "data:", base64 = ";base64";
-    if (!uri.starts_with(data)) return read_file(uri, user);
+    if (!uri.starts_with(data)) return read_file(uri, owner);
     const auto comma = uri.find(',');
-    if (comma == uri.npos) user.fail("its data URI has no comma");
-    take_bytes(uri.size(), user);
+    if (comma == uri.npos) owner.fail("its data URI has no comma");
+    take_bytes(uri.size(), owner);
     const std::string_view content = std::string_view(uri).substr(comma + 1);
     if (!std::string_view(uri).substr(0, comma).ends_with(base64)) return percent_decoded(content);
     auto bytes = decode_base64(content);
-    if (!bytes) user.fail("its data URI is no valid base64");
+    if (!bytes) owner.fail("its data URI is no valid base64");
     return std::move(*bytes);
 }
 
-std::string GltfAsset::read_file(const std::string& uri, const GltfValue& user) {
-    if (has_scheme(uri)) user.fail(fmt::format("'{}' is not the name of a file beside this one", cut(uri)));
-    if (options_.max_include_depth < 1) user.fail("no other file may be read (max_include_depth is 0)");
+std::string GltfAsset::read_file(const std::string& uri, const GltfValue& owner) {
+    if (has_scheme(uri)) owner.fail(fmt::format("'{}' is not the name of a file beside this one", cut(uri)));
+    if (options_.max_include_depth < 1) owner.fail("no other file may be read (max_include_depth is 0)");
     const std::string name = percent_decoded(uri);
     const fs::path folder = path().parent_path().empty() ? fs::path(".") : path().parent_path();
-    if (name.empty() || name.find('\0') != name.npos) user.fail(fmt::format("'{}' names no file", cut(uri)));
+    if (name.empty() || name.find('\0') != name.npos) owner.fail(fmt::format("'{}' names no file", cut(uri)));
     const fs::path file = folder / name;
     const bool stays = !fs::path(name).is_absolute() && is_within(file, folder);
     if (!stays && !options_.outside_files)
-        user.fail(
+        owner.fail(
             fmt::format("'{}' is outside the folder of this file, which is not allowed (outside_files)", cut(uri)));
     try {
         std::string bytes = read_bytes(file, options_.max_model_bytes - taken_);
-        take_bytes(bytes.size(), user);
+        take_bytes(bytes.size(), owner);
         if (std::find(model.files.begin(), model.files.end(), file.string()) == model.files.end())
             model.files.push_back(file.string());
         return bytes;
     } catch (const InputError& unreadable) {
-        user.fail(unreadable.what());
+        owner.fail(unreadable.what());
     }
 }
 

@@ -31,14 +31,14 @@ class GltfAsset {
     void warn(const char* kind, const std::string& message, const std::string& place);
 
     /// Reads a data URI, or a file in the scene's folder.
-    std::string read_uri(const std::string& uri, const GltfValue& user);
+    std::string read_uri(const std::string& uri, const GltfValue& owner);
     /// @throws GltfFault beyond max_model_bytes in total.
-    void take_bytes(std::uint64_t count, const GltfValue& user);
+    void take_bytes(std::uint64_t count, const GltfValue& owner);
 
     Model model;
 
   private:
-    std::string read_file(const std::string& uri, const GltfValue& user);
+    std::string read_file(const std::string& uri, const GltfValue& owner);
 
     GltfValue root_;
     const ReadOptions& options_;

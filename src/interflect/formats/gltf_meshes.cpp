@@ -73,7 +73,7 @@ struct GltfMeshes::Vertices {
         double weight;
     };
     GltfElements positions;
-    std::optional<GltfElements> coordinates, lightmap_coordinates, normals;
+    std::optional<GltfElements> texture_coordinates, lightmap_coordinates, normals;
     DracoMesh draco;  // owns decoded elements
     std::vector<Target> targets;
     GltfElements joint_indices, joint_weights;
@@ -91,7 +91,8 @@ struct GltfMeshes::Vertices {
             const double weight = joint_weights.number(i, k), joint = joint_indices.number(i, k);
             if (weight == 0) continue;
             if (!(joint < static_cast<double>(joints.size())))
-                primitive.fail(fmt::format("vertex {} has joint {}, but there are {}", i, joint, joints.size()));
+                primitive.fail(
+                    fmt::format("vertex {} has joint {}, but the skin has {} joints", i, joint, joints.size()));
             result += position * joints[static_cast<std::size_t>(joint)] * weight;
             sum += weight;
         }
@@ -106,12 +107,13 @@ GltfMeshes::GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& ac
       materials_(materials),
       meshes_(asset.root().objects("meshes")) {}
 
-void GltfMeshes::add_triangles(std::uint64_t count, const GltfValue& primitive) {
+void GltfMeshes::count_triangles(std::uint64_t count, const GltfValue& primitive) {
     triangles_ += count;
     if (triangles_ > asset_.options().max_patches)
-        throw TooManyPatches(asset_.path(), /*line=*/0,
-                             fmt::format("{}: with its {} triangles there would be more than {} patches (max_patches)",
-                                         primitive.place(), count, asset_.options().max_patches));
+        throw TooManyPatches(
+            asset_.path(), /*line=*/0,
+            fmt::format("{}: with its {} triangles, the meshes exceed the limit of {} patches (max_patches)",
+                        primitive.place(), count, asset_.options().max_patches));
 }
 
 GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, const char* types) {
@@ -125,7 +127,7 @@ std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
     return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";
 }
 
-void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices) {
+void GltfMeshes::read_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices) {
     const GltfValue ids = extension.object("attributes");
     constexpr std::size_t max_ids = 1 << 16;
     std::vector<std::uint32_t> wanted = {ids.required_index("POSITION", max_ids)};
@@ -135,13 +137,13 @@ void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extensi
         wanted.push_back(ids.index(set.c_str(), max_ids));
         return wanted.size() - 1;
     };
-    const auto coordinates = want(texture_set), lightmap = want(lightmap_set), normals = want(normal_set);
+    const auto texture_coordinates = want(texture_set), lightmap = want(lightmap_set), normals = want(normal_set);
     const auto view = buffers_.view(extension.required_index("bufferView", buffers_.view_count()));
     // Only the counts are used.
     const GltfElements indices =
         accessors_.elements(primitive.required_index("indices", accessors_.count()), "SCALAR", primitive);
     const GltfElements positions = attribute(primitive, "POSITION", "VEC3");
-    add_triangles(indices.count / 3, primitive);
+    count_triangles(indices.count / 3, primitive);
     // Limits the decoder's memory.
     if (positions.count > indices.count) extension.fail("it has more vertices than corners");
     vertices.draco = decode_draco(view.bytes, wanted, indices.count / 3, positions.count, extension);
@@ -149,15 +151,15 @@ void GltfMeshes::open_draco(const GltfValue& primitive, const GltfValue& extensi
         return elements_of(vertices.draco.attributes[i], vertices.draco.vertex_count);
     };
     vertices.positions = decoded(0);
-    if (coordinates) vertices.coordinates = decoded(*coordinates);
+    if (texture_coordinates) vertices.texture_coordinates = decoded(*texture_coordinates);
     if (lightmap) vertices.lightmap_coordinates = decoded(*lightmap);
     if (normals) vertices.normals = decoded(*normals);
 }
 
-void GltfMeshes::open_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices) {
-    const auto require_count = [&](const GltfElements& elements, const GltfValue& user) {
+void GltfMeshes::read_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices) {
+    const auto require_count = [&](const GltfElements& elements, const GltfValue& owner) {
         if (elements.count != vertices.positions.count)
-            user.fail(fmt::format("{} elements for {} vertices", elements.count, vertices.positions.count));
+            owner.fail(fmt::format("{} elements for {} vertices", elements.count, vertices.positions.count));
     };
     const std::vector<GltfValue> targets = primitive.objects("targets");
     for (std::size_t i = 0; i < std::min(targets.size(), pose.weights.size()); ++i) {
@@ -178,51 +180,59 @@ GltfMeshes::Vertices GltfMeshes::vertices_of(const GltfValue& primitive) {
     Vertices vertices;
     const GltfValue attributes = primitive.object("attributes");
     if (const GltfValue draco = primitive.extension("KHR_draco_mesh_compression"); draco.exists()) {
-        open_draco(primitive, draco, vertices);
+        read_draco(primitive, draco, vertices);
     } else {
         vertices.positions = attribute(primitive, "POSITION", "VEC3");
         if (vertices.positions.stride == 0) attributes.fail("the accessor of POSITION has no data");
         const std::string texture_set = texture_set_of(primitive);
         if (!texture_set.empty() && attributes.has(texture_set.c_str()))
-            vertices.coordinates = attribute(primitive, texture_set.c_str(), "VEC2");
+            vertices.texture_coordinates = attribute(primitive, texture_set.c_str(), "VEC2");
         if (attributes.has(lightmap_set)) vertices.lightmap_coordinates = attribute(primitive, lightmap_set, "VEC2");
         if (attributes.has(normal_set)) vertices.normals = attribute(primitive, normal_set, "VEC3");
     }
-    if (vertices.positions.components != 3) attributes.fail("POSITION has not three components");
-    for (const std::optional<GltfElements>& set : {vertices.coordinates, vertices.lightmap_coordinates})
-        if (set && (set->count != vertices.positions.count || set->components != 2))
-            attributes.fail(
-                fmt::format("{} texture coordinates for {} vertices", set->count, vertices.positions.count));
-    if (const auto& n = vertices.normals; n && (n->count != vertices.positions.count || n->components != 3))
-        attributes.fail(fmt::format("{} normals for {} vertices", n->count, vertices.positions.count));
+    const auto require_components = [&](const std::string& name, const GltfElements& elements, int expected) {
+        if (elements.components != expected)
+            attributes.fail(fmt::format("{} has {} components, expected {}", name, elements.components, expected));
+    };
+    const auto require_shape = [&](const std::string& name, const std::optional<GltfElements>& elements, int components,
+                                   const char* plural) {
+        if (!elements) return;
+        require_components(name, *elements, components);
+        if (elements->count != vertices.positions.count)
+            attributes.fail(fmt::format("{} {} for {} vertices", elements->count, plural, vertices.positions.count));
+    };
+    require_components("POSITION", vertices.positions, 3);
+    require_shape(texture_set_of(primitive), vertices.texture_coordinates, 2, "texture coordinates");
+    require_shape(lightmap_set, vertices.lightmap_coordinates, 2, "texture coordinates");
+    require_shape(normal_set, vertices.normals, 3, "normals");
     return vertices;
 }
 
 std::vector<std::uint32_t> GltfMeshes::corners_of(const GltfValue& primitive, Vertices& vertices) {
     const std::uint64_t mode = primitive.integer("mode", triangles);
-    const auto check_corner_count = [&](std::uint64_t corners) {
+    const auto check_corner_count = [&](std::uint64_t corners, const char* plural) {
         if (mode == triangles && corners % 3 != 0)
-            primitive.fail(fmt::format("{} corners are no whole number of triangles", corners));
-        add_triangles(mode == triangles ? corners / 3 : std::max<std::uint64_t>(corners, 2) - 2, primitive);
+            primitive.fail(fmt::format("{} {}, expected a multiple of 3", corners, plural));
+        count_triangles(mode == triangles ? corners / 3 : std::max<std::uint64_t>(corners, 2) - 2, primitive);
     };
     std::vector<std::uint32_t> corners;
     const std::uint64_t vertex_count = vertices.positions.count;
     if (primitive.extension("KHR_draco_mesh_compression").exists()) {
-        return std::move(vertices.draco.indices);  // counted by open_draco()
+        return std::move(vertices.draco.indices);  // counted by read_draco()
     } else if (primitive.has("indices")) {
         const GltfElements indices = accessors_.indices(primitive.index("indices", accessors_.count()), primitive);
-        check_corner_count(indices.count);
+        check_corner_count(indices.count, "indices");
         corners.reserve(indices.count);
         for (std::uint64_t i = 0; i < indices.count; ++i) corners.push_back(indices.whole_number(i));
     } else {
-        check_corner_count(vertex_count);
+        check_corner_count(vertex_count, "vertices");
         if (vertex_count > std::numeric_limits<std::uint32_t>::max()) primitive.fail("it has too many vertices");
         corners.resize(vertex_count);
         std::iota(corners.begin(), corners.end(), 0u);
     }
     const auto largest = std::max_element(corners.begin(), corners.end());
     if (largest != corners.end() && *largest >= vertex_count)
-        primitive.fail(fmt::format("vertex {} is used, but there are {}", *largest, vertex_count));
+        primitive.fail(fmt::format("index {} is outside the {} vertices", *largest, vertex_count));
     return as_triangles(corners, mode);
 }
 
@@ -230,20 +240,20 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     const std::uint64_t mode = primitive.integer("mode", triangles);
     if (mode > triangle_fan) primitive.fail(fmt::format("its mode is {}, expected 0 to 6", mode));
     if (mode < triangles) {
-        asset_.warn("no-faces", "points and lines are left out", primitive.place());
+        asset_.warn("no-faces", "points and lines are ignored", primitive.place());
         return;
     }
     if (!primitive.object("attributes").has("POSITION")) {
-        asset_.warn("no-faces", "a primitive without positions is left out", primitive.place());
+        asset_.warn("no-faces", "a primitive without positions is ignored", primitive.place());
         return;
     }
     if (primitive.object("attributes").has("COLOR_0"))
         asset_.warn("vertex-colours", "colours of vertices (COLOR_0) are ignored", primitive.place());
     Vertices vertices = vertices_of(primitive);
     const GltfSurface& surface =
-        materials_.surface(primitive.index("material", materials_.count()), vertices.coordinates.has_value());
+        materials_.surface(primitive.index("material", materials_.count()), vertices.texture_coordinates.has_value());
     if (surface.is_invisible) return;
-    open_deformation(primitive, pose, vertices);
+    read_deformation(primitive, pose, vertices);
 
     Mesh mesh;
     mesh.name = primitive.place();
@@ -257,7 +267,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
         for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
     if (surface.mapping) {
-        const GltfElements& c = *vertices.coordinates;  // a mapping implies coordinates
+        const GltfElements& c = *vertices.texture_coordinates;  // a mapping implies them
         mesh.texture_coordinates.reserve(used.size());
         for (const std::uint32_t v : used) {
             const V2f coordinate = surface.mapping->apply(c.number(v, 0), c.number(v, 1));
@@ -266,8 +276,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
         }
     }
     if (is_outside && !surface.repeats)
-        asset_.warn("texture-wrap", "a texture that its sampler clamps or mirrors repeats beyond its edges",
-                    primitive.place());
+        asset_.warn("texture-wrap", "clamped or mirrored texture: repeated outside [0, 1] instead", primitive.place());
     if (vertices.lightmap_coordinates) read_lightmap_coordinates(*vertices.lightmap_coordinates, used, mesh);
     if (mesh.indices.empty()) return;
     result.push_back(static_cast<std::uint32_t>(asset_.model.meshes.size()));
@@ -283,7 +292,7 @@ void GltfMeshes::read_lightmap_coordinates(const GltfElements& set, const std::v
         const double u = set.number(v, 0), v_down = set.number(v, 1);
         if (!is_in_range(u) || !is_in_range(v_down)) {
             asset_.warn("lightmap-coordinates",
-                        fmt::format("{} is no lightmap, since it leaves [0, 1]: it is ignored", lightmap_set),
+                        fmt::format("{} is ignored as a lightmap: its coordinates are outside [0, 1]", lightmap_set),
                         mesh.name);
             mesh.lightmap_coordinates.clear();
             return;
@@ -294,11 +303,11 @@ void GltfMeshes::read_lightmap_coordinates(const GltfElements& set, const std::v
 
 const std::vector<std::uint32_t>& GltfMeshes::meshes(std::uint32_t index, const GltfPose& pose) {
     const GltfValue& owner = meshes_[index];
-    GltfPose actual = pose;
-    if (actual.weights.empty()) actual.weights = owner.numbers("weights");
-    const auto [entry, is_new] = made_.try_emplace({index, actual.weights, actual.skin});
+    GltfPose resolved_pose = pose;
+    if (resolved_pose.weights.empty()) resolved_pose.weights = owner.numbers("weights");
+    const auto [entry, is_new] = mesh_cache_.try_emplace({index, resolved_pose.weights, resolved_pose.skin});
     if (is_new)
-        for (const GltfValue& primitive : owner.objects("primitives")) add(primitive, actual, entry->second);
+        for (const GltfValue& primitive : owner.objects("primitives")) add(primitive, resolved_pose, entry->second);
     return entry->second;
 }
 

@@ -34,20 +34,20 @@ class GltfMeshes {
     void add(const GltfValue& primitive, const GltfPose& pose, std::vector<std::uint32_t>& result);
     std::string texture_set_of(const GltfValue& primitive);
     Vertices vertices_of(const GltfValue& primitive);
-    void open_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices);
-    void open_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices);
+    void read_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices);
+    void read_deformation(const GltfValue& primitive, const GltfPose& pose, Vertices& vertices);
     void read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used, Mesh& mesh);
     GltfElements attribute(const GltfValue& primitive, const char* key, const char* types);
     std::vector<std::uint32_t> corners_of(const GltfValue& primitive, Vertices& vertices);
     /// @throws TooManyPatches
-    void add_triangles(std::uint64_t count, const GltfValue& primitive);
+    void count_triangles(std::uint64_t count, const GltfValue& primitive);
 
     GltfAsset& asset_;
     GltfBuffers& buffers_;
     GltfAccessors& accessors_;
     GltfMaterials& materials_;
     std::vector<GltfValue> meshes_;
-    std::map<std::tuple<std::uint32_t, std::vector<double>, std::uint32_t>, std::vector<std::uint32_t>> made_;
+    std::map<std::tuple<std::uint32_t, std::vector<double>, std::uint32_t>, std::vector<std::uint32_t>> mesh_cache_;
     std::uint64_t triangles_ = 0;
 };
 

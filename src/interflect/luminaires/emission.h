@@ -42,7 +42,7 @@ class Emission {
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
     /// Excludes targets.
     RgbD total_power() const { return power_of_boxes(0, 1); }
-    /// Returns the power of the targets [lm or W].
+    /// Returns the power of the targets [lm or W], also part of total_power().
     RgbD repeated_power() const { return power_of_boxes(1, boxes_.size()); }
     /// Returns an index into Scene::luminaires.
     std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }

@@ -44,8 +44,8 @@ bool have_same_corners(const Scene& scene, const Patch& p, const Patch& q) {
     return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
 
-/// Whether `p` answers every ray that `q` would; both must have the same corners.
-bool answers_for(const Scene& scene, const Patch& p, const Patch& q) {
+/// Both must have the same corners.
+bool intercepts_all_rays_of(const Scene& scene, const Patch& p, const Patch& q) {
     if (p.other_side != none) return true;
     return q.other_side == none && PatchGeometry(scene, p).normal().dot(PatchGeometry(scene, q).normal()) > 0;
 }
@@ -69,16 +69,16 @@ CoincidentFaces::PriorityFace::PriorityFace(const Scene& scene, std::uint32_t fa
     }
 }
 
-std::uint32_t CoincidentFaces::PriorityFace::side_towards(const V3f& direction) const {
+std::uint32_t CoincidentFaces::PriorityFace::side_hit_by(const V3f& direction) const {
     return normal.dot(direction) > 0 ? back : front;
 }
 
-bool CoincidentFaces::PriorityFace::answers(const V3f& x, const V3f& direction) const {
+bool CoincidentFaces::PriorityFace::intercepts(const V3f& x, const V3f& direction) const {
     const V3f d = x - origin;
-    std::size_t inside = 0;
+    std::size_t planes_passed = 0;
     for (std::size_t i = 0; i < inward.x.size(); ++i)
-        inside += inward.x[i] * d.x + inward.y[i] * d.y + inward.z[i] * d.z >= inward.offset[i];
-    return inside == inward.x.size() && side_towards(direction) != none;
+        planes_passed += inward.x[i] * d.x + inward.y[i] * d.y + inward.z[i] * d.z >= inward.offset[i];
+    return planes_passed == inward.x.size() && side_hit_by(direction) != none;
 }
 
 CoincidentFaces::CoincidentFaces(const Scene& scene, std::span<const float> tolerance) : hidden_(scene.patches.size()) {
@@ -88,8 +88,8 @@ CoincidentFaces::CoincidentFaces(const Scene& scene, std::span<const float> tole
     measure_uncovered(scene, tolerance);
 }
 
-/// Hides faces whose rays an earlier face with equal corners answers. At most three remain: one per side and one for
-/// both.
+/// Hides a face if one of higher priority with the same corners intercepts all its rays. At most three faces remain:
+/// two back to back, and a two-sided one.
 void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank) {
     struct KeyedFace {
         std::uint64_t key;
@@ -112,7 +112,7 @@ void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::u
         const Patch& patch = scene.patches[faces[i].face];
         const bool hidden = std::any_of(kept.begin(), kept.end(), [&](std::uint32_t other) {
             return have_same_corners(scene, scene.patches[other], patch) &&
-                   answers_for(scene, scene.patches[other], patch);
+                   intercepts_all_rays_of(scene, scene.patches[other], patch);
         });
         if (!hidden) kept.push_back(faces[i].face);
         hidden_[faces[i].face] = hidden;
@@ -122,58 +122,59 @@ void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::u
 
 void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uint32_t> rank,
                                     std::span<const float> tolerance) {
-    struct Decided {
+    struct Overlap {
         std::uint32_t overlapped_face, priority_face;
     };
-    std::vector<Decided> pairs;
-    std::vector<std::uint32_t> winners;  // faces
+    std::vector<Overlap> pairs;
+    std::vector<std::uint32_t> priority_ids;  // faces
     for (const FacePair& p : overlapping_faces(scene, hidden_, tolerance)) {
         const auto [priority_face, overlapped_face] =
             std::minmax(p.larger, p.smaller, [&](auto a, auto b) { return rank[a] < rank[b]; });
         pairs.push_back({overlapped_face, priority_face});
-        winners.push_back(priority_face);
-        const float within = pair_tolerance(tolerance, p);
-        reaches_.push_back({p.larger, within});
-        reaches_.push_back({p.smaller, within});
+        priority_ids.push_back(priority_face);
+        const float distance = pair_tolerance(tolerance, p);
+        tolerances_.push_back({p.larger, distance});
+        tolerances_.push_back({p.smaller, distance});
     }
     if (pairs.empty()) return;
-    std::sort(reaches_.begin(), reaches_.end(), [](const Reach& a, const Reach& b) {
+    std::sort(tolerances_.begin(), tolerances_.end(), [](const FaceTolerance& a, const FaceTolerance& b) {
         return std::tie(a.face, b.tolerance) < std::tie(b.face, a.tolerance);  // largest tolerance first
     });
-    const auto same_face = [](const Reach& a, const Reach& b) { return a.face == b.face; };
-    reaches_.erase(std::unique(reaches_.begin(), reaches_.end(), same_face), reaches_.end());
+    const auto same_face = [](const FaceTolerance& a, const FaceTolerance& b) { return a.face == b.face; };
+    tolerances_.erase(std::unique(tolerances_.begin(), tolerances_.end(), same_face), tolerances_.end());
     const auto by_rank = [&](std::uint32_t a, std::uint32_t b) { return rank[a] < rank[b]; };
-    std::sort(winners.begin(), winners.end(), by_rank);
-    winners.erase(std::unique(winners.begin(), winners.end()), winners.end());
-    for (const std::uint32_t face : winners) priority_faces_.emplace_back(scene, face, tolerance[face]);
+    std::sort(priority_ids.begin(), priority_ids.end(), by_rank);
+    priority_ids.erase(std::unique(priority_ids.begin(), priority_ids.end()), priority_ids.end());
+    for (const std::uint32_t face : priority_ids) priority_faces_.emplace_back(scene, face, tolerance[face]);
 
-    std::sort(pairs.begin(), pairs.end(), [&](const Decided& a, const Decided& b) {
+    std::sort(pairs.begin(), pairs.end(), [&](const Overlap& a, const Overlap& b) {
         return std::tie(a.overlapped_face, rank[a.priority_face]) < std::tie(b.overlapped_face, rank[b.priority_face]);
     });
     std::vector<std::uint32_t> overlapped;
     for (const auto [overlapped_face, priority_face] : pairs) {
         if (overlapped.empty() || overlapped.back() != overlapped_face) {
-            if (!overlapped.empty()) first_.push_back(overlaps_.size());
+            if (!overlapped.empty()) overlap_begin_.push_back(overlaps_.size());
             overlapped.push_back(overlapped_face);
         }
         const float margin = 2 * std::max(tolerance[priority_face], tolerance[overlapped_face]);
         const Imath::Box3f box = widened(bounds_of(scene, scene.patches[priority_face]), margin);
-        const auto index = std::lower_bound(winners.begin(), winners.end(), priority_face, by_rank) - winners.begin();
+        const auto index =
+            std::lower_bound(priority_ids.begin(), priority_ids.end(), priority_face, by_rank) - priority_ids.begin();
         overlaps_.push_back({box, static_cast<std::uint32_t>(index)});
     }
-    first_.push_back(overlaps_.size());
+    overlap_begin_.push_back(overlaps_.size());
     overlapped_ = RankedBits(scene.patches.size(), overlapped);
     for (std::size_t i = 0; i < overlapped.size(); ++i)
-        arrange_box_tree(std::span(overlaps_).subspan(first_[i], first_[i + 1] - first_[i]));
+        arrange_box_tree(std::span(overlaps_).subspan(overlap_begin_[i], overlap_begin_[i + 1] - overlap_begin_[i]));
 }
 
-/// Counts a side as covered where a face of higher priority intercepts its rays.
+/// Computes the uncovered share of each side that a face of higher priority covers.
 void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const float> tolerance) {
-    struct CoveredSide {
+    struct Side {
         std::uint32_t patch;
-        float share;
+        float uncovered_share;
     };
-    std::vector<CoveredSide> sides;
+    std::vector<Side> sides;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
         if (hidden_[i] || overlapped_[i]) {
             sides.push_back({i, 0});
@@ -182,25 +183,25 @@ void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const floa
     constexpr std::size_t sides_per_task = 16;
     parallel_for_ranges(sides.size(), sides_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> others;
-        for (auto& [patch, share] : std::span(sides).subspan(begin, end - begin)) {
+        for (auto& [patch, uncovered_share] : std::span(sides).subspan(begin, end - begin)) {
             const std::uint32_t face = std::min(patch, scene.patches[patch].other_side);
             if (hidden_[face]) continue;
-            const V3f towards = -PatchGeometry(scene, scene.patches[patch]).normal();
-            const std::size_t overlapped_face = overlapped_.rank(face);
+            const V3f incoming = -PatchGeometry(scene, scene.patches[patch]).normal();
+            const std::size_t overlapped_index = overlapped_.rank(face);
             others.clear();
-            for (std::size_t i = first_[overlapped_face]; i < first_[overlapped_face + 1]; ++i)
+            for (std::size_t i = overlap_begin_[overlapped_index]; i < overlap_begin_[overlapped_index + 1]; ++i)
                 if (const PriorityFace& priority_face = priority_faces_[overlaps_[i].index];
-                    priority_face.side_towards(towards) != none)
+                    priority_face.side_hit_by(incoming) != none)
                     others.push_back(priority_face.front);
-            share = uncovered_area_share(scene, patch, others, tolerance[face]);
+            uncovered_share = uncovered_area_share(scene, patch, others, tolerance[face]);
         }
     });
-    std::erase_if(sides, [](const CoveredSide& side) { return !(side.share < 1); });
-    std::sort(sides.begin(), sides.end(), [](const CoveredSide& a, const CoveredSide& b) { return a.patch < b.patch; });
+    std::erase_if(sides, [](const Side& side) { return !(side.uncovered_share < 1); });
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.patch < b.patch; });
     std::vector<std::uint32_t> patches;
-    for (const auto& [patch, share] : sides) {
+    for (const auto& [patch, uncovered_share] : sides) {
         patches.push_back(patch);
-        uncovered_share_.push_back(share);
+        uncovered_share_.push_back(uncovered_share);
     }
     if (!patches.empty()) covered_ = RankedBits(scene.patches.size(), patches);
 }
@@ -211,31 +212,32 @@ const CoincidentFaces::PriorityFace* CoincidentFaces::find_priority_face(std::ui
     const Imath::Box3f around_x(x - V3f(x_error), x + V3f(x_error));
     std::uint32_t best = none;
     visit_box_tree(
-        std::span(overlaps_).subspan(first_[i], first_[i + 1] - first_[i]),
+        std::span(overlaps_).subspan(overlap_begin_[i], overlap_begin_[i + 1] - overlap_begin_[i]),
         [&](const Imath::Box3f& box) { return box.intersects(around_x); },
-        [&](std::uint32_t priority_face) {
-            if (priority_face < best && priority_faces_[priority_face].answers(x, direction)) best = priority_face;
+        [&](std::uint32_t priority_index) {
+            if (priority_index < best && priority_faces_[priority_index].intercepts(x, direction))
+                best = priority_index;
         });
     return best == none ? nullptr : &priority_faces_[best];
 }
 
-std::uint32_t CoincidentFaces::answering_patch(std::uint32_t face, const V3f& x, const V3f& direction,
-                                               float x_error) const {
-    std::uint32_t answer = none;
+std::uint32_t CoincidentFaces::intercepting_patch(std::uint32_t face, const V3f& x, const V3f& direction,
+                                                  float x_error) const {
+    std::uint32_t patch = none;
     // Coincidence within a tolerance is not transitive: follow the chain.
     while (overlapped_[face]) {
         const PriorityFace* priority_face = find_priority_face(face, x, direction, x_error);
         if (!priority_face) break;
-        answer = priority_face->side_towards(direction);
+        patch = priority_face->side_hit_by(direction);
         face = priority_face->front;
     }
-    return answer;
+    return patch;
 }
 
 std::size_t CoincidentFaces::memory() const {
     return hidden_.capacity() / 8 + overlapped_.memory() + priority_faces_.capacity() * sizeof(PriorityFace) +
-           first_.capacity() * sizeof(std::size_t) + overlaps_.capacity() * sizeof(Boxed) + covered_.memory() +
-           uncovered_share_.capacity() * sizeof(float) + reaches_.capacity() * sizeof(Reach);
+           overlap_begin_.capacity() * sizeof(std::size_t) + overlaps_.capacity() * sizeof(Boxed) + covered_.memory() +
+           uncovered_share_.capacity() * sizeof(float) + tolerances_.capacity() * sizeof(FaceTolerance);
 }
 
 }  // namespace interflect::detail

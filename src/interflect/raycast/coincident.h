@@ -13,10 +13,10 @@
 
 namespace interflect::detail {
 
-/// Resolves hits on coincident faces, where a ray tracer reports whichever face it tests first. Faces answer (are
-/// reported) by priority: smaller flat surface (flat_surfaces.h), then emitters, then scene order. One-sided faces
-/// answer only rays to their front. Faces, identified by their first patches, coincide if they have the same corners or
-/// are overlapping_faces().
+/// Resolves hits on coincident faces, where a ray tracer reports whichever face it tests first. The face of highest
+/// priority intercepts a ray: smaller flat surface (flat_surfaces.h), then emitters, then scene order. One-sided faces
+/// intercept only rays to their front. Faces, identified by their first patches, coincide if they have the same corners
+/// or are overlapping_faces().
 class CoincidentFaces {
   public:
     /// @param scene      Valid (scene_faults), with convex quadrilaterals.
@@ -25,17 +25,17 @@ class CoincidentFaces {
     CoincidentFaces(const Scene& scene, float tolerance)
         : CoincidentFaces(scene, std::vector<float>(scene.patches.size(), tolerance)) {}
 
-    /// Whether a face with the same corners answers all its rays.
+    /// Whether a face with the same corners intercepts all its rays.
     bool is_hidden(std::uint32_t face) const { return hidden_[face]; }
 
-    /// Whether a face of higher priority covers a part; hits require answering_patch().
+    /// Whether a face of higher priority covers a part; hits require intercepting_patch().
     bool is_overlapped(std::uint32_t face) const { return overlapped_[face]; }
 
-    /// Returns the patch that answers a first hit at x on the overlapped `face`, or `none` for `face` itself.
+    /// Returns the patch that intercepts a ray with a first hit at x on the overlapped `face`; `none`: `face` itself.
     /// @param x_error  Maximum distance of x from the face [m].
-    std::uint32_t answering_patch(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
+    std::uint32_t intercepting_patch(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
 
-    /// Returns the fraction of a patch's area that answers rays; the rest must not emit. Slivers count as covered.
+    /// Returns the fraction of a patch's area that intercepts rays; the rest must not emit. Slivers count as covered.
     float uncovered_share(std::uint32_t patch) const {
         return covered_[patch] ? uncovered_share_[covered_.rank(patch)] : 1.0f;
     }
@@ -43,14 +43,14 @@ class CoincidentFaces {
     bool has_covered_patches() const { return !uncovered_share_.empty(); }
 
     /// Largest pair_tolerance() [m], sorted by face.
-    struct Reach {
+    struct FaceTolerance {
         std::uint32_t face;
         float tolerance;
     };
-    const std::vector<Reach>& reaches() const { return reaches_; }
+    const std::vector<FaceTolerance>& tolerances() const { return tolerances_; }
 
     std::size_t hidden_count() const { return hidden_count_; }
-    std::size_t overlapped_count() const { return first_.size() - 1; }
+    std::size_t overlapped_count() const { return overlap_begin_.size() - 1; }
     std::size_t pair_count() const { return overlaps_.size(); }  ///< Excludes hidden faces.
     std::size_t memory() const;                                  ///< [bytes]
 
@@ -58,8 +58,9 @@ class CoincidentFaces {
     struct PriorityFace {
         PriorityFace(const Scene& scene, std::uint32_t face, float margin);
 
-        bool answers(const V3f& x, const V3f& direction) const;
-        std::uint32_t side_towards(const V3f& direction) const;
+        bool intercepts(const V3f& x, const V3f& direction) const;
+        /// Returns the side that a ray of this direction hits, or `none`.
+        std::uint32_t side_hit_by(const V3f& direction) const;
 
         std::uint32_t front, back;
         V3f origin, normal;
@@ -77,13 +78,13 @@ class CoincidentFaces {
     std::vector<bool> hidden_;
     RankedBits overlapped_;
     std::size_t hidden_count_ = 0;
-    std::vector<PriorityFace> priority_faces_;  // by rank
-    std::vector<std::size_t> first_{0};         // start of each overlapped face in overlaps_, and the end
+    std::vector<PriorityFace> priority_faces_;   // by rank
+    std::vector<std::size_t> overlap_begin_{0};  // start of each overlapped face in overlaps_, and the end
     // Per overlapped face: tree of indices into priority_faces_.
     std::vector<Boxed> overlaps_;
     RankedBits covered_;  // completely or in part
     std::vector<float> uncovered_share_;
-    std::vector<Reach> reaches_;
+    std::vector<FaceTolerance> tolerances_;
 };
 
 }  // namespace interflect::detail

@@ -130,7 +130,7 @@ Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
     if (coincident.is_overlapped(front)) {
         const V3f x = ray.origin + distance * ray.direction;
         const float x_error = relative_hit_error * (largest_coordinate(x) + distance);
-        const std::uint32_t patch = coincident.answering_patch(front, x, ray.direction, x_error);
+        const std::uint32_t patch = coincident.intercepting_patch(front, x, ray.direction, x_error);
         if (patch != none) return {patch, distance};
     }
     const float facing =
@@ -141,7 +141,7 @@ Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
 RayCaster::RayCaster(const Scene& scene)
     : scene_fingerprint_(geometry_fingerprint(valid(scene))), origin_(scene.origin), ray_offsets_(tolerances(scene)) {
     embree_ = std::make_unique<Embree>(CoincidentFaces(scene, ray_offsets_));
-    for (const auto& [face, tolerance] : embree_->coincident.reaches()) {
+    for (const auto& [face, tolerance] : embree_->coincident.tolerances()) {
         ray_offsets_[face] = std::max(ray_offsets_[face], tolerance);
         if (const std::uint32_t back = scene.patches[face].other_side; back != none)
             ray_offsets_[back] = ray_offsets_[face];

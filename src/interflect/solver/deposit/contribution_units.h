@@ -15,9 +15,9 @@ namespace interflect::detail {
 struct ContributionUnits {
     FixedPoint power, square, importance;
 
-    /// @param visits  Upper bound of the elements that receive the same power by reflection; >= 1.
-    ContributionUnits(const PayloadTotals& all, double visits)
-        : power(channel_sum(all.power) * visits), square(all.square * visits), importance(all.importance) {}
+    /// @param max_deposits  Upper bound of the elements that receive the same power by reflection; >= 1.
+    ContributionUnits(const PayloadTotals& all, double max_deposits)
+        : power(channel_sum(all.power) * max_deposits), square(all.square * max_deposits), importance(all.importance) {}
 
     Contribution contribution_of(const RgbD& particle) const {
         Contribution contribution{};

@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-void ContributionSums::begin(std::size_t elements) {
+void ContributionSums::begin_step(std::size_t elements) {
     elements_ = elements;
     region_shift_ = static_cast<int>(std::bit_width(elements / regions));
 }

@@ -28,7 +28,7 @@ class ContributionSums {
     explicit ContributionSums(std::size_t capacity, std::size_t groups = 0)
         : sums_(capacity), group_terms_(3 * groups), group_sums_(capacity * group_terms_) {}
 
-    void begin(std::size_t elements);
+    void begin_step(std::size_t elements);
     void clear(std::size_t elements) {
         for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
         for (std::size_t i = 0; i < elements * group_terms_; ++i) group_sums_[i] = 0;

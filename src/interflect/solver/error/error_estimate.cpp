@@ -13,17 +13,18 @@ namespace interflect::detail {
 
 namespace {
 
-/// Bounds of the decay of mean squared differences per level: 1/4 for smooth irradiance, 1/2 at edges.
+/// Bounds of the decay of mean squared differences per level: 1/4 for smooth irradiance, 1/2 at edges. The upper bound
+/// leaves room for noise of the measured ratio.
 constexpr double min_decay = 0.25, max_decay = 0.7;
 
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
     double noise_of_patches = 0;
-    double assumed = 0;  // for undivided patches
+    double assumed_bias = 0;  // of undivided patches
 
     ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight, noise += o.noise, bias += o.bias;
-        noise_of_patches += o.noise_of_patches, assumed += o.assumed;
+        noise_of_patches += o.noise_of_patches, assumed_bias += o.assumed_bias;
         return *this;
     }
 };
@@ -42,26 +43,31 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             sums.noise_of_patches += w * errors.noise_of_patch[e];
             if (e >= forest.patch_count()) continue;
             const float variation = assumed_variation * luminance(state.solution.irradiance[e]);
-            sums.assumed += w * shown_within(state, measure, e)[0] * variation * variation;
+            sums.assumed_bias += w * shown_within(state, measure, e)[0] * variation * variation;
         }
         return sums;
     });
 }
 
+/// Squared error of constant leaves: extrapolates their differences from parents to finer levels.
 double error_within_leaves(const RiskCheck& check) {
     if (!(check.weight > 0)) return 0;
     const bool is_known = check.signal > 0 && check.signal_of_parents > 0;
     const double decay =
         is_known ? std::clamp(check.signal / check.signal_of_parents, min_decay, max_decay) : min_decay;
-    double sum = 0, of_level = 1;
-    for (const double within : check.within) sum += std::max(0.0, within) * (of_level *= decay);
+    double sum = 0, level_factor = 1;
+    for (const double within : check.within) {
+        level_factor *= decay;
+        sum += std::max(0.0, within) * level_factor;
+    }
     return sum / check.weight;
 }
 
-/// Measured if the bias is strongly negative (docs/method.md, Errors).
-double error_of_variations(const RiskCheck& check, double noise, double bias) {
-    const double expected = noise + bias;
-    const bool is_reliable = bias > -noise / 2;
+/// Squared error of the differences from parents: noise + bias as corrected by RiskCheck, or as measured if the bias is
+/// strongly negative (docs/method.md, Errors).
+double squared_error_of_differences(const RiskCheck& check, double noise_of_differences, double bias) {
+    const double expected = noise_of_differences + bias;
+    const bool is_reliable = bias > -noise_of_differences / 2;
     return is_reliable || !(check.weight > 0) ? check.factor() * expected
                                               : std::max(0.0, check.measured / check.weight);
 }
@@ -88,9 +94,9 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
         const float shown = shown_of_siblings(state, measure, first);
         const Shrinkage shrinkage = shrinkage_of(state, first, variation);
         for (std::uint32_t e = first; e < first + 4; ++e) {
-            const float share = shrinkage.noise[e - first];
-            errors.noise[e] = share * (errors.noise[parent] + shown * noise);
-            errors.noise_of_patch[e] = share * errors.noise_of_patch[parent];
+            const float noise_share = shrinkage.noise[e - first];
+            errors.noise[e] = noise_share * (errors.noise[parent] + shown * noise);
+            errors.noise_of_patch[e] = noise_share * errors.noise_of_patch[parent];
             errors.bias[e] = errors.bias[parent] + shown * bias;
         }
     });
@@ -106,13 +112,16 @@ ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure) {
     const ErrorSums sums = sum_errors(state, measure, element_errors(state, measure));
     if (!(sums.weight > 0)) return {infinity, infinity};
     const double total_weight = measure == ErrorMeasure::surfaces ? sums.weight : 1;
-    const double of_variations = error_of_variations(state.risk_check, sums.noise - sums.noise_of_patches, sums.bias);
-    const double all = sums.noise_of_patches + of_variations + error_within_leaves(state.risk_check) + sums.assumed;
-    const double discretisation = state.options.method.refines ? std::max(0.0, all - sums.noise) : 0;
-    // Pixels without a surface have no error but count in the mean.
-    const double shown = measure == ErrorMeasure::surfaces ? 1 : state.view.shown_share();
-    const double scale = 1 / (mean * std::sqrt(total_weight * shown));
-    return {std::sqrt(sums.noise) * scale, std::sqrt(discretisation) * scale};
+    const double squared_total =
+        sums.noise_of_patches +
+        squared_error_of_differences(state.risk_check, sums.noise - sums.noise_of_patches, sums.bias) +
+        error_within_leaves(state.risk_check) + sums.assumed_bias;
+    const double squared_discretisation = state.options.method.refines ? std::max(0.0, squared_total - sums.noise) : 0;
+    // `mean` and `sums` average over pixels with a surface, a share s. Over the picture, the mean is s mean and the
+    // mean square error s sum.
+    const double surface_share = measure == ErrorMeasure::surfaces ? 1 : state.view.surface_share();
+    const double scale = 1 / (mean * std::sqrt(total_weight * surface_share));
+    return {std::sqrt(sums.noise) * scale, std::sqrt(squared_discretisation) * scale};
 }
 
 }  // namespace interflect::detail

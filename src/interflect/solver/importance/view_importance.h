@@ -27,7 +27,7 @@ class ViewImportance {
     std::int64_t rays() const { return rays_; }     ///< Requested for all views.
     std::int64_t views() const { return std::ssize(views_); }
     /// Share of the pictures that shows surfaces.
-    double shown_share() const { return total_weight_ > 0 ? hit_weight_ / total_weight_ : 0; }
+    double surface_share() const { return total_weight_ > 0 ? hit_weight_ / total_weight_ : 0; }
     /// Computes v = V / A of every element [1/m^2] (docs/method.md, Unknowns). Surfaces behind panes add their
     /// transmitted share of V.
     /// @param at_patches  Spreads V evenly over each patch.

@@ -98,7 +98,7 @@ class VarianceOracle {
     }
     double weighted_mean_square() const {
         const double mean = error_reference(state_, measure_);
-        double weight = measure_ == ErrorMeasure::surfaces ? 0 : state_.view.shown_share();
+        double weight = measure_ == ErrorMeasure::surfaces ? 0 : state_.view.surface_share();
         if (measure_ == ErrorMeasure::surfaces)
             for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) weight += forest_.area(i);
         return mean * mean * weight;

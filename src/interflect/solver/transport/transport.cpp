@@ -24,19 +24,20 @@ namespace interflect::detail {
 namespace {
 
 std::uint64_t walk_key(const SampleStreams& streams) {
-    constexpr std::uint64_t walk_stream = 0x77616c6b;
+    constexpr std::uint64_t walk_stream = 0x77616c6b;  // "walk" in ASCII
     return mix(mix(streams.seed, walk_stream), streams.allocations);
 }
 
-/// Amortises the cost of a task; fits the second-level cache.
+/// Rays per task: enough to amortise its cost, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
-/// Hits between the prefetch of an element and its deposit.
-constexpr std::size_t rays_ahead = 32;
+/// Hits between the prefetch of a patch and its deposit. Their deposits hide the memory latency.
+constexpr std::size_t prefetch_distance = 32;
 
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
     constexpr std::size_t blocks_per_task = 16;
     streams.used.resize(std::max(streams.used.size(), elements), 0);
     streams.used_by_parts.resize(std::max(streams.used_by_parts.size(), parts), 0);
+    // A source belongs to one block: no two threads share a counter.
     parallel_for_ranges(allocation.block_count(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block)
             allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
@@ -48,13 +49,14 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Returns the `visits` of ContributionUnits: their expected number, at most 1 / (1 - rho), times 2^12 for chance and
-/// panes. The expected sum of power then still has 2^49 of the 2^61 units of FixedPoint.
-double max_visits(const Scene& scene) {
-    constexpr double headroom = 0x1p12;
+/// Returns an upper bound of the number of elements that receive a particle's power: the expected number, at most
+/// 1 / (1 - rho), times a margin for chance and for deposits behind panes. The expected sum then has 2^49 of the 2^61
+/// units of FixedPoint.
+double max_deposits_per_particle(const Scene& scene) {
+    constexpr double margin = 0x1p12;
     double rho = 0;
     for (const Material& m : scene.materials) rho = std::max(rho, static_cast<double>(largest_channel(m.reflectance)));
-    return headroom / (1 - rho);
+    return margin / (1 - rho);
 }
 
 struct StepData {
@@ -62,22 +64,22 @@ struct StepData {
              const TransportStep& step, const SampleStreams& streams)
         : rays(forest, ray_caster, step, streams),
           payload(materials, forest, step, rays.allocation().q_sum()),
-          total(total_payload(step, rays.allocation(), payload)),
-          units(total, step.completes_by_walks ? max_visits(materials.scene()) : 1),
+          payload_totals(total_payload(step, rays.allocation(), payload)),
+          contribution_units(payload_totals,
+                             step.completes_by_walks ? max_deposits_per_particle(materials.scene()) : 1),
           panes(materials.scene(), ray_caster) {}
 
     RayMaker rays;
     Payload payload;
-    PayloadTotals total;
-    ContributionUnits units;
+    PayloadTotals payload_totals;
+    ContributionUnits contribution_units;
     Panes panes;
 };
 
-/// One object per thread.
-struct Batch {
-    explicit Batch(const Descent& d) : descent(d) {}
+struct ThreadBuffers {
+    explicit ThreadBuffers(const Descent& d) : descent(d) {}
 
-    RayBatch shot;
+    RayBatch ray_batch;
     std::vector<Hit> hits;
     std::vector<Panes::HitBehind> behind;
     std::vector<std::int64_t> group_terms;
@@ -106,65 +108,67 @@ std::optional<FoundImportance> make_found_importance(const TransportStep& step, 
                                           step.rays, forest.size() + step.part_count());
 }
 
-void trace(const StepData& data, const RayCaster& ray_caster, std::size_t begin, std::size_t end, Batch& batch) {
-    data.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch.shot);
-    batch.hits.resize(batch.shot.rays.size());
-    ray_caster.trace(batch.shot.rays, batch.hits);
-    data.panes.trace(batch.shot.rays, batch.hits, batch.behind);
+void trace(const StepData& data, const RayCaster& ray_caster, std::size_t begin, std::size_t end,
+           ThreadBuffers& buffers) {
+    data.rays.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), buffers.ray_batch);
+    buffers.hits.resize(buffers.ray_batch.rays.size());
+    ray_caster.trace(buffers.ray_batch.rays, buffers.hits);
+    data.panes.trace(buffers.ray_batch.rays, buffers.hits, buffers.behind);
 }
 
-void deposit_behind(const TransportStep& step, const StepData& data, const SourceRays& rays,
-                    std::span<const Panes::HitBehind> behind, Batch& batch) {
-    const std::uint32_t source = rays.source;
+void deposit_behind_panes(const TransportStep& step, const StepData& data, std::uint32_t source,
+                          std::span<const Panes::HitBehind> behind, ThreadBuffers& buffers) {
     for (const auto& [ray, transmittance, hit] : behind) {
-        data.units.fill_groups(step, data.payload, source, batch.group_terms, transmittance);
-        batch.descent.deposit(source, data.units.contribution(step, data.payload, source, transmittance),
-                              batch.group_terms, std::span(batch.shot.rays).subspan(ray, 1),
-                              std::span(batch.shot.origins).subspan(ray, 1), std::span(&hit, 1),
-                              channel_sum(transmittance) / 3);
+        data.contribution_units.fill_groups(step, data.payload, source, buffers.group_terms, transmittance);
+        buffers.descent.deposit(source, data.contribution_units.contribution(step, data.payload, source, transmittance),
+                                buffers.group_terms, std::span(buffers.ray_batch.rays).subspan(ray, 1),
+                                std::span(buffers.ray_batch.origins).subspan(ray, 1), std::span(&hit, 1),
+                                channel_sum(transmittance) / 3);
     }
 }
 
-void deposit(const TransportStep& step, const StepData& data, Batch& batch) {
-    auto& [shot, hits, all_behind, group_terms, walkers, descent] = batch;
+void deposit(const TransportStep& step, const StepData& data, ThreadBuffers& buffers) {
+    auto& [ray_batch, hits, all_behind, group_terms, walkers, descent] = buffers;
     std::span<const Panes::HitBehind> behind = all_behind;
-    std::size_t fetched = 0;
-    for (const SourceRays& rays : shot.sources) {
-        const auto [source, begin, end] = rays;
-        const std::size_t fetch = std::min<std::size_t>(end + rays_ahead, hits.size()), count = end - begin;
-        for (; fetched < fetch; ++fetched) descent.prefetch(hits[fetched]);
-        data.units.fill_groups(step, data.payload, source, group_terms);
-        descent.deposit(source, data.units.contribution(step, data.payload, source), group_terms,
-                        std::span(shot.rays).subspan(begin, count), std::span(shot.origins).subspan(begin, count),
-                        std::span(hits).subspan(begin, count));
-        const auto first_of_others =
+    std::size_t prefetched = 0;
+    for (const auto [source, begin, end] : ray_batch.sources) {
+        const std::size_t prefetch_end = std::min<std::size_t>(end + prefetch_distance, hits.size());
+        for (; prefetched < prefetch_end; ++prefetched) descent.prefetch(hits[prefetched]);
+        const std::size_t ray_count = end - begin;
+        data.contribution_units.fill_groups(step, data.payload, source, group_terms);
+        descent.deposit(source, data.contribution_units.contribution(step, data.payload, source), group_terms,
+                        std::span(ray_batch.rays).subspan(begin, ray_count),
+                        std::span(ray_batch.origins).subspan(begin, ray_count),
+                        std::span(hits).subspan(begin, ray_count));
+        const auto end_of_source =
             std::find_if(behind.begin(), behind.end(), [end = end](const auto& b) { return b.ray >= end; });
-        const auto own_count = static_cast<std::size_t>(first_of_others - behind.begin());
-        deposit_behind(step, data, rays, behind.first(own_count), batch);
-        behind = behind.subspan(own_count);
+        const auto count = static_cast<std::size_t>(end_of_source - behind.begin());
+        deposit_behind_panes(step, data, source, behind.first(count), buffers);
+        behind = behind.subspan(count);
     }
     descent.finish_batch();
 }
 
 /// @param first_ray  Of the batch; key of the random numbers.
-void walk(const TransportStep& step, const StepData& data, const Walks& walks, std::uint64_t first_ray, Batch& batch) {
-    Walkers& walkers = batch.walkers;
+void walk(const TransportStep& step, const StepData& data, const Walks& walks, std::uint64_t first_ray,
+          ThreadBuffers& buffers) {
+    Walkers& walkers = buffers.walkers;
     const auto add = [&](std::uint32_t source, std::uint32_t ray, const Hit& hit, const Rgb& transmittance) {
         if (hit.patch == none) return;
-        walks.add(batch.shot.rays[ray], hit, data.payload.power(source), transmittance, walkers);
+        walks.add(buffers.ray_batch.rays[ray], hit, data.payload.power(source), transmittance, walkers);
         for (std::size_t g = 0; g < step.groups.size(); ++g)
             walkers.received_groups.push_back(data.payload.power(source, g) * RgbD(transmittance));
     };
-    auto behind = batch.behind.begin();
-    for (const auto [source, begin, end] : batch.shot.sources) {
-        for (std::uint32_t ray = begin; ray < end; ++ray) add(source, ray, batch.hits[ray], Rgb(1));
-        for (; behind != batch.behind.end() && behind->ray < end; ++behind)
+    auto behind = buffers.behind.begin();
+    for (const auto [source, begin, end] : buffers.ray_batch.sources) {
+        for (std::uint32_t ray = begin; ray < end; ++ray) add(source, ray, buffers.hits[ray], Rgb(1));
+        for (; behind != buffers.behind.end() && behind->ray < end; ++behind)
             add(source, behind->ray, behind->hit, behind->transmittance);
     }
-    walks.follow(first_ray, walkers, batch.descent);
+    walks.follow(first_ray, walkers, buffers.descent);
 }
 
-/// StartPoints sorts the points.
+/// Concatenates the points of all threads; StartPoints sorts them.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
@@ -180,19 +184,21 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     const std::uint32_t old_size = forest.size();
     if (!(data.rays.allocation().q_sum() > 0)) return nothing_received(step, old_size);
 
-    sums.begin(old_size);
+    sums.begin_step(old_size);
     std::optional<FoundImportance> found_importance = make_found_importance(step, materials, forest);
-    const Walks walks(materials, forest, ray_caster, data.panes, step, data.units, old_size, walk_key(streams));
-    PerThread<Batch> batches([&] {
-        return Batch({materials, forest, step, old_size, sums, found_importance ? &*found_importance : nullptr});
+    const Walks walks(materials, forest, ray_caster, data.panes, step, data.contribution_units, old_size,
+                      walk_key(streams));
+    PerThread<ThreadBuffers> all_buffers([&] {
+        return ThreadBuffers(
+            {materials, forest, step, old_size, sums, found_importance ? &*found_importance : nullptr});
     });
     try {
         parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, stop,
                             [&](std::size_t begin, std::size_t end) {
-                                Batch& batch = batches.local();
-                                trace(data, ray_caster, begin, end, batch);
-                                deposit(step, data, batch);
-                                if (step.completes_by_walks) walk(step, data, walks, begin, batch);
+                                ThreadBuffers& buffers = all_buffers.local();
+                                trace(data, ray_caster, begin, end, buffers);
+                                deposit(step, data, buffers);
+                                if (step.completes_by_walks) walk(step, data, walks, begin, buffers);
                             });
     } catch (const Interrupted&) {
         sums.clear(forest.size());
@@ -201,18 +207,19 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     }
     Escaped escaped;
     std::vector<std::vector<StartPoint>> start_points;
-    for (Batch& batch : batches) {
-        escaped += batch.descent.finish();
-        start_points.push_back(batch.descent.start_points());
+    for (ThreadBuffers& buffers : all_buffers) {
+        escaped += buffers.descent.finish();
+        start_points.push_back(buffers.descent.start_points());
     }
     const RayAllocation& allocation = data.rays.allocation();
     advance(streams, allocation, old_size, step.part_count());
-    Received received = collect(step, forest, old_size, allocation, data.total, data.units,
+    Received received = collect(step, forest, old_size, allocation, data.payload_totals, data.contribution_units,
                                 found_importance ? &*found_importance : nullptr, sums);
     received.start_points = start_points_of(start_points);
     received.escaped_rays = escaped.rays;
-    received.escaped_power = data.units.power.to_colour(escaped.power);
-    // Rays along lines of other boxes miss the scene, with this power on average.
+    received.escaped_power = data.contribution_units.power.to_colour(escaped.power);
+    // Boxes of outdoor light overlap: a line through several is sampled from one, and rays of the others miss the
+    // scene. Their mean power, that of the targets, would count twice.
     if (step.emission) {
         received.shot_power -= step.emission->repeated_power();
         received.escaped_power -= step.emission->repeated_power();
