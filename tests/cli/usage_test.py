@@ -189,8 +189,8 @@ class WrongUsage(CommandTest):
             ("room.h5", "out.json", "--pixel-samples", "5"),
         ):
             self.assert_wrong(["export", scene, "-o", output, *options], options[0], "it is for .")
-        self.assert_wrong(["export", "room.h5", "-o", "out.glb", "--lightmap", "--samples", "9"], "--samples", "gather")
-        self.assert_wrong(["export", "room.h5", "-o", "out.glb", "--lightmap", "--seed", "9"], "--seed", "gather")
+        self.assert_wrong(["export", "room.h5", "-o", "out.glb", "--lightmap", "--shading", "smooth", "--samples", "9"], "--samples", "smooth")
+        self.assert_wrong(["export", "room.h5", "-o", "out.glb", "--lightmap", "--shading", "smooth", "--seed", "9"], "--seed", "smooth")
 
     def test_options_without_effect_on_a_solution(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")

@@ -11,10 +11,10 @@ WEB = ROOT / "tests" / "web"
 EXPORTS = {  # by name: options, extension
     "vertices": ((), ".glb"),
     "json": ((), ".gltf"),
-    "irradiance": (("--lightmap",), ".glb"),
-    "radiance": (("--lightmap", "--lightmap-content", "radiance"), ".glb"),
+    "irradiance": (("--lightmap", "--shading", "smooth"), ".glb"),
+    "radiance": (("--lightmap", "--shading", "smooth", "--lightmap-content", "radiance"), ".glb"),
     "gathered": (("--lightmap", "--shading", "gather", "--samples", "512", "--texels-per-metre", "1"), ".glb"),
-    "hdr": (("--lightmap", "--lightmap-image", "hdr", "--lightmap-max-size", "64"), ".gltf"),
+    "hdr": (("--lightmap", "--shading", "smooth", "--lightmap-image", "hdr", "--lightmap-max-size", "64"), ".gltf"),
 }
 VIEW = {"name": "camera", "eye": [1, 0.2, 2], "look_at": [1, 2, 0], "up": [0, 0, 1], "fov": 60}
 LARGEST_DIFFERENCE = {"vertices": 0.06, "irradiance": 0.06, "radiance": 0.15}  # the last has blurred textures
