@@ -152,8 +152,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, HybridScene, testing::ValuesIn(lit_scenes()),
                          [](const auto& test) { return test.param.name; });
 
 /// In a furnace with exitance M and reflectance rho, irradiance is H = M / (1 - rho) and indirect irradiance rho H at
-/// every point. Seen to fail when records count emitted light, or omit the reflectance. The error of pixels was 0.93 to
-/// 1.03% with eight seeds; 1.01 to 1.24% when paths also sampled places of usual radiosity.
+/// every point. Seen to fail when records count emitted light, or omit the reflectance. Fails for
+/// most seeds if paths also sample places of usual radiosity.
 TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
     const Scene scene = closed_box({4, 3, 2.5f}, 3, {Material{"", Rgb(0.6f), Rgb(40)}});
     const RayCaster ray_caster(scene);
@@ -164,7 +164,7 @@ TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
         double squares = 0;
         for (const Rgb& direct : hybrid.layers.reflected.direct.pixels) EXPECT_NEAR(direct.x, 40, 0.1);
         for (const Rgb& indirect : hybrid.layers.reflected.indirect.pixels) {
-            EXPECT_NEAR(indirect.x, 60, 0.07 * 60);
+            EXPECT_NEAR(indirect.x, 60, 3);
             squares += std::pow(static_cast<double>(indirect.x) / 60 - 1, 2);
         }
         EXPECT_LT(std::sqrt(squares / static_cast<double>(hybrid.image.pixels.size())), 0.0115);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <unordered_set>
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
@@ -47,20 +46,6 @@ std::vector<Boxed> make_tree(const std::vector<Contact>& contacts) {
     return tree;
 }
 
-/// Divides points into the first of each cell and patch, and the others, which records of the first may cover.
-void separate(std::span<const SurfacePoint> points, std::vector<SurfacePoint>& first,
-              std::vector<SurfacePoint>& others) {
-    first.clear(), others.clear();
-    std::unordered_set<std::uint64_t> taken;
-    for (const SurfacePoint& p : points) {
-        const V3f cell = p.position / (min_spacings * p.spacing);
-        std::uint64_t key = mix(std::uint64_t{0}, p.patch);
-        for (int axis = 0; axis < 3; ++axis)
-            key = mix(key, static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(cell[axis]))));
-        (taken.insert(key).second ? first : others).push_back(p);
-    }
-}
-
 /// Returns a random permutation, the same for the same seed.
 std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> order(count);
@@ -85,13 +70,10 @@ void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> 
     const std::vector<std::uint32_t> order = shuffled(points.size(), scene.options.seed);
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
         end = std::min(points.size(), std::max(points_of_first_round, 2 * begin));
-        std::vector<SurfacePoint> candidates, chosen;
+        if (monitor.stop && *monitor.stop) return;
+        std::vector<SurfacePoint> candidates;
         for (std::size_t i = begin; i < end; ++i) candidates.push_back(points[order[i]]);
-        while (!candidates.empty()) {
-            if (monitor.stop && *monitor.stop) return;
-            separate(uncovered_among(candidates), chosen, candidates);
-            add_records(scene, chosen, monitor.stop);
-        }
+        add_records(scene, uncovered_among(candidates), monitor.stop);
         // Few points of later rounds become records.
         const double done = std::sqrt(static_cast<double>(end) / static_cast<double>(points.size()));
         if (monitor.on_progress) monitor.on_progress({rays_, done});
