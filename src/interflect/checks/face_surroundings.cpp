@@ -41,7 +41,7 @@ V3f FaceSurroundings::direction(const V3f& normal, std::uint64_t index) const {
         .normalized();
 }
 
-Surroundings FaceSurroundings::look(std::uint32_t patch, Side side) const {
+Surroundings FaceSurroundings::measure(std::uint32_t patch, Side side) const {
     const PatchGeometry geometry(scene_, scene_.patches[patch]);
     const V3f normal = side == Side::front ? geometry.normal() : -geometry.normal();
     const float near = close_by * std::sqrt(geometry.area());

@@ -9,8 +9,7 @@
 
 namespace interflect::detail {
 
-/// Up to 1024 emitting point lights, spots and measured lights of a non-empty scene, with rays distributed by
-/// intensity.
+/// Up to 1024 emitting point lights, spots and measured lights, with rays distributed by intensity.
 class LocalLights {
   public:
     explicit LocalLights(const Scene& scene);

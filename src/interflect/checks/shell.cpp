@@ -68,11 +68,12 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
         if (hit.patch == none) continue;
         ++met;
         const MetFace face = met_face(scene, ray_caster, line(i), hit);
-        SightLines::Outlook inner = lines.from_surface(face.back, -face.normal, seed_of_sides, max_escaped_inside);
+        SightLines::RayOutcomes inner =
+            lines.trace_from_surface(face.back, -face.normal, seed_of_sides, max_escaped_inside);
         if (inner.escaped > max_escaped_inside)
-            inner = lines.from_surface(face.front, face.normal, seed_of_sides, min_escaped_outside);
+            inner = lines.trace_from_surface(face.front, face.normal, seed_of_sides, min_escaped_outside);
         if (inner.escaped > min_escaped_outside && scene.patches[hit.patch].other_side == none) {
-            // Outer side of a thick wall: the inner side lies behind.
+            // Thick wall: the inner side lies behind.
             const Ray behind{face.back, line(i).direction};
             const Hit inner_hit = lines.first_surface(behind);
             if (inner_hit.patch == none) {
@@ -80,12 +81,12 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
                 continue;
             }
             const MetFace inner_face = met_face(scene, ray_caster, behind, inner_hit);
-            inner = lines.from_surface(inner_face.front, inner_face.normal, seed_of_sides, max_escaped_inside);
+            inner = lines.trace_from_surface(inner_face.front, inner_face.normal, seed_of_sides, max_escaped_inside);
         }
         if (inner.escaped > max_escaped_inside) continue;
         ++enclosing;
-        paths += inner.met;
-        length += inner.distance;
+        paths += inner.hits;
+        length += inner.distance_sum;
     }
     if (met < min_met || 2 * solid > met || 10 * enclosing < 9 * (met - solid)) return {};
     return {true, is_seen_inside(scene, lines), length / static_cast<float>(paths)};
@@ -98,9 +99,9 @@ bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightL
         const Hit hit = lines.first_surface(line(i));
         if (hit.patch == none) continue;
         const MetFace face = met_face(scene, ray_caster, line(i), hit);
-        const SightLines::Outlook outlook =
-            lines.from_surface(face.front, face.normal, seed_of_sides, max_escaped_inside);
-        if (outlook.escaped <= max_escaped_inside) return true;
+        const SightLines::RayOutcomes outcomes =
+            lines.trace_from_surface(face.front, face.normal, seed_of_sides, max_escaped_inside);
+        if (outcomes.escaped <= max_escaped_inside) return true;
     }
     return false;
 }

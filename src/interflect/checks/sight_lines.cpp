@@ -36,19 +36,19 @@ bool SightLines::is_clear(const V3f& a, const V3f& b) const {
     return !(length > 0) || (reaches(a, b) && reaches(b, a));
 }
 
-SightLines::Outlook SightLines::from_surface(const V3f& x, const V3f& normal, std::uint64_t key,
-                                             int max_escaped) const {
-    Outlook outlook;
-    for (std::uint64_t i = 0; i < rays_per_point && outlook.escaped <= max_escaped; ++i) {
+SightLines::RayOutcomes SightLines::trace_from_surface(const V3f& x, const V3f& normal, std::uint64_t key,
+                                                       int max_escaped) const {
+    RayOutcomes outcomes;
+    for (std::uint64_t i = 0; i < rays_per_point && outcomes.escaped <= max_escaped; ++i) {
         const Hit hit = first_surface({x, cosine_direction(normal, key, i)});
         if (hit.patch == none) {
-            ++outlook.escaped;
+            ++outcomes.escaped;
         } else {
-            ++outlook.met;
-            outlook.distance += hit.distance;
+            ++outcomes.hits;
+            outcomes.distance_sum += hit.distance;
         }
     }
-    return outlook;
+    return outcomes;
 }
 
 bool SightLines::is_open(const V3f& x) const {

@@ -11,19 +11,19 @@ class SightLines {
   public:
     SightLines(const Scene& scene, const RayCaster& ray_caster);
 
-    /// Returns the first hit that is not a pane, with its distance from the start.
+    /// Returns the first hit beyond panes, with its distance from the start.
     Hit first_surface(const Ray& ray) const;
 
     /// Whether only panes separate two points, in either direction.
     bool is_clear(const V3f& a, const V3f& b) const;
 
-    struct Outlook {
-        int escaped = 0, met = 0;  ///< Numbers of rays.
-        float distance = 0;        ///< Sum over hits [m].
+    struct RayOutcomes {
+        int escaped = 0, hits = 0;  ///< Numbers of rays.
+        float distance_sum = 0;     ///< [m]
     };
     static constexpr int rays_per_point = 32;
     /// Traces rays from just before a surface until more than `max_escaped` escape.
-    Outlook from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int max_escaped) const;
+    RayOutcomes trace_from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int max_escaped) const;
     /// Whether a quarter of all directions escape, as outside a closed scene.
     bool is_open(const V3f& x) const;
 

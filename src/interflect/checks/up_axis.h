@@ -15,7 +15,7 @@ struct UpAxis {
 std::optional<UpAxis> find_up_axis(const Scene& scene);
 
 /// Returns a probable up axis other than z by two of three criteria: light, objects on one floor, low extent. Null if
-/// unknown or if the views agree.
+/// unknown or the views agree.
 const char* find_other_up_axis(const Scene& scene);
 
 }  // namespace interflect::detail

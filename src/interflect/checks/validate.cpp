@@ -103,7 +103,8 @@ class Validator {
                                  "turn them round: reverse the order of their vertices");
         for (const std::uint32_t i :
              sampled_patches([&](std::uint32_t k) { return scene_.patches[k].other_side == none && !emits(k); })) {
-            const Surroundings front = surroundings_.look(i, Side::front), back = surroundings_.look(i, Side::back);
+            const Surroundings front = surroundings_.measure(i, Side::front),
+                               back = surroundings_.measure(i, Side::back);
             if (front.escaped == 1 && back.escaped == 0 && 2 * back.one_way < 1) inverted.add_patch(i);
         }
         inverted.append_to(findings_);
@@ -123,7 +124,8 @@ class Validator {
             }
             const std::uint32_t other = scene_.patches[i].other_side;
             if (other != none && emits(other)) continue;
-            const Surroundings front = surroundings_.look(i, Side::front), back = surroundings_.look(i, Side::back);
+            const Surroundings front = surroundings_.measure(i, Side::front),
+                               back = surroundings_.measure(i, Side::back);
             if (front.blocked > max_blocked && back.blocked < 1 - max_blocked)
                 inverted.add_patch(i);
             else if (front.blocked > max_blocked || surroundings_.is_enclosed(i))

@@ -72,7 +72,7 @@ Scene make_boxes(const BoxesOptions& options) {
         add_box(scene, V3f(-half, -half, 0) + centre * cell, object, palette, random);
     }
     if (options.texture) add_textures(scene, palette, finish.floor);
-    scene.views = {look_out(plan, 0).view, bird_view(plan)};
+    scene.views = {room_view(plan, 0).view, bird_view(plan)};
     return scene;
 }
 

@@ -37,10 +37,10 @@ RandomSequence sequence_of(const MazeOptions& options, std::uint32_t room) {
     return RandomSequence(mix(options.seed, std::uint64_t{room} + 1));
 }
 
-void furnish(const FloorPlan& plan, const Room& room, const LookOut& look_out, Furnisher& furnisher,
+void furnish(const FloorPlan& plan, const Room& room, const RoomView& room_view, Furnisher& furnisher,
              RandomSequence& random) {
     FloorSpace floor(plan, room);
-    floor.reserve(look_out.standing_room);
+    floor.reserve(room_view.standing_room);
     if (const auto place = floor.in_the_open(table, random)) furnisher.add(table, *place);
     for (const Furniture* piece : wall_furniture)
         if (const auto place = floor.against_wall(*piece, random)) furnisher.add(*piece, *place);
@@ -69,9 +69,9 @@ Scene make_maze(const MazeOptions& options) {
         const Room& room = plan.rooms[i];
         Furnisher furnisher(scene, palette, i, random[i]);
         furnisher.add_luminaires(room, plan.room_height, one_luminaire, random[i].chance(.5f));
-        const LookOut look_out = building::look_out(plan, i);
-        if (options.furniture) furnish(plan, room, look_out, furnisher, random[i]);
-        if (i < max_room_views) scene.views.push_back(look_out.view);
+        const RoomView room_view = building::room_view(plan, i);
+        if (options.furniture) furnish(plan, room, room_view, furnisher, random[i]);
+        if (i < max_room_views) scene.views.push_back(room_view.view);
     }
     scene.views.push_back(bird_view(plan));
     return scene;

@@ -15,9 +15,9 @@ struct MazeOptions {
     std::uint64_t seed = 1;
 };
 
-/// Creates a maze to test importance: each view sees a small part, and most light is indirect. Rooms of 5 to 7 m form a
+/// Creates a maze to test importance: views see small parts, and most light is indirect. Rooms of 5 to 7 m form a
 /// nearly square grid about the origin, z up, each with a luminaire of about 8,000 lm. Nine furnished rooms match the
-/// scene in Prikryl et al. 2000 (23,182 patches). Views "overview" and, for the first 64 rooms, "room-0" and so on.
+/// scene in Prikryl et al. 2000 (23,182 patches). Views "overview" and, for the first 64 rooms, "room-0", ...
 /// @throws InputError if an option is out of range.
 Scene make_maze(const MazeOptions& options);
 

@@ -76,15 +76,15 @@ Scene make_office(const OfficeOptions& options) {
 
     for (std::uint32_t i = 0; i < options.rooms; ++i) {
         const Room& room = plan.rooms[i];
-        const LookOut look_out = building::look_out(plan, i);
+        const RoomView room_view = building::room_view(plan, i);
         Furnisher furnisher(scene, palette, i, random);
         furnisher.add_luminaires(room, plan.room_height, office_luminaire_pitch, false);
         add_desks(room, options, furnisher);
         FloorSpace floor(plan, room);
-        floor.reserve(look_out.standing_room);
+        floor.reserve(room_view.standing_room);
         for (const Furniture* piece : furniture_along_walls(options.desk_rows))
             if (const auto place = floor.against_wall(*piece, random)) furnisher.add(*piece, *place);
-        if (i < max_room_views) scene.views.push_back(look_out.view);
+        if (i < max_room_views) scene.views.push_back(room_view.view);
     }
     scene.views.push_back(bird_view(plan));
     return scene;

@@ -15,8 +15,7 @@ struct OfficeOptions {
     std::uint64_t seed = 1;
 };
 
-/// Creates a floor of equal rooms with rows of desks, a grid of luminaires and furniture along the walls; otherwise as
-/// make_maze().
+/// Creates equal rooms with rows of desks, a grid of luminaires and furniture along walls; otherwise as make_maze().
 /// @throws InputError if an option is out of range.
 Scene make_office(const OfficeOptions& options);
 

@@ -9,9 +9,9 @@ struct TwoRoomsOptions {
     bool furniture = false;  ///< Two cabinets per side, paper on one.
 };
 
-/// Creates two sealed rooms of 4 x 4 x 3 m with common floor, ceiling and outer wall polygons. A rotated partition
-/// penetrates the outer walls. The only luminaire is in the first room (x < 4): light in the second has leaked. Views
-/// "lit" and "dark".
+/// Creates two sealed rooms of 4 x 4 x 3 m with common floor, ceiling and outer wall polygons, which a rotated
+/// partition penetrates. The only luminaire is in the first (x < 4): light in the second has leaked. Views "lit" and
+/// "dark".
 /// @throws InputError if the turn is out of range.
 Scene make_two_rooms(const TwoRoomsOptions& options);
 

@@ -8,8 +8,8 @@
 
 namespace interflect::detail::building {
 
-/// From the back, x points right, y to the front and z up; the origin is the middle of the back, on the floor. Parts
-/// are at least `gap` inside |x| < width / 2, 0 < y < depth and z > 0.
+/// From the back, x points right, y forwards and z up; the origin is the middle of the back, on the floor. Parts are at
+/// least `gap` inside |x| < width / 2, 0 < y < depth and z > 0.
 struct Furniture {
     std::string_view name;
     float width, depth;  ///< [m]

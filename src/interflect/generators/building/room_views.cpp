@@ -46,7 +46,7 @@ V2f middle_of_doorway(const FloorPlan& plan, const Room& room, Side side) {
     return along_x(side) ? V2f(along, room.wall(side)) : V2f(room.wall(side), along);
 }
 
-/// Returns the cosine between the view direction and the nearest doorway; -1 without doorways.
+/// Returns the cosine between view direction and nearest doorway; -1 without doorways.
 float doorway_in_sight(const FloorPlan& plan, const Room& room, const Corner& corner) {
     const V2f eye = eye_in(room, corner), direction = (opposite_corner(room, corner) - eye).normalized();
     float best = -1;
@@ -58,14 +58,14 @@ float doorway_in_sight(const FloorPlan& plan, const Room& room, const Corner& co
 
 }  // namespace
 
-LookOut look_out(const FloorPlan& plan, std::uint32_t index) {
+RoomView room_view(const FloorPlan& plan, std::uint32_t index) {
     const Room& room = plan.rooms[index];
     const Corner& corner =
         *std::max_element(room_corners.begin(), room_corners.end(), [&](const Corner& a, const Corner& b) {
             return doorway_in_sight(plan, room, a) < doorway_in_sight(plan, room, b);
         });
     const V2f eye = eye_in(room, corner), aim = opposite_corner(room, corner);
-    LookOut result;
+    RoomView result;
     result.view = {fmt::format("room-{}", index), to_micrometres({eye.x, eye.y, eye_height}),
                    to_micrometres({aim.x, aim.y, aim_height}), V3f(0, 0, 1), wide};
     result.standing_room = Box2f(eye - V2f(eye_to_wall), eye + V2f(eye_to_wall));

@@ -7,14 +7,14 @@
 
 namespace interflect::detail::building {
 
-struct LookOut {
+struct RoomView {
     View view;
     Imath::Box2f standing_room;  ///< Around the camera, to keep free.
 };
 
 /// Returns the view from the corner that shows a doorway closest to the centre, 0.45 m from walls and from objects
 /// outside `standing_room`.
-LookOut look_out(const FloorPlan& plan, std::uint32_t index);
+RoomView room_view(const FloorPlan& plan, std::uint32_t index);
 
 /// Returns "overview" from above and south, through the backs of the ceilings.
 View bird_view(const FloorPlan& plan);

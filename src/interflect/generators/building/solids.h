@@ -7,7 +7,7 @@
 namespace interflect::detail::building {
 
 /// Distance between solids and to walls [m]. Exceeds RayCaster::ray_offset() in the largest generated scenes (2.5 mm):
-/// rays from an underside start above the surface below.
+/// rays from undersides start above the surface below.
 inline constexpr float gap = 0.004f;
 
 class Placement {
