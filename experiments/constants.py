@@ -40,14 +40,14 @@ CONSTANTS = {
     "state/solver_state.cpp": "rays_per_camera_ray",
     "state/element_floor.cpp": "min_cosine",
     "state/schedule.cpp": "growth first_rays_per_patch fewest_first_rays budget_over_first_rays rays_of_a_moment",
-    "noise/noise_model.cpp": "memory largest_scale few_arrivals",
+    "noise/noise_model.cpp": "spread_decay largest_scale contributions_of_half_weight",
     "error/error_estimate.cpp": "min_decay max_decay",
     "error/sibling_variation.cpp": "under_sampled highest_expected_decay",
     "error/sibling_variation.h": "assumed_variation",
     "error/noise_update.cpp": "long_enough",
     "refinement/oracle_threshold.cpp": "rays_at_epsilon",
     "refinement/variance_refinement.cpp": "expected_decay assumed_square min_signal negligible_gain negligible_misplacement "
-    "tolerable_misplacement unseen_shape",
+    "tolerable_misplacement invisible_error_weight",
     "iteration/outdoor_targets.cpp": "enough max_lines fewest_lines share_of_rest worthwhile_share widest_target rays_of_lines "
     "max_rays all_over_rays",
 }

@@ -44,7 +44,7 @@ TEST(Schedule, CountsImportanceRaysOfTheStartButDoesNotAverageThem) {
     SolveOptions options{.method = find_method("srr")};
     options.limits.rays = 10'000'000;
     Schedule schedule(options, patches);
-    schedule.began_with(123'456, 44'000);
+    schedule.record_start(123'456, 44'000);
     EXPECT_EQ(schedule.rays(), 167'456);
     EXPECT_EQ(schedule.averaged_rays(), 123'456);
     const std::vector<IterationPlan> plans = all_plans(schedule);
@@ -72,7 +72,7 @@ TEST(Schedule, GrowsWithWhatIsAveraged) {
     SolveOptions options{.method = find_method("srr")};
     options.limits.rays = 100'000'000;
     Schedule schedule(options, patches);
-    schedule.began_with(100'000, 0);
+    schedule.record_start(100'000, 0);
     std::int64_t averaged = 100'000;
     const std::vector<IterationPlan> plans = all_plans(schedule);
     for (std::size_t k = 0; k + 1 < plans.size(); ++k) {  // the last one uses the remaining rays
@@ -122,7 +122,7 @@ TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
     options.limits.rays = std::numeric_limits<std::int64_t>::max();
     options.limits.time = 10;
     Schedule schedule(options, patches);
-    schedule.began_with(1'000'000, 0);
+    schedule.record_start(1'000'000, 0);
     IterationPlan plan = schedule.next(1);
     EXPECT_EQ(plan.rays, 500'000) << "there is time enough";
     schedule.done(plan);

@@ -34,7 +34,7 @@ struct Run {
     std::optional<Solution> finished;
 
     void dim(std::size_t group, float factor);
-    /// Copies the growing forest.
+    /// Copies the forest.
     Solution snapshot();
     /// @throws std::runtime_error if the data are inconsistent.
     void archive(StateArchive& archive);

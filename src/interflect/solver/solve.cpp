@@ -21,18 +21,19 @@ namespace {
 
 constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
 
-void limit_time(SolverState& state) {
+void start_time_limit(SolverState& state) {
     state.stop.limit_time(state.start, state.options.limits.time - state.earlier_seconds);
 }
 
-/// Runs work that an interruption discards. @throws Interrupted
-template <class Work>
-void atomically(Run& run, const Work& work) {
+/// An interruption restores the state before the step, but deterministic methods keep finished links.
+/// @throws Interrupted
+template <class Step>
+void run_or_restore(Run& run, const Step& step) {
     const IterationStart start(run.state);
     try {
-        work();
+        step();
     } catch (const Interrupted&) {
-        if (run.state.options.method.is_stochastic) {  // deterministic methods keep finished links
+        if (run.state.options.method.is_stochastic) {
             start.restore(run.state);
             run.method->discard();
         }
@@ -43,20 +44,21 @@ void atomically(Run& run, const Work& work) {
 /// Estimates importance (Eq. 7, 8) and makes the initial mesh (Eq. 14, 15). @throws Interrupted
 void prepare(Run& run) {
     SolverState& state = run.state;
-    if (!state.options.method.is_stochastic) limit_time(state);  // stochastic methods always complete it
-    if (!run.is_prepared) atomically(run, [&] { run.method->prepare(state); });
+    // The time limit does not interrupt the preparation of stochastic methods.
+    if (!state.options.method.is_stochastic) start_time_limit(state);
+    if (!run.is_prepared) run_or_restore(run, [&] { run.method->prepare(state); });
     run.is_prepared = true;
-    limit_time(state);
+    start_time_limit(state);
 }
 
-/// @param rays_asked_for  In total; extends a completed plan. @return  0 rays if the run is over.
-IterationPlan plan_iteration(Run& run, std::int64_t rays_asked_for) {
+/// Extends the limits of a completed run if more rays are requested. @param requested_rays  Since the run began.
+/// @return  0 rays if the run is over.
+IterationPlan plan_or_extend(Run& run, std::int64_t requested_rays) {
     SolverState& state = run.state;
     IterationPlan next = run.method->plan(state);
-    const bool is_more_asked_for =
-        rays_asked_for < unlimited && rays_asked_for > std::max(state.schedule.rays(), state.options.limits.rays);
-    if (next.rays > 0 || !is_more_asked_for) return next;
-    state.solution.options.limits.rays = rays_asked_for;
+    if (next.rays > 0 || requested_rays == unlimited) return next;
+    if (requested_rays <= std::max(state.schedule.rays(), state.options.limits.rays)) return next;
+    state.solution.options.limits.rays = requested_rays;
     state.schedule.set_limits(state.options.limits);
     return run.method->plan(state);
 }
@@ -67,18 +69,18 @@ void iterate_until(Run& run, const Limits& limits) {
     SolverState& state = run.state;
     IterationMethod& method = *run.method;
     const std::int64_t before = state.schedule.rays();
-    const std::int64_t rays_asked_for = limits.rays < unlimited - before ? before + limits.rays : unlimited;
-    bool has_advanced = !run.is_prepared;
+    const std::int64_t requested_rays = limits.rays < unlimited - before ? before + limits.rays : unlimited;
+    const double target_error = std::max(limits.until, state.options.limits.until);
+    bool has_advanced = !run.is_prepared;  // preparation is progress, too
     prepare(run);
     run.is_finished = false;
-    while (!(run.error <= std::max(limits.until, state.options.limits.until)) &&
-           state.schedule.rays() < rays_asked_for) {
+    while (!(run.error <= target_error) && state.schedule.rays() < requested_rays) {
         if (has_advanced && state.seconds_of_this_call() >= limits.time) return;
-        IterationPlan plan = plan_iteration(run, rays_asked_for);
+        IterationPlan plan = plan_or_extend(run, requested_rays);
         run.is_finished = plan.rays == 0;
         if (run.is_finished) return;
         if (state.stop.is_due()) throw Interrupted();
-        atomically(run, [&] {
+        run_or_restore(run, [&] {
             method.update_importance(state, plan);                // Eq. 7, 8
             const Estimate estimate = method.trace(state, plan);  // Eq. 1; rays by Eq. 3, 9 to 11, mesh by Eq. 14, 15
             method.merge(state, estimate, plan);                  // Eq. 6

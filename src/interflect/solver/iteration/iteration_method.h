@@ -9,13 +9,13 @@
 
 namespace interflect::detail {
 
-/// Steps of a family of methods, called by iterate_until() (solve.cpp). After Interrupted, discard() restores the
+/// Steps of a family of methods, called by iterate_until(). After Interrupted, discard() restores the
 /// method and IterationStart the state.
 class IterationMethod {
   public:
     virtual ~IterationMethod() = default;
 
-    /// Runs the steps before the first iteration. @throws Interrupted
+    /// @throws Interrupted
     virtual void prepare(SolverState&) {}
     virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
     /// Returns 0 rays if the run is over.

@@ -208,8 +208,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// Returns light along lines over the square root of their source's total. This raises the dimmer sky, which alone
-/// locates windows along a sun's parallel lines.
+/// Returns light along lines over the square root of their source's total, to raise the dimmer sky, which alone locates
+/// windows along a sun's parallel lines.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -248,15 +248,15 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 
 }  // namespace
 
-std::int64_t aim_outdoor_light(SolverState& state) {
+void aim_outdoor_light(SolverState& state) {
     // Many rays: a small window transmits little importance. `all` is the run's limit.
     constexpr std::int64_t max_rays = 1 << 18, all_over_rays = 32;
-    if (importance_use(state.solution) != ImportanceUse::full) return 0;
+    if (importance_use(state.solution) != ImportanceUse::full) return;
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());
     const std::int64_t sources = suns + (state.emission.has_sky() ? 1 : 0);
-    if (sources == 0) return 0;
+    if (sources == 0) return;
     const std::int64_t rays = std::min(max_rays, state.options.limits.rays / all_over_rays) / sources;
-    if (rays == 0) return 0;
+    if (rays == 0) return;
     const std::vector<OutdoorLine> lines = outdoor_lines(state, rays);
     std::vector<Imath::Box3f> targets =
         find_targets(lines, weights_of(state.emission, lines), state.emission.scene_box());
@@ -264,7 +264,7 @@ std::int64_t aim_outdoor_light(SolverState& state) {
         set_targets(state, std::move(targets));
         if (!lines.empty()) state.part_importance = importance_of_parts(state.emission, lines);
     }
-    return rays * sources;
+    state.importance_rays += rays * sources;
 }
 
 }  // namespace interflect::detail

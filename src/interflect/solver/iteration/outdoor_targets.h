@@ -21,7 +21,7 @@ struct OutdoorLine {
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box);
 
-/// Sets targets and part importance. Returns the traced rays; 0 without full importance or outdoor light.
-std::int64_t aim_outdoor_light(SolverState& state);
+/// Sets targets and part importance; has no effect without full importance or outdoor light.
+void aim_outdoor_light(SolverState& state);
 
 }  // namespace interflect::detail

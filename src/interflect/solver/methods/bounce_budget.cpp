@@ -9,7 +9,7 @@ namespace {
 
 /// Random walks replace the remaining bounces if the next one would get fewer rays.
 constexpr double fewest_rays_of_bounce = 2;
-/// Random walks also replace bounces below this share of a pass: each bounce takes time for every element.
+/// The same below this share of a pass: each bounce takes time for every element.
 constexpr double min_share_left = 0.05;
 /// Fewer make small passes noisy. Rays beyond the plan are not counted.
 constexpr std::int64_t fewest_walks = 32;
@@ -25,8 +25,8 @@ BounceBudget::BounceBudget(std::int64_t rays, double bounces)
 
 BounceRays BounceBudget::next(double unshot) {
     const double left = static_cast<double>(left_);
-    const double fall = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
-    decay_ = fall < 1 ? std::min(highest_decay, fall) : decay_while_it_grows;
+    const double ratio = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
+    decay_ = ratio < 1 ? std::min(highest_decay, ratio) : decay_while_it_grows;
     last_unshot_ = unshot;
     // Unshot power from here on: as in the previous pass, or a geometric series.
     const double geometric = unshot / (1 - decay_), planned = is_known_ ? bounces_ - unshot_sum_ : geometric;

@@ -4,10 +4,9 @@
 
 namespace interflect::detail {
 
-/// Rays of one bounce.
 struct BounceRays {
     std::int64_t started = 0;
-    std::int64_t expected = 0;  ///< Including random walks.
+    std::int64_t expected = 0;  ///< Including later rays of random walks.
 };
 
 /// Distributes the rays of a pass over its bounces.

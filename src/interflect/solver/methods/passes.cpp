@@ -22,11 +22,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// Passes::prepare() does nothing in a run with fewer rays.
+/// One ray each for importance, the two passes of prepare() and an iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Returns the unshot power relative to the first bounce. With importance, only the share `beta` is this ratio; the
-/// rest is the same ratio of importance-weighted power.
+/// Returns unshot power relative to the first bounce; with importance, its mean (weight `beta`) with the same ratio of
+/// importance-weighted power.
 double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -34,14 +34,14 @@ double unshot_weight(const PowerPlan& bounce, double first_power, double first_w
     return beta * power + (1 - beta) * relative(bounce.weighted_power, first_weighted_power);
 }
 
-Estimate darkness(const SolverState& state) {
-    Estimate dark{std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f)};
-    dark.groups.assign(state.groups.size(), dark.irradiance);
-    if (state.options.keep_direct) dark.direct.assign(std::max<std::size_t>(1, state.groups.size()), dark.irradiance);
-    return dark;
+Estimate zero_estimate(const SolverState& state) {
+    Estimate zero{std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f)};
+    zero.groups.assign(state.groups.size(), zero.irradiance);
+    if (state.options.keep_direct) zero.direct.assign(std::max<std::size_t>(1, state.groups.size()), zero.irradiance);
+    return zero;
 }
 
-/// May move the variance of `received`, but not its irradiance, which the next bounce reflects.
+/// May move `received.variance`, but not the irradiance, which the next bounce reflects.
 void add(Estimate& sum, Received& received) {
     sum.escaped_power += received.escaped_power;
     accumulate(sum.groups, received.groups);
@@ -73,6 +73,66 @@ bool oracle_refines_passes(const SolverState& state) {
 
 }  // namespace
 
+void Passes::prepare(SolverState& state) {
+    set_estimate(state, zero_estimate(state));  // an interrupted preparation may have left light
+    if (state.options.limits.rays < fewest_rays_with_preparation) return;
+    const std::int64_t rays = state.schedule.start_rays();
+    bounces_ = 0;
+    if (importance_use(state.solution) == ImportanceUse::full) find_importance(state, rays);
+    aim_outdoor_light(state);
+    if (state.options.method.refines)  // the first pass estimates the light that the oracle needs
+        for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));
+    aim_outdoor_light(state);
+    state.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state));
+    if (rays_so_far(state) > 0) report(state, 0);
+}
+
+void Passes::update_importance(SolverState& state, IterationPlan& plan) {
+    if (importance_use(state.solution) != ImportanceUse::full) return;
+    if (needs_importance_) {
+        const std::int64_t rays_before = rays_so_far(state);
+        find_importance(state, state.schedule.start_rays());
+        aim_outdoor_light(state);
+        if (!view_change_.empty()) plan.history_factor = view_change_.history_factor(state);
+        plan.rays_for_new_views = rays_so_far(state) - rays_before;
+    }
+    if (!state.options.experimental.separate_iterations) return;
+    plan.importance_rays = std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays));
+    if (plan.importance_rays == 0) return;
+    const Importance psi = importance_of(state.solution);
+    const Received received =
+        run_step(state, TransportStep(plan_importance(state.materials, state.solution, psi, plan.importance_rays)));
+    detail::merge(state, state.solution.indirect_importance, received.importance, plan);
+    state.importance_rays += plan.importance_rays;
+}
+
+Estimate Passes::trace(SolverState& state, IterationPlan& plan) {
+    if (plan.rays <= plan.importance_rays) return {};
+    const std::int64_t rays_before = rays_so_far(state);
+    Estimate estimate = trace_pass(state, plan.rays - plan.importance_rays, oracle_refines_passes(state));
+    plan.traced = std::max<std::int64_t>(1, plan.importance_rays + rays_so_far(state) - rays_before);
+    plan.rays = plan.traced;  // the weight in the mean, > 0
+    return estimate;
+}
+
+void Passes::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
+    state.schedule.count_other_rays(plan.rays_for_new_views);
+    scale_history(state, plan.history_factor);
+    needs_importance_ = false;  // not before: an interrupted iteration starts over
+    view_change_.clear();
+    if (estimate.irradiance.empty()) return;
+    estimate_noise(state, estimate, plan.rays);
+    merge_independent(state, state.solution.irradiance, estimate.irradiance, plan);
+    merge_independent(state, state.solution.groups, estimate.groups, plan);
+    merge_independent(state, state.solution.direct, estimate.direct, plan);
+    merge_escaped_power(state, estimate.escaped_power, plan);
+    update_history(state, plan);
+}
+
+void Passes::refine(SolverState& state) {
+    if (refines_by_variance(state.options) && state.noise.is_known()) refine_by_variance(state);
+}
+
 struct Passes::Pass {
     const std::int64_t rays;
     const bool oracle_refines;
@@ -84,7 +144,7 @@ struct Passes::Pass {
     std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
     GroupLight unshot_groups = {};
     StartPoints start_points = {};
-    double first_power = 0, first_weighted_power = 0;  ///< First bounce.
+    double first_power = 0, first_weighted_power = 0;
     Estimate sum = {};
 };
 
@@ -100,8 +160,8 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     }
     bounces_ = pass.budget.bounces();
     Estimate& sum = pass.sum;
-    if (sum.irradiance.empty()) sum = darkness(state);  // no power to shoot
-    if (!oracle_refines) {                              // TransportStep::leaves_only: inner elements are still empty
+    if (sum.irradiance.empty()) sum = zero_estimate(state);  // no power to shoot
+    if (!oracle_refines) {  // TransportStep::leaves_only: inner elements are still empty
         pull(*state.forest, sum.irradiance), pull_variance(*state.forest, sum.variance);
         pull(*state.forest, sum.groups), pull(*state.forest, sum.direct);
     }
@@ -121,20 +181,19 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     if (pass.emits) pass.first_power = bounce.power, pass.first_weighted_power = bounce.weighted_power;
     const double weight =
         unshot_weight(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
-    // Includes the expected rays of random walks after their first.
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(weight) : BounceRays();
     if (rays.expected == 0) return false;
 
     bounce.plan.rays = rays.started;
     TransportStep step = make_step(state, pass, std::move(bounce.plan));
     const std::uint32_t old_elements = state.forest->size();
-    // Random walks use run_step() even if a subclass overrides trace_step().
     Received received = step.completes_by_walks ? run_step(state, std::move(step)) : trace_step(state, std::move(step));
 
-    const double share = carries_importance ? state.options.experimental.alpha : 0;
-    const std::int64_t for_importance = std::llround(share * static_cast<double>(rays.expected));
-    state.importance_rays += for_importance;
-    state.power_rays += rays.expected - for_importance;
+    // Eq. 11: the share alpha of the rays is sampled by importance.
+    const double importance_share = carries_importance ? state.options.experimental.alpha : 0;
+    const std::int64_t importance_rays = std::llround(importance_share * static_cast<double>(rays.expected));
+    state.importance_rays += importance_rays;
+    state.power_rays += rays.expected - importance_rays;
     state.payloads += received.payloads;
     grow_pass(*state.forest, old_elements, pass);
     if (pass.emits && state.options.keep_direct)
@@ -158,7 +217,8 @@ TransportStep Passes::make_step(const SolverState& state, Pass& pass, RayPlan pl
     step.reflecting_where_received = pass.reflecting_where_received;
     step.leaves_only = !pass.oracle_refines;
     if (pass.oracle_refines)
-        step.oracle = make_oracle(state.solution, state.schedule.averaged_rays() + pass.rays, state.floor.unseen());
+        step.oracle =
+            make_oracle(state.solution, state.schedule.averaged_rays() + pass.rays, state.floor.min_invisible_area());
     step.reusable_buffer = &pass.unshot;
     return step;
 }
@@ -173,72 +233,12 @@ void Passes::grow_pass(const ElementForest& forest, std::uint32_t first, Pass& p
     if (!pass.weights.elements.empty()) inherit(forest, first, pass.weights.elements);
 }
 
-void Passes::prepare(SolverState& state) {
-    set_estimate(state, darkness(state));  // an interrupted preparation may have left light
-    if (state.options.limits.rays < fewest_rays_with_preparation) return;
-    const std::int64_t rays = state.schedule.start_rays();
-    bounces_ = 0;
-    if (importance_use(state.solution) == ImportanceUse::full) find_importance(state, rays);
-    state.importance_rays += aim_outdoor_light(state);
-    if (state.options.method.refines)  // the first pass estimates the light that the oracle needs
-        for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));
-    state.importance_rays += aim_outdoor_light(state);
-    state.schedule.began_with(/*power_rays=*/0, rays_so_far(state));
-    if (rays_so_far(state) > 0) report(state, 0);
-}
-
 void Passes::make_first_estimate(SolverState& state) {
     prepare(state);
     set_estimate(state, trace_pass(state, state.schedule.start_rays(), false));
-    state.solution.direct.clear();  // the other method does not keep it apart
-    state.schedule.began_with(0, rays_so_far(state));
+    state.solution.direct.clear();  // the method that continues does not separate direct light
+    state.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state));
     report(state, 0);
-}
-
-void Passes::update_importance(SolverState& state, IterationPlan& plan) {
-    if (importance_use(state.solution) != ImportanceUse::full) return;
-    if (needs_importance_) {
-        const std::int64_t rays_before = rays_so_far(state);
-        find_importance(state, state.schedule.start_rays());
-        state.importance_rays += aim_outdoor_light(state);
-        if (!view_change_.empty()) plan.history_factor = view_change_.history_factor(state);
-        plan.rays_for_new_views = rays_so_far(state) - rays_before;
-    }
-    if (!state.options.experimental.separate_iterations) return;
-    plan.importance_rays = std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays));
-    if (plan.importance_rays == 0) return;
-    const Importance psi = importance_of(state.solution);
-    const Received received =
-        run_step(state, TransportStep(plan_importance(state.materials, state.solution, psi, plan.importance_rays)));
-    detail::merge(state, state.solution.indirect_importance, received.importance, plan);
-    state.importance_rays += plan.importance_rays;
-}
-
-Estimate Passes::trace(SolverState& state, IterationPlan& plan) {
-    if (plan.rays <= plan.importance_rays) return {};
-    const std::int64_t rays_before = rays_so_far(state);
-    Estimate estimate = trace_pass(state, plan.rays - plan.importance_rays, oracle_refines_passes(state));
-    plan.rays = plan.traced =  // also the weight in the mean, so at least 1
-        std::max<std::int64_t>(1, plan.importance_rays + rays_so_far(state) - rays_before);
-    return estimate;
-}
-
-void Passes::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
-    state.schedule.count_other_rays(plan.rays_for_new_views);
-    scale_history(state, plan.history_factor);
-    needs_importance_ = false;  // not before: an interrupted iteration starts over
-    view_change_.clear();
-    if (estimate.irradiance.empty()) return;
-    estimate_noise(state, estimate, plan.rays);
-    merge_independent(state, state.solution.irradiance, estimate.irradiance, plan);
-    merge_independent(state, state.solution.groups, estimate.groups, plan);
-    merge_independent(state, state.solution.direct, estimate.direct, plan);
-    merge_escaped_power(state, estimate.escaped_power, plan);
-    update_history(state, plan);
-}
-
-void Passes::refine(SolverState& state) {
-    if (refines_by_variance(state.options) && state.noise.is_known()) refine_by_variance(state);
 }
 
 void Passes::change_views(SolverState& state) {

@@ -27,8 +27,7 @@ std::vector<float> patch_importance(const SolverState& state) {
     return values;
 }
 
-/// Returns the ratio of the new to the old variance per ray, weighted by importance. Payloads are proportional to power
-/// over q.
+/// Returns the ratio of new to old variance per ray, weighted by importance. Payloads are proportional to power over q.
 /// @param importance  By patch.
 float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
                   const std::vector<float>& new_q) {
@@ -39,9 +38,9 @@ float noise_ratio(const SolverState& state, const std::vector<float>& importance
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
         if (!forest.is_leaf(e) || !(old_q[e] > 0) || !(new_q[e] > 0)) continue;
         const double power = static_cast<double>(channel_sum(light.of(forest, e))) * forest.area(e);
-        const double matters = power * importance[forest.patch(e)];
-        before += matters * power / old_q[e];
-        now += matters * power / new_q[e];
+        const double weighted_power = power * importance[forest.patch(e)];
+        before += weighted_power * power / old_q[e];
+        now += weighted_power * power / new_q[e];
     }
     return before > 0 ? static_cast<float>(std::clamp(now / before, 1 / largest, largest)) : 1.0f;
 }

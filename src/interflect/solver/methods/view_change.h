@@ -7,8 +7,7 @@
 
 namespace interflect::detail {
 
-/// Sampling and importance before the views changed. Converts the history of the averaged light to rays of the new
-/// views with the same noise.
+/// Sampling and importance before the views changed. Converts history to rays of the new views with the same noise.
 class ViewChange {
   public:
     bool empty() const { return old_q_.empty(); }

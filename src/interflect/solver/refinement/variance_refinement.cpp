@@ -30,7 +30,7 @@ constexpr double negligible_misplacement = 3e-7;
 /// 6%.
 constexpr double tolerable_misplacement = 3e-5;
 /// Relative weight of errors on invisible surfaces, whose effect on the view is blurred.
-constexpr double unseen_shape = 0.02;
+constexpr double invisible_error_weight = 0.02;
 
 class VarianceOracle {
   public:
@@ -58,8 +58,8 @@ class VarianceOracle {
         if (!(signal > min_signal * noise)) return false;
         const bool blurs =
             weight(leaf) * static_cast<double>(signal) > min_gain && forest_.area(leaf) >= 4 * min_area(state_, leaf);
-        const bool misplaces =
-            misplaced_power(leaf, signal) > min_misplaced_power_ && forest_.area(leaf) >= 4 * state_.floor.unseen();
+        const bool misplaces = misplaced_power(leaf, signal) > min_misplaced_power_ &&
+                               forest_.area(leaf) >= 4 * state_.floor.min_invisible_area();
         return blurs || misplaces;
     }
 
@@ -87,7 +87,7 @@ class VarianceOracle {
         double w = error_weight(state_, measure_, leaf);
         if (!psi_.empty()) {
             const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
-            w += unseen_shape * rho * rho * static_cast<double>(psi_[leaf]);
+            w += invisible_error_weight * rho * rho * static_cast<double>(psi_[leaf]);
         }
         return w * forest_.area(leaf);
     }

@@ -15,11 +15,12 @@ class ElementFloor {
     /// Smallest area that a pixel of any view covers [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// RefinementOptions::min_area if given, else pixel_area() if a view sees the element, else unseen() [m^2].
+    /// RefinementOptions::min_area if given, else pixel_area() if a view sees the element, else min_invisible_area()
+    /// [m^2].
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
-    /// For invisible surfaces [m^2]: default_element_size() squared.
-    float unseen() const { return unseen_; }
+    /// Returns default_element_size() squared, or RefinementOptions::min_area if given [m^2].
+    float min_invisible_area() const { return min_invisible_area_; }
 
   private:
     struct ViewPoint {
@@ -27,7 +28,7 @@ class ElementFloor {
         float pixel;  // width at distance 1
     };
     std::vector<ViewPoint> cameras_;
-    float unseen_;
+    float min_invisible_area_;
     bool is_given_;
 };
 

@@ -8,8 +8,8 @@
 
 namespace interflect::detail {
 
-/// Copies of the data that an iteration changes. After restore(), the repeated iteration has the bits of an
-/// uninterrupted run.
+/// Copies of data that an iteration changes. After restore(), a repeated iteration has the bits of an uninterrupted
+/// run.
 class IterationStart {
   public:
     explicit IterationStart(const SolverState& state);

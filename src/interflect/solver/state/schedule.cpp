@@ -32,9 +32,9 @@ std::int64_t Schedule::start_rays() const {
                      std::max<std::int64_t>(1, options_.limits.rays / budget_over_first_rays)});
 }
 
-void Schedule::began_with(std::int64_t power_rays, std::int64_t other_rays) {
-    rays_ = power_rays + other_rays;
-    averaged_rays_ = power_rays;
+void Schedule::record_start(std::int64_t averaged_rays, std::int64_t other_rays) {
+    rays_ = averaged_rays + other_rays;
+    averaged_rays_ = averaged_rays;
 }
 
 /// Returns the rays for the remaining time at the current speed; 0 if too few to be useful.

@@ -20,15 +20,15 @@ struct IterationPlan {
     std::vector<float> history_factor = {};
 };
 
-/// Ray counts of the iterations, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000.
+/// Ray counts, averaged with tau = N_m / (N_1 + ... + N_m) in Eq. 6, Prikryl et al. 2000.
 class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Returns the rays of each pass before the first iteration: at most an eighth of all.
+    /// Returns the rays per pass before the first iteration: at most an eighth of all.
     std::int64_t start_rays() const;
-    /// Records these passes. Power rays are the first term of the average.
-    void began_with(std::int64_t power_rays, std::int64_t other_rays);
+    /// Records these passes; `averaged_rays` are in the first mean.
+    void record_start(std::int64_t averaged_rays, std::int64_t other_rays);
     /// Plans an iteration that ends within the time limit. @param seconds  Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;

@@ -17,7 +17,7 @@ namespace interflect::detail {
 using V3d = Imath::V3d;
 
 /// Unoccluded form factor from a differential area at x to a convex polygon: Lambert's edge sum (1760; Baum et al.
-/// 1989), clipped to the horizon. 0 if x is behind the polygon.
+/// 1989), clipped to the horizon. 0 behind the polygon.
 /// @param normal   Unit length.
 /// @param polygon  Three to seven corners [m], counter-clockwise from the lit side.
 double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V3d> polygon);
@@ -40,9 +40,8 @@ struct Exchange {
 /// Points per side of the smaller element, each with one line of sight.
 enum class Effort { quick = 2, thorough = 4 };
 
-/// Estimates the exchange between elements; thread-safe. Lambert's form factor to the larger element is integrated over
-/// the smaller by Gaussian quadrature. A line of sight is free if rays from each end first hit the other, apart from
-/// panes.
+/// Thread-safe. Integrates Lambert's form factor to the larger element over the smaller by Gaussian quadrature. A line
+/// of sight is free if rays from each end first hit the other, apart from panes.
 class ExchangeEstimator {
   public:
     ExchangeEstimator(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t seed)

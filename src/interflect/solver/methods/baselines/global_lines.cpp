@@ -47,7 +47,7 @@ struct LineDomain {
     }
 };
 
-/// Patch that faces a line, and the patch that it sees backwards, if any.
+/// Patch that faces a line, and the patch seen backwards, if any.
 struct LineSegment {
     std::uint32_t front, back;
     bool is_mutual;  ///< Whether `back` also sees `front`: false through the back of a one-sided face.
@@ -56,11 +56,11 @@ struct LineSegment {
 /// One object per thread.
 struct LineBundle {
     PointBlock points;
-    std::vector<Ray> lines, looking_back;
+    std::vector<Ray> lines, reversed_lines;
     /// Distance within which a patch coincides with the last one [m]; initially infinite.
     std::vector<float> slack;
     std::vector<std::uint32_t> crossed;
-    std::vector<Hit> hits, seen;
+    std::vector<Hit> hits, reversed_hits;
     std::vector<LineSegment> segments;
     std::vector<Panes::HitBehind> behind;
 };
@@ -81,12 +81,12 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
     }
 }
 
-/// Advances each line to the next patch that faces it, and traces back from there. Drops lines that escape, or hit the
-/// same patch again by rounding.
+/// Advances lines to the next patch that faces them, and traces back. Drops lines that escape, or hit the same patch
+/// again by rounding.
 void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
     constexpr float offsets_apart = 4;  // of coincident patches; see RayCaster::ray_offset()
     bundle.segments.clear();
-    bundle.looking_back.clear();
+    bundle.reversed_lines.clear();
     bundle.hits.resize(bundle.lines.size());
     ray_caster.trace(bundle.lines, bundle.hits);
     for (std::size_t i = 0; i < bundle.lines.size(); ++i) {
@@ -98,7 +98,7 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
         const V3f x = geometry.point(geometry.parameters_of(bundle.lines[i].origin + distance * direction));
         const V3f offset = ray_caster.ray_offset(patch) * geometry.normal();
         const std::size_t kept = bundle.segments.size();
-        bundle.looking_back.push_back({x + offset, -direction});
+        bundle.reversed_lines.push_back({x + offset, -direction});
         bundle.lines[kept] = {x - offset, direction};
         bundle.hits[kept].distance = distance + bundle.slack[i];
         bundle.slack[kept] = offsets_apart * ray_caster.ray_offset(patch) / std::abs(geometry.normal().dot(direction));
@@ -106,11 +106,11 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
         bundle.segments.push_back({patch, none, true});
     }
     bundle.lines.resize(bundle.segments.size());
-    bundle.seen.resize(bundle.segments.size());
-    ray_caster.trace(bundle.looking_back, bundle.seen);
-    panes.trace(bundle.looking_back, bundle.seen, bundle.behind);
+    bundle.reversed_hits.resize(bundle.segments.size());
+    ray_caster.trace(bundle.reversed_lines, bundle.reversed_hits);
+    panes.trace(bundle.reversed_lines, bundle.reversed_hits, bundle.behind);
     for (std::size_t i = 0; i < bundle.segments.size(); ++i) {
-        const auto [back, distance] = bundle.seen[i];
+        const auto [back, distance] = bundle.reversed_hits[i];
         bundle.segments[i].back = back;
         bundle.segments[i].is_mutual = back != none && distance <= bundle.hits[i].distance;
     }

@@ -225,8 +225,7 @@ double error_bound(const Exchange& exchange, float spread) {
 
 }  // namespace
 
-/// Each end has an error bound as receiver, with the other end's radiosity, and one as source, with the range of its
-/// own radiosity.
+/// Each end has an error bound as receiver, with the other's radiosity, and one as source, with the range of its own.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const Solution& solution = state_.solution;
     const std::vector<Rgb> b = radiosity(state_.materials, forest_, solution.irradiance);
@@ -256,7 +255,7 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
 }
 
 bool LinkedElements::may_divide(std::uint32_t element) const {
-    return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.unseen());
+    return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.min_invisible_area());
 }
 
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {

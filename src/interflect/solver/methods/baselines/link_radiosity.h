@@ -31,12 +31,12 @@ struct LinkCandidate {
 
 struct RefinementCandidate;
 
-/// Hierarchical radiosity (Hanrahan et al. 1991), a deterministic solver of Eq. 1, Prikryl et al. 2000. A sweep gathers
-/// one bounce over the links and ends with push-pull. Only visibility is sampled.
+/// Hierarchical radiosity (Hanrahan et al. 1991) for Eq. 1, Prikryl et al. 2000; deterministic. A sweep gathers one
+/// bounce over the links, with push-pull. Only visibility is sampled.
 ///
-/// Four links to the children of one end replace a link if its error bound exceeds epsilon times the reference power
-/// (oracle_threshold.h). The bound is rho_i B_j A_i times the variation of F_ij over an element, including partial
-/// occlusion. With importance, it is weighted by psi_i / psi_max (Eq. 15; Smits et al. 1992).
+/// Four links to the children of one end replace a link if its error bound exceeds epsilon times reference_power(). The
+/// bound is rho_i B_j A_i times the variation of F_ij over an element, including partial occlusion. With importance, it
+/// is weighted by psi_i / psi_max (Eq. 15; Smits et al. 1992).
 ///
 /// The run ends when light has settled and no link needs refinement. It stays within limits.rays (except for the first
 /// links), max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,

@@ -192,8 +192,8 @@ class PathBatch {
         add_concurrently(sums_.escaped_rays, escaped_rays);
     }
 
-    /// Applies Russian roulette and splitting: reflected power continues as n copies on average. Below the limit of n,
-    /// a copy carries the power of a particle emitted there.
+    /// Russian roulette and splitting: reflected power continues as n copies on average. Below the limit of n, a copy
+    /// has the power of a particle emitted there.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;

@@ -18,7 +18,7 @@ namespace {
 
 /// Minimum weight of a shooting patch, relative to the largest.
 constexpr float share_of_largest = 0.5f;
-/// The last step shoots the rest: below this unshot share, or if a step would get fewer rays.
+/// The last step shoots the rest: below this unshot share or number of rays.
 constexpr double negligible_rest = 0.01;
 constexpr std::int64_t fewest_rays_of_step = 16;
 /// Initial ShotBudget::expected.
@@ -153,7 +153,7 @@ class ProgressiveRefinement final : public IterationMethod {
         current_.importance_history = 0;
         shoot_importance(state,
                          std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
-        state.schedule.began_with(0, state.importance_rays);
+        state.schedule.record_start(0, state.importance_rays);
     }
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;

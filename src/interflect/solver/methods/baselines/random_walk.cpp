@@ -127,7 +127,7 @@ void RandomWalks::prepare(SolverState& state) {
     before_ = current_;
     current_.importance.batches = 0, current_.importance.pilot_rays = 0, current_.importance_history = 0;
     walk_importance(state, std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
-    state.schedule.began_with(0, state.importance_rays);
+    state.schedule.record_start(0, state.importance_rays);
 }
 
 std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {

@@ -15,7 +15,7 @@ struct PathSeries {
 };
 
 /// Random walks that solve Eq. 1, Prikryl et al. 2000 (Pattanaik and Mudur 1992). A particle deposits its power at
-/// every hit patch and continues from a uniform point on it, with a probability given by the reflectance.
+/// every hit patch and continues from a uniform point on it, with the reflectance as probability.
 ///
 /// With importance (Pattanaik and Mudur 1993, 1995), walks from the cameras estimate psi with the share alpha of the
 /// rays. Particles then split where psi rises and end more often where it falls. Unbiased while beta > 0.

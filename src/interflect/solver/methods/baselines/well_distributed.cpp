@@ -34,8 +34,8 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/total", total_);
 }
 
-/// Replaces the shares in plan.q by the rays that each source lacks of `all` rays. If a leaf has shot more than its
-/// share, other leaves of its patch shoot less.
+/// Replaces the shares in plan.q by the rays that sources lack of `all` rays. If a leaf has shot more than its share,
+/// others of its patch shoot less.
 void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const {
     struct Balance {
         double lacks = 0, lacking = 0;  // rays, with and without the surplus of other leaves
@@ -73,7 +73,8 @@ Estimate WellDistributedRays::trace(SolverState& state, IterationPlan& plan) {
     const double all_power = channel_sum(radiated_power(state));
     keep_lacking_rays(forest, total_ + plan.rays, step);
     const std::int64_t rays = plan.rays = plan.traced = step.rays;
-    if (state.options.method.refines) step.oracle = make_oracle(state.solution, total_ + rays, state.floor.unseen());
+    if (state.options.method.refines)
+        step.oracle = make_oracle(state.solution, total_ + rays, state.floor.min_invisible_area());
 
     std::vector<std::uint64_t> used_before = state.streams.used, used_by_parts_before = state.streams.used_by_parts;
     used_by_parts_before.resize(shot_by_parts_.size(), 0);
