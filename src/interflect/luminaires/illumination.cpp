@@ -27,8 +27,8 @@ Illumination light_at(const SpotLight& light, const V3f& x, float, float) {
     const float cosine = -i.towards.dot(light.direction.normalized());
     const float inner = light.inner_cosine(), outer = light.outer_cosine();
     if (cosine >= inner) return i;
-    const float fall = cosine > outer ? (cosine - outer) / (inner - outer) : 0;
-    i.irradiance *= fall * fall;
+    const float falloff = cosine > outer ? (cosine - outer) / (inner - outer) : 0;
+    i.irradiance *= falloff * falloff;
     return i;
 }
 
@@ -49,8 +49,8 @@ Illumination light_at(const UniformSky&, const V3f&, float, float) { return {}; 
 Illumination light_at(const SkyDome&, const V3f&, float, float) { return {}; }
 Illumination light_at(const EnvironmentMap&, const V3f&, float, float) { return {}; }
 
-/// Samples a point of the opening as seen from its centre, with density |n d0| / A(d0); A is the projected area. From
-/// the radiance I(d) / A(d), the irradiance is I(d) / r^2 (n d / A(d)) / (n d0 / A(d0)).
+/// Samples a point of the opening as seen from its centre, with density |n d0| / A(d0); A is the projected area. With
+/// radiance I(d) / A(d), the irradiance is I(d) / r^2 (n d / A(d)) / (n d0 / A(d0)).
 Illumination light_at(const MeasuredLight& light, const V3f& x, float u, float v) {
     constexpr float surface_tolerance = 0x1p-14f;  // relative to distance: the opening may lie in a surface
     const LuminaireFrame frame(light);

@@ -23,7 +23,7 @@ constexpr float normal_scale = 0.1f;  // about 18 degrees
 constexpr float plane_scale = 1.5f;   // relative to the pixel spacing
 
 /// Approximates exp(-d).
-float fall(float d) {
+float exp_minus(float d) {
     const float t = 1 / (1 + d * 0.125f), t2 = t * t, t4 = t2 * t2;
     return t4 * t4;
 }
@@ -88,7 +88,8 @@ float shape_weight(const PictureLayers& layers, std::size_t i, std::size_t k, fl
     const float height = step.dot(layers.normal.pixels[i]);
     const float footprint = plane_scale * (layers.depth[i] * layers.pixel_angle + layers.pixel_size) * steps;
     const float is_hit = layers.depth[k] > 0 ? 1.0f : 0.0f;
-    return is_hit * fall(turn.dot(turn) / normal_scale) * fall(height * height / (footprint * footprint + 1e-12f));
+    return is_hit * exp_minus(turn.dot(turn) / normal_scale) *
+           exp_minus(height * height / (footprint * footprint + 1e-12f));
 }
 
 Fields make_fields(const SampledLight& light, const Image& albedo) {
@@ -184,7 +185,7 @@ class Band {
                 float d = 0;
                 for (std::size_t r = 0; r < 3; ++r)
                     d += rows[r * across + left] + rows[r * across + c] + rows[r * across + right];
-                const float weight = shape_[out + c] * fall(std::max(0.0f, d / 9));
+                const float weight = shape_[out + c] * exp_minus(std::max(0.0f, d / 9));
                 for (std::size_t channel = 0; channel < 3; ++channel)
                     sums[channel][out + c] += weight * field.value[channel][k + c];
                 sums[3][out + c] += weight;
@@ -218,7 +219,7 @@ NoisyLight noisy_light(const PictureLayers& layers, const std::array<Fields, 2>&
     return light;
 }
 
-/// Mean difference between unfiltered and filtered light around pixel (x, y), reduced by its noise (James-Stein).
+/// Mean of unfiltered minus filtered light around (x, y), reduced by its noise (James-Stein).
 Rgb removed_around(const PictureLayers& layers, const NoisyLight& noisy, const Image& filtered, int x, int y) {
     const int width = filtered.width, height = filtered.height;
     const std::size_t i = pixel_at(x, y, width);

@@ -7,7 +7,6 @@
 
 namespace interflect::detail {
 
-/// Estimate of one iteration, before merging.
 struct Estimate {
     std::vector<Rgb> irradiance = {};    ///< H by element [lm/m^2 or W/m^2].
     std::vector<float> variance = {};    ///< Variance of its luminance, for independent rays.

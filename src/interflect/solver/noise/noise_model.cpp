@@ -9,16 +9,16 @@ namespace interflect::detail {
 
 namespace {
 
-/// Decay of earlier iterations, because mesh and sampling change.
-constexpr double memory = 0.75;
+/// Weight per iteration of earlier spreads, because mesh and sampling change.
+constexpr double spread_decay = 0.75;
 constexpr double largest_scale = 100;
-/// Contributions at which measured and equal shares weigh alike.
-constexpr float few_arrivals = 16;
+/// Contributions at which measured shares have weight 1/2.
+constexpr float contributions_of_half_weight = 16;
 
 }  // namespace
 
 NoiseModel::Spread& NoiseModel::Spread::operator+=(const Spread& other) {
-    for (std::size_t n = 0; n < rarities; ++n) {
+    for (std::size_t n = 0; n < hit_rate_classes; ++n) {
         observed[n] += other.observed[n];
         independent[n] += other.independent[n];
     }
@@ -39,7 +39,7 @@ std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<c
     variance /= area;
     const float h = luminance(mean[forest.parent(first)]);
     const float contributions = 4 * rays * h * h / variance,
-                weight_of_measured = contributions / (contributions + few_arrivals);
+                weight_of_measured = contributions / (contributions + contributions_of_half_weight);
     for (std::uint32_t k = 0; k < 4; ++k)
         shares[k] = weight_of_measured * per_ray_[first + k] / variance + (1 - weight_of_measured);
     return shares;
@@ -57,7 +57,7 @@ void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::sp
                 if (const std::uint32_t parent = forest.parent(e); parent != none)
                     difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
                 const double w = weight(e);
-                const std::size_t n = rarity(forest, mean, e);
+                const std::size_t n = hit_rate_class(forest, mean, e);
                 const float independent = (rays * per_ray_[e] + m * rays * fresh.variance[e]) / (rays + m);
                 sum.observed[n] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
                 sum.independent[n] += w * static_cast<double>(share_of_own(forest, e) * independent);
@@ -72,9 +72,9 @@ void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::sp
     });
     ++iterations_;
     if (!is_known()) return;
-    for (std::size_t n = 0; n < rarities; ++n) {
-        spread_.observed[n] = memory * spread_.observed[n] + spread.observed[n];
-        spread_.independent[n] = memory * spread_.independent[n] + spread.independent[n];
+    for (std::size_t n = 0; n < hit_rate_classes; ++n) {
+        spread_.observed[n] = spread_decay * spread_.observed[n] + spread.observed[n];
+        spread_.independent[n] = spread_decay * spread_.independent[n] + spread.independent[n];
         if (!(spread_.independent[n] > 0)) continue;
         const double scale = spread_.observed[n] / spread_.independent[n];
         scale_[n] = static_cast<float>(std::clamp(scale, 1 / largest_scale, largest_scale));

@@ -14,8 +14,8 @@
 
 namespace interflect::detail {
 
-/// Noise of the mean irradiance: the variance for independent rays, times a factor measured from differences between
-/// iterations (docs/method.md, Errors).
+/// Noise of the mean irradiance: the variance of independent rays, times a factor from differences between iterations
+/// (docs/method.md, Errors).
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
@@ -23,7 +23,7 @@ class NoiseModel {
     /// Returns the luminance variance of a mean over `rays` rays: of a root, or of another element's difference from
     /// its parent.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
-        return scale_[rarity(forest, mean, e)] * independent_variance(forest, e) / rays;
+        return scale_[hit_rate_class(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
     bool is_known() const { return iterations_ > 1; }
 
@@ -56,18 +56,18 @@ class NoiseModel {
     }
 
   private:
-    static constexpr std::size_t rarities = 48;
+    static constexpr std::size_t hit_rate_classes = 48;
     struct Spread {
-        std::array<double, rarities> observed{}, independent{};
+        std::array<double, hit_rate_classes> observed{}, independent{};
         Spread& operator+=(const Spread& other);
     };
 
-    /// Class n of elements hit by about one in 2^n rays. Siblings share a class: one may be hit by chance.
-    std::size_t rarity(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
+    /// Class n: about one in 2^n rays hits the element. Siblings share a class: one may be hit by chance.
+    std::size_t hit_rate_class(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
         const std::uint32_t parent = forest.parent(e), known = parent == none ? e : parent;
-        const float h = luminance(mean[known]), rays_per_arrival = per_ray_[known] / (h * h);
-        if (!(rays_per_arrival < 0x1p45f)) return rarities - 1;
-        const int n = rays_per_arrival > 1 ? std::ilogb(rays_per_arrival) : 0;
+        const float h = luminance(mean[known]), rays_per_contribution = per_ray_[known] / (h * h);
+        if (!(rays_per_contribution < 0x1p45f)) return hit_rate_classes - 1;
+        const int n = rays_per_contribution > 1 ? std::ilogb(rays_per_contribution) : 0;
         return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
     /// Differences of siblings from their mean have three quarters of the variance.
@@ -79,7 +79,7 @@ class NoiseModel {
     }
 
     std::vector<float> per_ray_;  // [irradiance^2]
-    std::array<float, rarities> scale_;
+    std::array<float, hit_rate_classes> scale_;
     Spread spread_;  // decays per iteration
     int iterations_ = 0;
 };
