@@ -119,7 +119,8 @@ void add_arrivals(benchmark::State& state) {
         const std::uint32_t source = buffer.add_source({1, 2, 3, 4});
         for (std::size_t i = 0; i < block; ++i) {
             random = random * 1664525u + 1013904223u;
-            buffer.add(static_cast<std::uint32_t>(std::uint64_t{random} * elements >> 32), source, true, true);
+            buffer.add(static_cast<std::uint32_t>(std::uint64_t{random} * elements >> 32), source,
+                       ContributionSums::ScatterBuffer::Terms::both);
         }
         buffer.release_sources();
     }

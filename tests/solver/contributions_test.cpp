@@ -13,15 +13,17 @@ namespace interflect {
 using namespace detail;
 namespace {
 
+using Terms = ContributionSums::ScatterBuffer::Terms;
+
 TEST(ContributionSums, GivesEachElementThePartsOfContributionsThatArriveThere) {
     ContributionSums sums(5);
     sums.begin_step(3);
     ContributionSums::ScatterBuffer buffer(sums);
     const std::uint32_t a = buffer.add_source({1, 10, 100, 5, 1000}), b = buffer.add_source({2, 20, 200, 7, 2000});
-    buffer.add(0, a, true, true);
-    buffer.add(0, b, true, false);
-    buffer.add(2, b, false, true);
-    buffer.add(4, a, true, false);  // created during the step
+    buffer.add(0, a, Terms::both);
+    buffer.add(0, b, Terms::power);
+    buffer.add(2, b, Terms::importance);
+    buffer.add(4, a, Terms::power);  // created during the step
     buffer.flush_all();
     EXPECT_EQ(sums.take(0), (Contribution{3, 30, 300, 12, 1000}));
     EXPECT_EQ(sums.take(1), (Contribution{0, 0, 0, 0, 0}));
@@ -45,7 +47,7 @@ TEST(ContributionSums, AreTheSameWhateverThreadsBringThem) {
     parallel_for_ranges(rays, 10'000, [&](std::size_t begin, std::size_t end) {
         ContributionSums::ScatterBuffer buffer(sums);
         for (std::size_t ray = begin; ray < end; ++ray) {
-            buffer.add(element(ray), buffer.add_source(contributions[ray % sources]), true, true);
+            buffer.add(element(ray), buffer.add_source(contributions[ray % sources]), Terms::both);
             buffer.release_sources();
         }
         buffer.flush_all();

@@ -16,8 +16,8 @@ namespace interflect::detail {
 using Contribution = std::array<std::int64_t, 5>;
 inline constexpr std::size_t power_terms = 4, importance_term = 4;
 
-/// Integer sums of the contributions to each element in a step, independent of their order. Threads bin contributions
-/// by region of the forest and flush full bins under the region's lock.
+/// Integer sums of contributions by element, independent of order. Threads bin contributions by region of the forest
+/// and flush full bins under its lock.
 class ContributionSums {
   public:
     /// Address space [bytes].
@@ -57,20 +57,22 @@ class ContributionSums {
       public:
         explicit ScatterBuffer(ContributionSums& sums) : sums_(&sums) {}
 
-        /// Returns the index of the source.
-        /// @param contribution  Of one ray. @param of_groups  Its power by light group; empty: 0.
-        std::uint32_t add_source(const Contribution& contribution, std::span<const std::int64_t> of_groups = {}) {
+        /// Returns its index.
+        /// @param contribution  Of one ray. @param power_by_group  Empty: 0.
+        std::uint32_t add_source(const Contribution& contribution, std::span<const std::int64_t> power_by_group = {}) {
             contributions_.push_back(contribution);
-            group_contributions_.insert(group_contributions_.end(), of_groups.begin(), of_groups.end());
+            group_contributions_.insert(group_contributions_.end(), power_by_group.begin(), power_by_group.end());
             group_contributions_.resize(contributions_.size() * sums_->group_terms_);
             return static_cast<std::uint32_t>(contributions_.size() - 1);
         }
         const Contribution& contribution(std::uint32_t source) const { return contributions_[source]; }
 
-        void add(std::uint32_t element, std::uint32_t source, bool power, bool importance) {
+        enum class Terms { power, importance, both };
+        void add(std::uint32_t element, std::uint32_t source, Terms terms) {
             const std::size_t region = element >> sums_->region_shift_ & (regions - 1);
             Bin& bin = bins_[region];
-            bin.deposits[bin.count++] = {element, source & (max_sources - 1), power, importance};
+            bin.deposits[bin.count++] = {element, source & (max_sources - 1), terms != Terms::importance,
+                                         terms != Terms::power};
             if (bin.count == bin.deposits.size()) flush(region);
         }
         void release_sources() {

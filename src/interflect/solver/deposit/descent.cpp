@@ -5,18 +5,18 @@
 
 namespace interflect::detail {
 
-void Descent::deposit(std::uint32_t source, const Contribution& contribution, std::span<const std::int64_t> of_groups,
-                      std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
-                      float transmitted) {
-    const std::uint32_t payload = buffer_.add_source(contribution, of_groups);
+void Descent::deposit(std::uint32_t source, const Contribution& contribution,
+                      std::span<const std::int64_t> power_by_group, std::span<const Ray> rays,
+                      std::span<const Parameters> origins, std::span<const Hit> hits, float transmitted) {
+    const std::uint32_t payload = buffer_.add_source(contribution, power_by_group);
     sources_in_task_.push_back({source, 0, transmitted});
     const auto source_in_task = static_cast<std::uint32_t>(sources_in_task_.size() - 1);
-    bool needs_path = refines_;  // one path per leaf
+    bool has_path = false;  // one for all rays of a leaf
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
             count_escaped(contribution);
         } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
-            buffer_.add(hits[r].patch, payload, true, true);
+            buffer_.add(hits[r].patch, payload, Terms::both);
             if (step_.reflects_where_received(hits[r].patch)) {
                 const V3f point = rays[r].origin + hits[r].distance * rays[r].direction;
                 add_start_point(hits[r].patch, forest_.geometry(hits[r].patch).parameters_of(point), contribution);
@@ -24,10 +24,11 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution, st
             if (found_importance_) add_found_importance(source_in_task, hits[r].patch, hits[r].patch);
         } else {
             while (open_count_ == lanes) advance();
-            if (refines_ && source >= old_size_)
-                path_ = sources_.append_part(source - old_size_, rays[r], hits[r]);
-            else if (std::exchange(needs_path, false))
-                path_ = sources_.append_leaf(source);
+            const bool is_luminaire_part = source >= old_size_;
+            if (refines_ && is_luminaire_part)
+                path_ = source_paths_.append_part(source - old_size_, rays[r], hits[r]);
+            else if (refines_ && !std::exchange(has_path, true))
+                path_ = source_paths_.append_leaf(source);
             begin(payload, source_in_task, rays[r], origins[r], hits[r]);
         }
     }
@@ -44,7 +45,7 @@ void Descent::prefetch(const Hit& hit) const {
 
 void Descent::finish_batch() {
     while (open_count_ > 0) advance();
-    sources_.clear();
+    source_paths_.clear();
     buffer_.release_sources();
     if (found_importance_)
         for (const auto& [source, found, transmitted] : sources_in_task_)
@@ -71,7 +72,7 @@ void Descent::begin(std::uint32_t payload, std::uint32_t source_in_task, const R
     pairs_.is_triangle[i] = geometry.is_triangle();
     pairs_.hit_u[i] = p.u;
     pairs_.hit_v[i] = p.v;
-    pairs_.receiver[i] = pairs_.of_power[i] = hit.patch;
+    pairs_.receiver[i] = pairs_.power_receiver[i] = hit.patch;
     pairs_.u[i] = pairs_.v[i] = 0;
     pairs_.size[i] = 1;
     pairs_.settled[i] = !refines_;
@@ -79,34 +80,34 @@ void Descent::begin(std::uint32_t payload, std::uint32_t source_in_task, const R
     rays_[i].reflectance = materials_.reflectance(hit.patch);
     pairs_.normal.set(i, geometry.normal());
     pairs_.importance[i] = 1;
-    sources_.begin(pairs_, i, path_, rays_[i].reflectance);
+    source_paths_.begin(pairs_, i, path_, rays_[i].reflectance);
 }
 
 /// Divides rejected pairs at the larger end (Eq. 14, 15, Prikryl et al. 2000). An accepted pair fixes the receiver of
-/// power; if importance is for leaves, the ray continues to its leaf.
+/// power; a ray with importance for leaves continues to its leaf.
 void Descent::advance() {
-    Lanes some;
+    Lanes selected, kept;
     for (const std::uint32_t i : open()) look_up_receiver(i);
     if (refines_) {
-        for (const std::uint32_t i : open_lanes_if(some, [&](auto i) { return SourcePaths::is_too_large(pairs_, i); }))
-            sources_.choose(pairs_, i, rays_[i].reflectance);
+        for (const std::uint32_t i :
+             open_lanes_if(selected, [&](auto i) { return SourcePaths::is_too_large(pairs_, i); }))
+            source_paths_.choose(pairs_, i, rays_[i].reflectance);
         pairs_.evaluate_oracle(step_.oracle);
     }
     pairs_.choose_next(needs_leaf_, old_size_);
-    for (const std::uint32_t i : open_lanes_if(some, [&](std::size_t i) { return pairs_.on_demand[i] != 0; }))
-        subdivide_on_demand(i);
-    const auto arrived = open_lanes_if(some, [&](std::size_t i) { return pairs_.goes_on[i] == 0; });
-    Lanes on_their_way;
-    const auto others = open_lanes_if(on_their_way, [&](std::size_t i) { return pairs_.goes_on[i] != 0; });
+    for (const std::uint32_t i : open_lanes_if(selected, [&](std::size_t i) { return pairs_.needs_children[i] != 0; }))
+        provide_children(i);
+    const auto arrived = open_lanes_if(selected, [&](std::size_t i) { return pairs_.continues[i] == 0; });
+    const auto continuing = open_lanes_if(kept, [&](std::size_t i) { return pairs_.continues[i] != 0; });
     for (const std::uint32_t i : arrived) deposit_ray(i);
-    std::copy(arrived.begin(), arrived.end(), std::copy(others.begin(), others.end(), open_.begin()));
-    open_count_ = others.size();
-    pairs_.go_down();
+    std::copy(arrived.begin(), arrived.end(), std::copy(continuing.begin(), continuing.end(), open_.begin()));
+    open_count_ = continuing.size();
+    pairs_.descend();
     for (const std::uint32_t i : open()) {
         const std::uint32_t element = pairs_.receiver[i];
         forest_.prefetch(element);
         if (step_.oracle.by_importance)
-            __builtin_prefetch(step_.oracle.importance.data() + element);  // or past its end
+            __builtin_prefetch(step_.oracle.importance.data() + element);  // may exceed its size: harmless
     }
 }
 
@@ -124,38 +125,42 @@ inline void Descent::look_up_receiver(std::size_t i) {
     const std::uint32_t element = pairs_.receiver[i];
     pairs_.area[i] = forest_.area(element);
     pairs_.children[i] = forest_.first_child(element);
-    if (step_.oracle.by_importance && element < old_size_)  // new elements inherit it
+    if (step_.oracle.by_importance && element < old_size_)  // new elements keep their ancestor's
         pairs_.importance[i] = step_.oracle.importance[element];
 }
 
-void Descent::subdivide_on_demand(std::size_t i) {
+void Descent::provide_children(std::size_t i) {
     const std::uint32_t receiver = pairs_.receiver[i];
     if (pairs_.shooter_area[i] > pairs_.area[i]) {
-        if (sources_.subdivide(pairs_, i, rays_[i].start, rays_[i].reflectance, may_grow_)) return;
+        if (source_paths_.subdivide(pairs_, i, rays_[i].start, rays_[i].reflectance, may_grow_)) return;
     } else {
-        pairs_.next[i] = children_on_demand(forest_, receiver, may_grow_);
+        pairs_.next[i] = find_or_create_children(forest_, receiver, may_grow_);
         if (pairs_.next[i] != none) return;
     }
     pairs_.settled[i] = true;  // indivisible; importance continues in the old mesh
-    pairs_.goes_on[i] = needs_leaf_ && receiver < old_size_ && pairs_.children[i] < old_size_;
-    if (pairs_.goes_on[i]) pairs_.next[i] = pairs_.children[i];
+    pairs_.continues[i] = needs_leaf_ && receiver < old_size_ && pairs_.children[i] < old_size_;
+    if (pairs_.continues[i]) pairs_.next[i] = pairs_.children[i];
 }
 
 void Descent::deposit_ray(std::size_t i) {
     const auto& [payload, patch, source_in_task, start, reflectance] = rays_[i];
     std::uint32_t leaf = pairs_.receiver[i];  // in the mesh before the step
     while (leaf >= old_size_) leaf = forest_.parent(leaf);
-    const std::uint32_t power_receiver = refines_ ? pairs_.of_power[i] : leaf;
+    const std::uint32_t power_receiver = refines_ ? pairs_.power_receiver[i] : leaf;
     const std::uint32_t importance_receiver = step_.importance_at_patches ? patch : leaf;
-    const bool together = power_receiver == importance_receiver || !step_.carries_importance();
-    if (step_.carries_power()) buffer_.add(power_receiver, payload, true, together);
-    if (!step_.carries_power() || !together) buffer_.add(importance_receiver, payload, false, true);
+    if (step_.carries_power() && step_.carries_importance() && power_receiver == importance_receiver) {
+        buffer_.add(power_receiver, payload, Terms::both);
+    } else {
+        if (step_.carries_power()) buffer_.add(power_receiver, payload, Terms::power);
+        if (step_.carries_importance()) buffer_.add(importance_receiver, payload, Terms::importance);
+    }
     if (found_importance_) add_found_importance(source_in_task, patch, leaf);
     if (step_.reflects_where_received(leaf))
         add_start_point(leaf, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(payload));
 }
 
 void Descent::add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution) {
+    // Fixed-point units: StartPoints uses only ratios.
     const auto power = static_cast<float>(contribution[0] + contribution[1] + contribution[2]);
     if (power > 0) start_points_.push_back({leaf, power, at});
 }

@@ -31,9 +31,11 @@ struct Escaped {
     }
 };
 
-/// Descent of rays from patches to the elements that receive their payloads; one object per thread. Many rays descend
-/// together, to vectorise and to hide memory latency.
+/// Descent of rays from patches to the receivers of their payloads; one object per thread. Many rays descend together,
+/// to vectorise and hide memory latency.
 class Descent {
+    using Terms = ContributionSums::ScatterBuffer::Terms;
+
   public:
     /// @param old_size  Size of the forest before the step. @param importance  May be null. Arguments must outlive
     /// this.
@@ -48,23 +50,24 @@ class Descent {
           may_grow_(old_size + std::size_t{4} <= step.oracle.max_elements),
           buffer_(sums),
           found_importance_(importance),
-          sources_(forest, step) {
+          source_paths_(forest, step) {
         std::iota(open_.begin(), open_.end(), 0u);
         pairs_.next.fill(none);
     }
 
     /// @param source       Leaf, or old_size + luminaire part.
-    /// @param contribution Of each ray. @param of_groups  Its power by light group.
+    /// @param contribution, power_by_group  Of each ray.
     /// @param origins      On the leaf's patch; of luminaire parts: any values.
     /// @param transmitted  Transmittance before the hits; scales found importance.
-    void deposit(std::uint32_t source, const Contribution& contribution, std::span<const std::int64_t> of_groups,
+    void deposit(std::uint32_t source, const Contribution& contribution, std::span<const std::int64_t> power_by_group,
                  std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
                  float transmitted = 1);
     void prefetch(const Hit& hit) const;
     /// Call at the end of each task.
     void finish_batch();
-    void deposit_at(std::uint32_t leaf, const Contribution& contribution, std::span<const std::int64_t> of_groups) {
-        buffer_.add(leaf, buffer_.add_source(contribution, of_groups), true, false);
+    void deposit_at(std::uint32_t leaf, const Contribution& contribution,
+                    std::span<const std::int64_t> power_by_group) {
+        buffer_.add(leaf, buffer_.add_source(contribution, power_by_group), Terms::power);
     }
     void count_escaped(const Contribution& contribution) {
         for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
@@ -90,7 +93,7 @@ class Descent {
                const Hit& hit);
     void advance();
     void look_up_receiver(std::size_t i);
-    void subdivide_on_demand(std::size_t i);
+    void provide_children(std::size_t i);
     void deposit_ray(std::size_t i);
     void add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution);
     void add_found_importance(std::uint32_t source_in_task, std::uint32_t patch, std::uint32_t leaf);
@@ -112,9 +115,9 @@ class Descent {
     std::vector<SourceInTask> sources_in_task_;
     RayPairs pairs_{};
     std::array<RayState, lanes> rays_;
-    Lanes open_;  // lanes in use, then free lanes
+    Lanes open_;  // `open_count_` lanes in use, then free lanes
     std::size_t open_count_ = 0;
-    SourcePaths sources_;
+    SourcePaths source_paths_;
     SourcePaths::Path path_;
 };
 

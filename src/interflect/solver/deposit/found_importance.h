@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// Importance at the hit points of rays, summed by source. Its mean over a leaf's rays estimates the leaf's transported
-/// importance (Eq. 7, Prikryl et al. 2000).
+/// Importance at hit points, summed by source. The mean over a leaf's rays estimates its transported importance (Eq. 7,
+/// Prikryl et al. 2000).
 class FoundImportance {
   public:
     FoundImportance(double max_per_ray, std::int64_t rays, std::size_t sources)

@@ -33,18 +33,18 @@ struct alignas(64) RayPairs {
     Numbers shooter, lowest_shooter;  // in SourcePaths; lowest: leaf or new element
     Vectors shooter_centre, shooter_normal;
     Floats shooter_area, shooter_least_cosine;
-    Floats reflected;   // largest channel of rho_i B_j
-    Numbers settled;    // accepted or indivisible
-    Numbers of_power;   // receiver of power, final if settled
-    Numbers on_demand;  // an end lacks children
-    Numbers goes_on;
-    Numbers next;  // first child to descend to, if any
+    Floats reflected;        // largest channel of rho_i B_j
+    Numbers settled;         // accepted or indivisible
+    Numbers power_receiver;  // final if settled
+    Numbers needs_children;  // the larger end lacks known children
+    Numbers continues;       // the ray stays in flight
+    Numbers next;            // first child of the receiver to descend to, if any
 
     /// Settles pairs that the oracle accepts or that are too small to divide.
     void evaluate_oracle(const Oracle& oracle);
     /// @param needs_leaf  Rays descend to a leaf among the first `old_size` elements.
     void choose_next(bool needs_leaf, std::uint32_t old_size);
-    void go_down();
+    void descend();
 };
 
 }  // namespace interflect::detail

@@ -46,7 +46,7 @@ bool SourcePaths::subdivide(RayPairs& pairs, std::size_t i, const Parameters& st
                             bool may_grow) {
     Shooter shooter = sources_[pairs.shooter[i]];
     const PatchGeometry& geometry = forest_.geometry(forest_.patch(shooter.element));
-    const std::uint32_t children = children_on_demand(forest_, shooter.element, may_grow);
+    const std::uint32_t children = find_or_create_children(forest_, shooter.element, may_grow);
     if (children == none) return false;
     const unsigned k = shooter.cell.child_at(start, geometry.is_triangle());
     shooter.cell = shooter.cell.child(k, geometry.is_triangle());

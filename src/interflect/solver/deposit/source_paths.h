@@ -74,7 +74,7 @@ class SourcePaths {
 };
 
 /// Returns the first child, if any; creates it if the forest may grow.
-inline std::uint32_t children_on_demand(ElementForest& forest, std::uint32_t element, bool may_grow) {
+inline std::uint32_t find_or_create_children(ElementForest& forest, std::uint32_t element, bool may_grow) {
     const std::uint32_t child = forest.first_child(element);
     return child == none && may_grow ? forest.subdivide(element) : child;
 }
