@@ -120,12 +120,12 @@ TEST_F(Weights, AreFiniteShares) {
 }
 
 TEST_F(Weights, AreDrivenByImportanceAsItIsUnlessItIsSmoothed) {
-    EXPECT_EQ(importance_weight(forest_, Importance(importance_), 0, 1), importance_);
-    EXPECT_THAT(importance_weight(forest_, Importance(importance_), 1, 1), ElementsAre(9, 1, 9, 9, 9, 9));
-    EXPECT_THAT(importance_weight(forest_, Importance(importance_), 0.5, 1), ElementsAre(9, 1, 6, 6, 4.5f, 4.875f));
-    EXPECT_THAT(importance_weight(forest_, Importance(importance_), 1, 0.75),
+    EXPECT_EQ(smoothed_importance(forest_, Importance(importance_), 0, 1), importance_);
+    EXPECT_THAT(smoothed_importance(forest_, Importance(importance_), 1, 1), ElementsAre(9, 1, 9, 9, 9, 9));
+    EXPECT_THAT(smoothed_importance(forest_, Importance(importance_), 0.5, 1), ElementsAre(9, 1, 6, 6, 4.5f, 4.875f));
+    EXPECT_THAT(smoothed_importance(forest_, Importance(importance_), 1, 0.75),
                 Each(AnyOf(FloatEq(std::pow(9.0f, 0.75f)), 1)));
-    EXPECT_THAT(importance_weight(forest_, Importance(importance_), 0.5, 0.5),
+    EXPECT_THAT(smoothed_importance(forest_, Importance(importance_), 0.5, 0.5),
                 ElementsAre(3, 1, std::sqrt(6.0f), std::sqrt(6.0f), std::sqrt(4.5f), std::sqrt(4.875f)));
 }
 

@@ -9,25 +9,26 @@ namespace interflect::detail {
 
 namespace {
 
-/// Usual radiosity, relative to its mean over all surfaces. Sampling dimmer places, too, adds noise, since directions
-/// find them well (Karlik et al. 2019): in a furnace, irradiance of 128 paths then varies by 2.6% in place of 1.8%.
-constexpr double usual_over_mean = 2;
+/// Minimum reflected radiosity of sampled elements, relative to the mean over all surfaces. Sampling dimmer ones adds
+/// noise, since directions find them well (Karlik et al. 2019): in a furnace, irradiance of 128 paths then varies
+/// by 2.6% in place of 1.8%.
+constexpr double bright_over_mean = 2;
 
-/// Returns the power that each element reflects above the usual, sum of channels [lm or W]. Inner elements have the sum
-/// of their leaves.
+/// Returns the power that each element reflects above this limit, sum of channels [lm or W]. Inner elements have the
+/// sum of their leaves.
 std::vector<float> excess_power(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance) {
-    const auto reflected = [&](std::uint32_t e) {
+    const auto reflected_radiosity = [&](std::uint32_t e) {
         return channel_sum(scene.materials[scene.patches[forest.patch(e)].material].reflectance * irradiance[e]);
     };
     double power = 0, area = 0;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
-        power += static_cast<double>(reflected(i)) * forest.area(i);
+        power += static_cast<double>(reflected_radiosity(i)) * forest.area(i);
         area += forest.area(i);
     }
-    const auto usual = static_cast<float>(usual_over_mean * power / area);
+    const auto limit = static_cast<float>(bright_over_mean * power / area);
     std::vector<float> excess(forest.size(), 0.0f);
     for (std::uint32_t e = 0; e < forest.size(); ++e)
-        if (forest.is_leaf(e)) excess[e] = std::max(0.0f, reflected(e) - usual) * forest.area(e);
+        if (forest.is_leaf(e)) excess[e] = std::max(0.0f, reflected_radiosity(e) - limit) * forest.area(e);
     forest.for_siblings_from_leaves([&](std::uint32_t first) {
         excess[forest.parent(first)] = excess[first] + excess[first + 1] + excess[first + 2] + excess[first + 3];
     });
@@ -55,9 +56,9 @@ Rgb KnownLight::reflected_radiance(const Place& place) const {
            std::numbers::pi_v<float>;
 }
 
-KnownLight::Place KnownLight::sample(const V3f& x, const V3f& n, double uniform, float u, float v) const {
+KnownLight::Place KnownLight::sample(const V3f& x, const V3f& n, double choice, float u, float v) const {
     constexpr float below_one = 1 - 0x1p-24f;
-    const std::uint32_t patch = tree_.choose(x, n, uniform).index;
+    const std::uint32_t patch = tree_.choose(x, n, choice).index;
     if (patch == none) return {};
     const PatchGeometry& geometry = geometry_[patch];
     std::uint32_t e = patch;
@@ -69,16 +70,16 @@ KnownLight::Place KnownLight::sample(const V3f& x, const V3f& n, double uniform,
         while (k < 3 && rest >= excess_[children + k]) rest -= excess_[children + k++];
         while (k > 0 && !(excess_[children + k] > 0)) --k;  // rounding can select an empty child
         e = children + k;
-        u = std::clamp(rest / excess_[e], 0.0f, below_one);  // uniform again
+        u = std::clamp(rest / excess_[e], 0.0f, below_one);  // uniform in the child
         cell = cell.child(k, geometry.is_triangle());
     }
     return {patch, e, geometry.uniform_parameters(u, v, {cell.u, cell.v}, cell.size)};
 }
 
 float KnownLight::density(const Place& place, const V3f& x, const V3f& n) const {
-    const float all = excess_[place.patch];
-    if (!(all > 0)) return 0;
-    return tree_.probability(place.patch, x, n) * (excess_[place.leaf] / all) / forest_.area(place.leaf);
+    const float of_patch = excess_[place.patch];
+    if (!(of_patch > 0)) return 0;
+    return tree_.probability(place.patch, x, n) * (excess_[place.leaf] / of_patch) / forest_.area(place.leaf);
 }
 
 }  // namespace interflect::detail

@@ -12,8 +12,8 @@
 
 namespace interflect::detail {
 
-/// Light of a solution for final gathering. Samples bright places: an element by the reflected power that exceeds the
-/// usual radiosity. Directions must sample all light. Thread-safe.
+/// Reflected light of a solution, for final gathering. sample() omits dim elements: combine it with sampled directions.
+/// Thread-safe.
 class KnownLight {
   public:
     /// @param irradiance  Per element; only leaves are used. Arguments must outlive this object.
@@ -30,15 +30,16 @@ class KnownLight {
     const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
     Rgb reflected_radiance(const Place& place) const;
 
+    /// Whether the constant irradiance of the leaf is invisible.
     bool is_far(const Place& place, float distance2) const {
-        constexpr float largest_angle = 0.25f;  // [sr]
-        return forest_.area(place.leaf) <= largest_angle * distance2;
+        constexpr float max_solid_angle = 0.25f;  // [sr]
+        return forest_.area(place.leaf) <= max_solid_angle * distance2;
     }
 
-    /// Samples a bright point that may illuminate x on a surface with normal n; the result can lack a patch.
-    /// @param uniform  In (0, 1).
-    /// @param u, v     In [0, 1).
-    Place sample(const V3f& x, const V3f& n, double uniform, float u, float v) const;
+    /// Samples a bright point that may illuminate x on a surface with normal n; its patch may be `none`.
+    /// @param choice  Selects the patch; in (0, 1).
+    /// @param u, v    In [0, 1).
+    Place sample(const V3f& x, const V3f& n, double choice, float u, float v) const;
     /// Returns the density of sample() [1/m^2].
     float density(const Place& place, const V3f& x, const V3f& n) const;
 
@@ -47,7 +48,7 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> excess_;  // reflected power above the usual, sum of channels [lm or W]
+    std::vector<float> excess_;  // reflected power above the limit, sum of channels [lm or W]
     LightTree tree_;
 };
 

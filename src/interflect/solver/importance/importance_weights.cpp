@@ -96,7 +96,7 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
                            : o.experimental.total_importance               ? importance_of(so_far)
                                                                            : Importance(so_far.indirect_importance);
     ImportanceWeights weights{
-        importance_weight(forest, psi, o.importance.smoothing, o.importance.exponent), {}, {}, {}};
+        smoothed_importance(forest, psi, o.importance.smoothing, o.importance.exponent), {}, {}, {}};
     weigh_parts(emission, found, static_cast<float>(o.importance.exponent), weights);
     if (neighbourhoods.empty() || o.importance.smoothing == 0) return weights;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
@@ -105,8 +105,8 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
     return weights;
 }
 
-std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
-                                     double exponent) {
+std::vector<float> smoothed_importance(const ElementForest& forest, const Importance& importance, double from_parent,
+                                       double exponent) {
     const auto share = static_cast<float>(from_parent), power = static_cast<float>(exponent);
     std::vector<float> weights(forest.size());
     parallel_for_ranges(weights.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {

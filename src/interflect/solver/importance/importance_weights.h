@@ -36,7 +36,7 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
 
 /// Smooths importance for sampling (docs/method.md, One step of transport). The paper uses `from_parent` 0 and
 /// `exponent` 1.
-std::vector<float> importance_weight(const ElementForest& forest, const Importance& importance, double from_parent,
-                                     double exponent);
+std::vector<float> smoothed_importance(const ElementForest& forest, const Importance& importance, double from_parent,
+                                       double exponent);
 
 }  // namespace interflect::detail

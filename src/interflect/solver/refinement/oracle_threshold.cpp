@@ -15,16 +15,16 @@ constexpr double rays_at_epsilon = 20e6;
 }  // namespace
 
 Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
-    const double fall =
+    const double decay =
         std::pow(rays_at_epsilon / static_cast<double>(rays), so_far.options.experimental.epsilon_decay);
     Oracle oracle;
     oracle.refines = true;
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
-    oracle.threshold = so_far.options.experimental.epsilon * fall * reference_power(so_far);
+    oracle.threshold = so_far.options.experimental.epsilon * decay * reference_power(so_far);
     if (oracle.by_importance) {
-        // Underestimated importance would leave elements coarse.
-        oracle.importance =
-            importance_weight(*so_far.forest, importance_of(so_far), so_far.options.importance.smoothing, 1);
+        // Smoothed, because underestimated importance would leave elements coarse.
+        oracle.importance = smoothed_importance(*so_far.forest, importance_of(so_far),
+                                                so_far.options.importance.smoothing, /*exponent=*/1);
         oracle.threshold *= reference_importance(so_far, oracle.importance);
     }
     oracle.min_area = static_cast<float>(min_area);
@@ -35,14 +35,14 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
 double reference_power(const Solution& so_far) {
     const ElementForest& forest = *so_far.forest;
     if (so_far.view_importance.empty()) return channel_sum(so_far.emitted_power) / 3;
-    double seen = 0, area = 0;  // mean irradiance of the picture; visible area [m^2]
+    double mean_irradiance = 0, visible_area = 0;  // of the picture [lm/m^2 or W/m^2]; [m^2]
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
         if (!(so_far.view_importance[i] > 0)) continue;
-        seen += static_cast<double>(so_far.view_importance[i]) * forest.area(i) *
-                channel_sum(RgbD(so_far.irradiance[i])) / 3;
-        area += forest.area(i);
+        mean_irradiance += static_cast<double>(so_far.view_importance[i]) * forest.area(i) *
+                           channel_sum(RgbD(so_far.irradiance[i])) / 3;
+        visible_area += forest.area(i);
     }
-    return seen > 0 ? seen * area : channel_sum(so_far.emitted_power) / 3;
+    return mean_irradiance > 0 ? mean_irradiance * visible_area : channel_sum(so_far.emitted_power) / 3;
 }
 
 double reference_importance(const Solution& so_far, const std::vector<float>& psi) {

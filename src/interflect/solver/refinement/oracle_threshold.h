@@ -8,14 +8,16 @@
 
 namespace interflect::detail {
 
-/// Makes the oracle of Eq. 14 or 15. @param rays  Averaged rays after this step, > 0.
+/// Makes the oracle of Eq. 14 or 15.
+/// @param rays      In the running mean after this step, > 0.
+/// @param min_area  Of elements [m^2].
 Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area);
 
-/// Returns the reference of the threshold [lm or W] (docs/method.md, One step of transport); all emitted power if it is
-/// unknown or 0.
+/// Returns the power that epsilon is relative to [lm or W]: visible area times mean irradiance of the picture; if 0 or
+/// without a view, all emitted power.
 double reference_power(const Solution& so_far);
 
-/// Returns psi_max of Eq. 15 [1/m^2]: area-weighted mean over visible patches.
+/// Returns psi_max of Eq. 15 [1/m^2]: not the maximum, but the area-weighted mean over visible patches.
 double reference_importance(const Solution& so_far, const std::vector<float>& psi);
 
 }  // namespace interflect::detail
