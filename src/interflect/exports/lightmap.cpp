@@ -33,11 +33,12 @@ namespace {
 struct TexelPlace {
     std::uint32_t patch = none;
     Parameters at;
-    std::array<Parameters, 2> sides{};  ///< Extent of the texel along columns and rows.
+    std::array<Parameters, 2> sides{};  ///< Steps to the next column and row, in the patch's parameters.
     bool is_inside = false;
     bool is_near = false;  ///< Less than a texel from the patch: bilinear interpolation may use it.
 };
 
+/// Solves side = p.u u + p.v v (Cramer's rule). @param spacing  [m]
 std::array<Parameters, 2> texel_sides(const FlatPatch& flat, const Imath::V2d& spacing) {
     const Imath::V2d u = flat.corners[1] - flat.corners[0],
                      v = flat.corners[static_cast<std::size_t>(flat.count) - 1] - flat.corners[0];
@@ -63,25 +64,26 @@ class NearestPatch {
         arrange_box_tree(tree_);
     }
 
-    TexelPlace find(const Imath::V2d& at, float texel) const {
+    /// @param at, texel_size  [m]
+    TexelPlace find(const Imath::V2d& at, float texel_size) const {
         const V3f x(static_cast<float>(at.x), static_cast<float>(at.y), 0);
         TexelPlace nearest;
-        float least = std::numeric_limits<float>::max();
+        float least2 = std::numeric_limits<float>::max();
         const auto is_near = [&](const Imath::Box3f& box) {
-            return (Imath::closestPointInBox(x, box) - x).length2() <= least;
+            return (Imath::closestPointInBox(x, box) - x).length2() <= least2;
         };
         visit_box_tree(std::span<const Boxed>(tree_), is_near, [&](std::uint32_t i) {
             const Parameters p = nearest_parameters(geometries_[i], x);
             const float distance2 = (geometries_[i].point(p) - x).length2();
             const bool precedes = nearest.patch == none || patches_[i].patch < nearest.patch;
-            if (distance2 < least || (distance2 == least && precedes)) {
-                least = distance2;
+            if (distance2 < least2 || (distance2 == least2 && precedes)) {
+                least2 = distance2;
                 nearest = {patches_[i].patch, p, sides_[i]};
             }
         });
         constexpr float rounding = 1e-3f;  // [texels]
-        nearest.is_inside = least <= rounding * rounding * texel * texel;
-        nearest.is_near = least < (1 - rounding) * (1 - rounding) * texel * texel;
+        nearest.is_inside = least2 <= rounding * rounding * texel_size * texel_size;
+        nearest.is_near = least2 < (1 - rounding) * (1 - rounding) * texel_size * texel_size;
         return nearest;
     }
 
@@ -116,15 +118,15 @@ Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const
                                                   : std::array<Parameters, 4>{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
     const std::size_t count = geometry.is_triangle() ? 3 : 4;
     V3f nearest = x;
-    float least = std::numeric_limits<float>::max();
+    float least2 = std::numeric_limits<float>::max();
     bool is_inside = true;
     for (std::size_t c = 0; c < count; ++c) {
         const V3f a = geometry.point(corners[c]), b = geometry.point(corners[(c + 1) % count]);
         if (geometry.normal().dot((b - a).cross(x - a)) >= 0) continue;
         is_inside = false;
         const V3f candidate = nearest_on_segment(a, b, x);
-        if ((candidate - x).length2() >= least) continue;
-        least = (candidate - x).length2();
+        if ((candidate - x).length2() >= least2) continue;
+        least2 = (candidate - x).length2();
         nearest = candidate;
     }
     return geometry.parameters_of(is_inside ? x : nearest);
@@ -141,12 +143,12 @@ class IrradianceSource {
         if (options.lightmap->shading != LightmapShading::smooth) ray_caster_.emplace(scene);
     }
 
-    std::vector<Rgb> irradiance(std::span<const TexelPlace> places, float texel) const {
+    std::vector<Rgb> irradiance(std::span<const TexelPlace> places, float texel_size) const {
         switch (options_.lightmap->shading) {
             case LightmapShading::hybrid:
-                return hybrid(places, texel);
+                return hybrid(places, texel_size);
             case LightmapShading::gather:
-                return gathered(places, texel);
+                return gathered(places, texel_size);
             default:
                 return interpolated(places);
         }
@@ -175,7 +177,7 @@ class IrradianceSource {
         return path;
     }
 
-    std::vector<Rgb> hybrid(std::span<const TexelPlace> places, float texel) const {
+    std::vector<Rgb> hybrid(std::span<const TexelPlace> places, float texel_size) const {
         std::vector<Gauge> gauges;
         gauges.reserve(places.size());
         for (const TexelPlace& place : places) {
@@ -184,32 +186,33 @@ class IrradianceSource {
                 return geometry.shape().edge_u * p.u + geometry.shape().edge_v * p.v;
             };
             Gauge gauge;
-            gauge.position = geometry.point(geometry.inset(place.at, inset * texel));
+            gauge.position = geometry.point(geometry.inset(place.at, inset * texel_size));
             gauge.normal = vertices_.normals().at(geometry, place.patch, place.at);
             gauge.patch = place.patch;
             gauge.side_u = side(place.sides[0]), gauge.side_v = side(place.sides[1]);
-            gauge.inset = inset * texel;
+            gauge.inset = inset * texel_size;
             gauges.push_back(gauge);
         }
-        const KnownIrradiance known{*solution_.forest, solution_.irradiance, true};
+        const KnownIrradiance known{*solution_.forest, solution_.irradiance, /*is_interpolated=*/true};
         return hybrid_irradiance(scene_, *ray_caster_, known, gauges, path_options(), options_.monitor);
     }
 
-    std::vector<Rgb> gathered(std::span<const TexelPlace> places, float texel) const {
+    std::vector<Rgb> gathered(std::span<const TexelPlace> places, float texel_size) const {
         std::vector<MeasuringPoint> points;
         points.reserve(places.size());
         for (const TexelPlace& place : places) {
             const PatchGeometry& geometry = solution_.forest->geometry(place.patch);
-            const V3f x = geometry.point(geometry.inset(place.at, inset * texel));
+            const V3f x = geometry.point(geometry.inset(place.at, inset * texel_size));
             const V3f normal = vertices_.normals().at(geometry, place.patch, place.at);
             points.push_back({scene_.origin + Imath::V3d(x), normal});
         }
         const std::vector<MeasuredIrradiance> measured =
             measure_irradiance(scene_, &solution_, *ray_caster_, points, path_options(), options_.monitor);
-        const auto lit = std::count_if(measured.begin(), measured.end(),
-                                       [](const MeasuredIrradiance& m) { return m.is_measured(); });
-        if (static_cast<std::size_t>(lit) < measured.size())
-            throw Stopped(fmt::format("stopped when {} of {} texels of the lightmap had light", lit, measured.size()));
+        const auto finished = std::count_if(measured.begin(), measured.end(),
+                                            [](const MeasuredIrradiance& m) { return m.is_measured(); });
+        if (static_cast<std::size_t>(finished) < measured.size())
+            throw Stopped(
+                fmt::format("stopped when {} of {} texels of the lightmap had light", finished, measured.size()));
         std::vector<Rgb> values;
         values.reserve(measured.size());
         for (const MeasuredIrradiance& m : measured) values.push_back(m.sum());
@@ -234,41 +237,41 @@ Rgb content_of(const Scene& scene, const TexelPlace& place, const Rgb& irradianc
 std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
     const NearestPatch nearest(chart);
     const int columns = chart.columns + 2 * gutter, rows = chart.rows + 2 * gutter;
-    const auto texel = static_cast<float>(std::max(chart.spacing().x, chart.spacing().y));
+    const auto texel_size = static_cast<float>(std::max(chart.spacing().x, chart.spacing().y));
     std::vector<TexelPlace> places(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     constexpr std::size_t texels_per_task = 1 << 10;
     parallel_for_ranges(places.size(), texels_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto column = static_cast<int>(i % static_cast<std::size_t>(columns)) - gutter;
             const auto row = static_cast<int>(i / static_cast<std::size_t>(columns)) - gutter;
-            places[i] = nearest.find(Imath::V2d(column, row) * chart.spacing(), texel);
+            places[i] = nearest.find(Imath::V2d(column, row) * chart.spacing(), texel_size);
         }
     });
     return places;
 }
 
-/// Returns the texel whose light each texel of a chart takes: the nearest that bilinear interpolation may use.
-std::vector<std::size_t> lit_texels(std::span<const TexelPlace> places, std::size_t columns) {
+/// Returns, for each texel, the nearest with TexelPlace::is_near, whose light it copies (flood fill).
+std::vector<std::size_t> copied_texels(std::span<const TexelPlace> places, std::size_t columns) {
     constexpr auto unknown = static_cast<std::size_t>(-1);
-    std::vector<std::size_t> lit(places.size(), unknown), reached;
+    std::vector<std::size_t> copied(places.size(), unknown), reached;
     for (std::size_t i = 0; i < places.size(); ++i)
-        if (places[i].is_near) lit[i] = i, reached.push_back(i);
+        if (places[i].is_near) copied[i] = i, reached.push_back(i);
     for (std::size_t next = 0; next < reached.size(); ++next) {
         const std::size_t i = reached[next], column = i % columns;
-        const auto reach = [&](std::size_t neighbour) {
-            if (lit[neighbour] != unknown) return;
-            lit[neighbour] = lit[i];
+        const auto fill = [&](std::size_t neighbour) {
+            if (copied[neighbour] != unknown) return;
+            copied[neighbour] = copied[i];
             reached.push_back(neighbour);
         };
-        if (column > 0) reach(i - 1);
-        if (column + 1 < columns) reach(i + 1);
-        if (i >= columns) reach(i - columns);
-        if (i + columns < places.size()) reach(i + columns);
+        if (column > 0) fill(i - 1);
+        if (column + 1 < columns) fill(i + 1);
+        if (i >= columns) fill(i - columns);
+        if (i + columns < places.size()) fill(i + columns);
     }
-    return lit;
+    return copied;
 }
 
-/// Texels of all charts.
+/// Texels of all charts. Those far from patches copy an evaluated one.
 class LightmapTexels {
   public:
     explicit LightmapTexels(const LightmapOptions& options) : options_(options) {}
@@ -276,17 +279,17 @@ class LightmapTexels {
     void add(const LightmapChart& chart) {
         const std::vector<TexelPlace> places = places_of(chart, options_.gutter);
         const int columns = chart.columns + 2 * options_.gutter;
-        const std::vector<std::size_t> lit = lit_texels(places, static_cast<std::size_t>(columns));
-        std::vector<std::size_t> numbers(places.size());
+        const std::vector<std::size_t> copied = copied_texels(places, static_cast<std::size_t>(columns));
+        std::vector<std::size_t> place_index(places.size());
         for (std::size_t i = 0; i < places.size(); ++i) {
-            numbers[i] = places_.size();
-            if (lit[i] == i) places_.push_back(places[i]);
+            place_index[i] = places_.size();
+            if (copied[i] == i) places_.push_back(places[i]);
             texels_inside_ += places[i].is_inside;
         }
         for (std::size_t i = 0; i < places.size(); ++i) {
             const int column = chart.left - options_.gutter + static_cast<int>(i) % columns;
             const int row = chart.top - options_.gutter + static_cast<int>(i) / columns;
-            targets_.push_back({static_cast<std::size_t>(chart.page), numbers[lit[i]], column, row});
+            targets_.push_back({static_cast<std::size_t>(chart.page), place_index[copied[i]], column, row});
         }
     }
     void evaluate(const Scene& scene, const IrradianceSource& source, std::vector<Image>& images) const {
@@ -295,8 +298,8 @@ class LightmapTexels {
             images[target.page].at(target.column, target.row) =
                 content_of(scene, places_[target.place], irradiance[target.place], options_.content);
     }
-    std::size_t texels() const { return targets_.size(); }
-    std::int64_t texels_inside() const { return texels_inside_; }
+    std::size_t count() const { return targets_.size(); }
+    std::int64_t count_inside() const { return texels_inside_; }
 
   private:
     struct Target {
@@ -315,7 +318,7 @@ void add(const std::vector<Image>& images, std::vector<Image>& sum) {
         for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
 }
 
-/// The lightmap is the sum of its groups, including noise.
+/// Evaluates each group alone. Their sum, noise included, is the lightmap.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
                      const ExportOptions& options, Lightmap& lightmap) {
     SourceGroups groups = source_groups(scene);
@@ -323,41 +326,43 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
     for (std::size_t g = 0; g < groups.size(); ++g) {
         std::vector<float> factors(groups.size(), 0);
         factors[g] = 1;
-        const Scene alone = dimmed(scene, groups, factors);
-        Solution share = solution;
-        share.irradiance = std::move(share.groups[g]);
-        share.groups.clear();
-        ExportOptions of_group = options;
+        const Scene group_scene = dimmed(scene, groups, factors);
+        Solution group_solution = solution;
+        group_solution.irradiance = std::move(group_solution.groups[g]);
+        group_solution.groups.clear();
+        ExportOptions group_options = options;
         const auto count = static_cast<double>(groups.size()), before = static_cast<double>(g);
-        of_group.monitor = monitor_section(options.monitor, before / count, (before + 1) / count);
-        lightmap.groups.push_back(lightmap.images);
-        texels.evaluate(alone, IrradianceSource(alone, share, of_group), lightmap.groups.back());
+        group_options.monitor = monitor_section(options.monitor, before / count, (before + 1) / count);
+        lightmap.groups.push_back(lightmap.images);  // still black
+        texels.evaluate(group_scene, IrradianceSource(group_scene, group_solution, group_options),
+                        lightmap.groups.back());
     }
     for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
 }
 
-double texels_of(const LightmapChart& chart, int gutter) {
+double texel_count(const LightmapChart& chart, int gutter) {
     return static_cast<double>(chart.columns + 2 * gutter) * (chart.rows + 2 * gutter);
 }
 
-/// @param texels  Of all images. @param texels_of_charts  With gutters.
-void require_memory(double texels, double texels_of_charts, const LightmapOptions& options, std::size_t groups) {
-    // Per image texel: image, copy to encode, encoded bytes.
-    constexpr double image_bytes = sizeof(Rgb) + sizeof(Rgb) + 16, group_bytes = sizeof(Rgb) + sizeof(Rgb);
-    // Per chart texel: place, target, light.
-    constexpr double texel_bytes = 2 * sizeof(TexelPlace) + 16 + sizeof(Rgb),
+/// @param image_texels  Of all images. @param chart_texels  With gutters.
+void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, std::size_t groups) {
+    constexpr double encoded_bytes = 16, target_bytes = 16;
+    // Per image texel: itself, a copy to encode.
+    constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
+    // Per chart texel: two copies of its place, target, light.
+    constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb),
                      gathered_bytes =
                          path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);
     const bool gathers = options.shading == LightmapShading::gather;
-    const double bytes = texels * (image_bytes + (options.groups ? static_cast<double>(groups) * group_bytes : 0)) +
-                         texels_of_charts * (texel_bytes + (gathers ? gathered_bytes : 0));
+    const double bytes =
+        image_texels * (image_bytes + (options.groups ? static_cast<double>(groups) * group_bytes : 0)) +
+        chart_texels * (texel_bytes + (gathers ? gathered_bytes : 0));
     if (bytes > static_cast<double>(options.max_bytes))
         throw InputError(
             fmt::format("lightmap: {:.3g} million texels need {:.0f} MiB of memory, the limit (max_bytes) is {} MiB: "
-                        "expected fewer "
-                        "than {:g} texels_per_metre{}",
-                        texels / 1e6, bytes / (1 << 20), options.max_bytes >> 20, options.texels_per_metre,
-                        gathers ? ", or light that is not gathered" : ""));
+                        "expected fewer than {:g} texels_per_metre{}",
+                        image_texels / 1e6, bytes / (1 << 20), options.max_bytes >> 20, options.texels_per_metre,
+                        gathers ? ", or a shading other than gather" : ""));
 }
 
 }  // namespace
@@ -371,32 +376,33 @@ V2f Lightmap::coordinate(std::uint32_t patch, Parameters at) const {
 }
 
 Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options) {
-    const LightmapOptions& chosen = *options.lightmap;
+    const LightmapOptions& lightmap_options = *options.lightmap;
     Lightmap lightmap;
-    lightmap.charts = make_charts(scene, shown_patches(scene, solution), chosen, options.warnings);
+    lightmap.charts = make_charts(scene, shown_patches(scene, solution), lightmap_options, options.warnings);
     lightmap.chart_of_patch.assign(scene.patches.size(), none);
     lightmap.index_in_chart.assign(scene.patches.size(), none);
-    const std::vector<Imath::V2i> sizes = pack_charts(lightmap.charts, chosen.gutter, chosen.max_size);
-    double texels = 0, texels_of_charts = 0;
-    for (const Imath::V2i& size : sizes) texels += static_cast<double>(size.x) * size.y;
-    for (const LightmapChart& chart : lightmap.charts) texels_of_charts += texels_of(chart, chosen.gutter);
-    require_memory(texels, texels_of_charts, chosen, solution.groups.size());
+    const std::vector<Imath::V2i> sizes =
+        pack_charts(lightmap.charts, lightmap_options.gutter, lightmap_options.max_size);
+    double image_texels = 0, chart_texels = 0;
+    for (const Imath::V2i& size : sizes) image_texels += static_cast<double>(size.x) * size.y;
+    for (const LightmapChart& chart : lightmap.charts) chart_texels += texel_count(chart, lightmap_options.gutter);
+    require_memory(image_texels, chart_texels, lightmap_options, solution.groups.size());
     for (const Imath::V2i& size : sizes) lightmap.images.emplace_back(size.x, size.y);
-    LightmapTexels evaluated(chosen);
+    LightmapTexels texels(lightmap_options);
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {
         const FlatPatches& patches = lightmap.charts[i].patches;
         for (std::uint32_t k = 0; k < patches.size(); ++k) {
             lightmap.chart_of_patch[patches[k].patch] = i;
             lightmap.index_in_chart[patches[k].patch] = k;
         }
-        evaluated.add(lightmap.charts[i]);
+        texels.add(lightmap.charts[i]);
     }
-    if (chosen.groups)
-        evaluate_groups(evaluated, scene, solution, options, lightmap);
+    if (lightmap_options.groups)
+        evaluate_groups(texels, scene, solution, options, lightmap);
     else
-        evaluated.evaluate(scene, IrradianceSource(scene, solution, options), lightmap.images);
-    lightmap.used = static_cast<double>(evaluated.texels()) / texels;
-    lightmap.covered = static_cast<double>(evaluated.texels_inside()) / texels;
+        texels.evaluate(scene, IrradianceSource(scene, solution, options), lightmap.images);
+    lightmap.used = static_cast<double>(texels.count()) / image_texels;
+    lightmap.covered = static_cast<double>(texels.count_inside()) / image_texels;
     return lightmap;
 }
 
