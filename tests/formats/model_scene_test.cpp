@@ -139,7 +139,8 @@ TEST_P(BadModels, AreRefusedWithTheReason) {
 INSTANTIATE_TEST_SUITE_P(
     With, BadModels,
     testing::Values(
-        BadModel{"IndexOutOfRange", [](Model& m) { m.meshes[0].indices[4] = 5; }, "mesh 'tile': vertex 5 is used"},
+        BadModel{"IndexOutOfRange", [](Model& m) { m.meshes[0].indices[4] = 5; },
+                 "mesh 'tile': it uses vertex 5; expected indices below"},
         BadModel{"IndicesLeft", [](Model& m) { m.meshes[0].indices.pop_back(); }, "do not use all of its 8 indices"},
         BadModel{"FaceSizes",
                  [](Model& m) {

@@ -61,7 +61,6 @@ class GltfImages {
   private:
     StoredImage decode(std::uint32_t image);
     std::string bytes_of(std::uint32_t image);
-    std::uint32_t first_alike(std::uint32_t image) const;
     Texture make_texture(const GltfTexels& texels, bool& is_reduced);
 
     GltfAsset& asset_;

@@ -53,7 +53,8 @@ std::string mesh_fault(const Mesh& mesh, const Model& model, const ReadOptions& 
         return fmt::format("its faces do not use all of its {} indices", mesh.indices.size());
     const auto largest = std::max_element(mesh.indices.begin(), mesh.indices.end());
     if (largest != mesh.indices.end() && *largest >= mesh.positions.size())
-        return fmt::format("vertex {} is used, but there are {}", *largest, mesh.positions.size());
+        return fmt::format("it uses vertex {}; expected indices below {}, the number of its vertices", *largest,
+                           mesh.positions.size());
     return {};
 }
 
