@@ -53,7 +53,7 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body)
 #endif
 }
 
-/// Sums over these ranges in order: any number of threads gives equal bits.
+/// Sums over these ranges in order: equal bits for any number of threads.
 template <class T, class Body>
 T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& body) {
     std::vector<T> parts((count + grain - 1) / grain, zero);

@@ -58,8 +58,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     return x >> 16 | x << 16;
 }
 
-/// Writes points first ... to block[begin ...] in Gray-code order, in which aligned blocks of 2^k points are the same
-/// sets as in natural order.
+/// Writes points first ... to block[begin ...] in Gray-code order, with the same sets of aligned 2^k points as in
+/// natural order.
 void fill_sobol(std::uint64_t key, std::uint32_t first, std::size_t begin, std::size_t count, PointBlock& block) {
     std::array<std::uint32_t, PointBlock::capacity> word;
     for (std::size_t d = 0; d < 4; ++d) {

@@ -12,8 +12,7 @@ struct Cell {
     Parameters at(float s, float t) const { return {u + size * s, v + size * t}; }
     Parameters centre(bool triangle) const { return triangle ? at(1.0f / 3, 1.0f / 3) : at(0.5f, 0.5f); }
 
-    /// Square: k = 2 (upper half in v) + (upper half in u). Triangle: child 3 is central; child k < 3 contains corner
-    /// k.
+    /// Square: k = 2 (upper half in v) + (upper half in u). Triangle: child k < 3 contains corner k; 3 is central.
     Cell child(unsigned k, bool triangle) const {
         const float half = 0.5f * size;
         const bool central = triangle & (k == 3);

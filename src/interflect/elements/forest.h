@@ -79,7 +79,7 @@ class ElementForest {
     /// @throws InputError if an element cannot be subdivided.
     void rebuild(std::span<const std::uint32_t> parents);
 
-    /// Removes the last four siblings (leaves) of an ordered forest; returns their parent. Not thread-safe.
+    /// Removes the last four leaves of an ordered forest; returns their parent. Not thread-safe.
     std::uint32_t drop_last_siblings();
 
     /// Calls body(first) per block of siblings, parents first; in parallel after put_in_order().

@@ -23,7 +23,7 @@ void write_checksums(const std::filesystem::path& path, std::vector<FileRange> r
 /// Returns false also for an unreadable file.
 bool has_checksums(const std::filesystem::path& path);
 
-/// Verifies every byte; misses a change with a probability of at most 2^-32.
+/// Verifies every byte; misses a change with probability <= 2^-32.
 /// @throws std::runtime_error naming the first damaged range.
 void verify_checksums(const std::filesystem::path& path);
 

@@ -19,13 +19,12 @@ struct MeshCorner {
 };
 using MeshTriangle = std::array<MeshCorner, 3>;
 
-/// Triangulation of the leaves without T-junctions; counter-clockwise seen from the lit side. Quadrilaterals are split
-/// along the diagonal with the smaller difference of irradiance (Baum et al. 1991); leaves with more vertices become
-/// fans.
+/// Triangulation of the leaves without T-junctions; counter-clockwise seen from the lit side. Splits quadrilaterals
+/// along the diagonal with the smaller difference of irradiance (Baum et al. 1991); makes fans of larger polygons.
 class ElementMesh {
   public:
     /// Keeps references.
-    /// @param irradiance  One value per element; only leaves count.
+    /// @param irradiance  Per element; only leaves count.
     /// @throws InputError for a forest of another scene.
     ElementMesh(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
 

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Makes names unique, of letters, digits, '_', '-' and '.', with a letter or '_' first.
+/// Makes unique names of letters, digits, '_', '-' and '.', with a letter or '_' first.
 /// @param kind  Replaces an empty name.
 /// @param most  Maximum length before a number is appended.
 std::vector<std::string> plain_names(const std::vector<std::string>& names, const char* kind,

@@ -5,7 +5,7 @@
 
 namespace interflect::detail {
 
-/// Adds a solved scene with unlit materials: display colours in COLOR_0, irradiance in _IRRADIANCE.
+/// Adds a scene with unlit materials: display colours in COLOR_0, irradiance in _IRRADIANCE.
 void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution& solution,
                       const ExportOptions& options);
 

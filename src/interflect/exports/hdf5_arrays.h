@@ -39,8 +39,8 @@ class Hdf5Lock {
     std::unique_lock<std::recursive_mutex> lock_;
 };
 
-/// Reads arrays of float, double, std::uint32_t, char or std::byte. Throws std::runtime_error, allocates at most the
-/// size of the file, and refuses data in other files.
+/// Reads arrays of float, double, std::uint32_t, char or std::byte, at most the size of the file; refuses data in other
+/// files. Throws std::runtime_error.
 class Hdf5Reader {
   public:
     explicit Hdf5Reader(const std::filesystem::path& path);

@@ -19,8 +19,8 @@ struct LightmapChart {
     Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
 };
 
-/// Makes charts of the `shown` patches: from kept_layouts(), and of other smooth surfaces, unfolded() and split at
-/// creases, contacts and gaps narrower than two texels.
+/// Makes charts of the `shown` patches: kept_layouts(), and other smooth surfaces, unfolded() and split at creases,
+/// contacts and gaps narrower than two texels.
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings = nullptr);
 

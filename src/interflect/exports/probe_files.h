@@ -10,7 +10,7 @@ namespace interflect::detail {
 /// Exports irradiance probes as JSON (docs/exported-scenes.md).
 std::vector<ExportedFile> make_probes_json(const std::filesystem::path& path, const Scene& scene,
                                            const Solution& solution, const ExportOptions& options);
-/// Exports coefficients as OpenEXR layers, one pixel per probe, and the rest as JSON.
+/// Exports OpenEXR layers of coefficients, one pixel per probe, and JSON.
 std::vector<ExportedFile> make_probes_exr(const std::filesystem::path& path, const Scene& scene,
                                           const Solution& solution, const ExportOptions& options);
 

@@ -33,7 +33,7 @@ class VtkGrid {
     /// World coordinates [m]; double if the scene's origin is not 0.
     VtkArray points() const;
     std::vector<std::int64_t> connectivity() const;
-    /// Returns cell_count() + 1 bounds of the cells in connectivity().
+    /// Returns cell_count() + 1 bounds in connectivity().
     std::vector<std::int64_t> offsets() const;
     std::vector<std::uint8_t> types() const;
 

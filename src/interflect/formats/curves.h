@@ -30,7 +30,7 @@ PolygonMesh make_ring(const Imath::V3d& centre, const Imath::V3d& normal, double
 /// @param inner, outer  Distances from axis to tube: inner * outer >= 0, |inner| < |outer|.
 PolygonMesh make_torus(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer, int divisions);
 
-/// Closed. Extends by `length` behind the outline; a negative length extends to the front, with inward faces.
+/// Closed. Extends by `length` behind the outline or, if negative, to the front with inward faces.
 PolygonMesh make_prism(std::span<const Imath::V3d> outline, double length);
 
 }  // namespace interflect::detail

@@ -14,7 +14,7 @@ namespace interflect::detail {
 /// GLB chunks; a .gltf file is all JSON.
 struct GltfParts {
     std::string_view json, binary;
-    bool is_binary = false;  ///< Has a binary chunk.
+    bool is_binary = false;
 };
 
 /// @throws GltfFault for an invalid GLB.

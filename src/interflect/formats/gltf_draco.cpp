@@ -20,8 +20,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Bounds the decoder's memory. Only Edgebreaker stores the vertex count first (Draco 2.2 bitstream specification,
-/// section 2).
+/// Bounds the decoder's memory. Only Edgebreaker stores the vertex count first (Draco 2.2 specification, section 2).
 bool claims_at_most(draco::DecoderBuffer buffer, std::uint64_t max_triangles, std::uint64_t max_vertices) {
     constexpr int metadata_flag = 0x8000;
     draco::DracoHeader header{};

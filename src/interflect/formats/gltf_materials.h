@@ -21,7 +21,7 @@ struct GltfMapping {
 };
 
 struct GltfSurface {
-    std::uint32_t material = 0;          ///< Index into Model::materials.
+    std::uint32_t material = 0;
     std::optional<GltfMapping> mapping;  ///< Shared by all textures.
     bool repeats = true;                 ///< Beyond [0, 1].
     bool double_sided = false;

@@ -48,8 +48,7 @@ std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corner
     return result;
 }
 
-/// Drops unused vertices, if corners are fewer than vertices, and renumbers `indices`. Returns the kept vertices,
-/// ascending.
+/// If corners are fewer than vertices, drops unused vertices and renumbers `indices`. Returns the kept ones, ascending.
 std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uint64_t vertex_count) {
     std::vector<std::uint32_t> used;
     if (indices.size() >= vertex_count) {

@@ -22,7 +22,7 @@ class GltfNodes {
 
     std::size_t count() const { return values_.size(); }
     const Imath::M44d& to_world(std::uint32_t node) const { return to_world_[node]; }
-    /// Returns the nodes of the default or first scene, or all nodes of a file without scenes; parents first.
+    /// Returns the nodes of the default or first scene, or all without scenes; parents first.
     std::vector<GltfNode> in_scene() const;
 
   private:

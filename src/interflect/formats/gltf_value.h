@@ -17,8 +17,8 @@ struct GltfFault : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// JSON value with its place, such as "meshes[3] 'chair'". Absent values act as empty objects and arrays. Getters throw
-/// GltfFault for wrong types and ranges.
+/// JSON value with its place, such as "meshes[3] 'chair'". Absent values act as empty. Getters throw GltfFault for
+/// wrong types and ranges.
 class GltfValue {
   public:
     /// Prevents overflow of sums.

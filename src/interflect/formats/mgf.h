@@ -17,7 +17,7 @@ namespace interflect::detail {
 /// * `o` and array copies ("a0", "a1") name objects, joined by dots.
 ///
 /// Time is linear in the text with arrays expanded.
-/// @throws InputError for invalid input. Errors in a colour or material count only if a face uses it.
+/// @throws InputError for invalid input. Errors in colours and materials count only if used by a face.
 Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {});
 
 Scene read_mgf_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options = {});

@@ -64,7 +64,6 @@ void MgfReader::place_copy(OpenMgfTransform& transform) {
 
 bool MgfReader::next_copy(OpenMgfTransform& transform) {
     if (!transform.repeating) {
-        // The first copy is complete.
         double copies = 1;
         for (const int size : transform.sequence.array_sizes()) copies *= size;
         scene_.require_room(static_cast<double>(scene_.patch_count() - transform.first_patch) * (copies - 1));

@@ -21,14 +21,14 @@ struct Mesh {
     std::vector<Imath::V3d> normals;        ///< Per vertex, any length, 0 if absent; or empty.
     std::vector<std::uint32_t> indices;     ///< Counter-clockwise seen from the front.
     std::vector<std::uint32_t> face_sizes;  ///< Corners per face, >= 3; empty: triangles.
-    std::uint32_t material = 0;             ///< Index into Model::materials.
+    std::uint32_t material = 0;
     bool back_emits = true;
 };
 
 struct MeshInstance {
-    std::uint32_t mesh = 0;    ///< Index into Model::meshes.
-    Imath::M44d to_world;      ///< For row vectors; to metres. Mirroring keeps the front.
-    std::uint32_t object = 0;  ///< Index into Model::objects.
+    std::uint32_t mesh = 0;
+    Imath::M44d to_world;  ///< For row vectors; to metres. Mirroring keeps the front.
+    std::uint32_t object = 0;
 };
 
 struct PlacedLight {
@@ -50,8 +50,8 @@ struct Model {
 };
 
 /// Converts a model to a scene with two-sided faces. Welds corners with equal positions, coordinates and normals.
-/// Merges two triangles that form a planar, convex quadrilateral with linear coordinates. Omits faces without area,
-/// with a warning.
+/// Merges two triangles into a planar, convex quadrilateral with linear coordinates. Omits faces without area, with a
+/// warning.
 ///
 /// Meshes with lightmap coordinates share their object's lightmap; other patches have NaN. Ignores the coordinates if
 /// instances with different transforms share them.

@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Removes the byte order mark and the end mark of MS-DOS. @throws InputError, also beyond max_photometric_bytes.
+/// Removes byte order mark and end mark of MS-DOS. @throws InputError, also beyond max_photometric_bytes.
 std::string read_photometric_text(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads lines (ended by LF, CR or both) or words. Errors are InputErrors.

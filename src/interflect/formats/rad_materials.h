@@ -32,7 +32,7 @@ class RadMaterials {
     /// Hides earlier modifiers of the same name. @throws std::invalid_argument
     void define(const RadPrimitive& primitive, const Location& where);
 
-    /// Makes undefined modifiers grey: an ignored command may define them.
+    /// Makes undefined modifiers grey: ignored commands may define them.
     void allow_missing() { may_miss_ = true; }
 
     /// @return  `none` for "void". @throws std::invalid_argument if undefined.

@@ -32,7 +32,7 @@ class TransformSequence {
     std::vector<int> array_sizes_;
 };
 
-/// Advances to the next copy, the last array fastest; returns false after the last copy.
+/// Advances to the next copy, the last array fastest; returns false after the last.
 bool next_index(std::vector<int>& copy, std::span<const int> sizes);
 
 }  // namespace interflect::detail

@@ -8,7 +8,7 @@
 namespace interflect::detail {
 
 /// Writes IES LM-63-2002: type B for its pole, type A for an incomplete azimuth, else type C. read_ies() restores
-/// intensities, except for rounding at azimuth 0. @throws std::runtime_error
+/// intensities but for rounding at azimuth 0. @throws std::runtime_error
 void write_ies(const PhotometricWeb& web, std::ostream& out);
 void write_ies(const PhotometricWeb& web, const std::filesystem::path& path);
 

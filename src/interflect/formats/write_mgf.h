@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// Writes a scene for read_mgf(), which restores patch order, material and object names, exact world positions and
-/// textures. Colours are exact to 1e-6 of the largest channel; reflectances are limited to 0.99.
+/// Writes a scene for read_mgf(), which restores patch order, names of materials and objects, exact world positions,
+/// textures, and colours to 1e-6 of the largest channel. Reflectances are limited to 0.99.
 ///
 /// Not restored: unused vertices and materials, lightmap coordinates, texture names, distinct vertices at one position,
 /// different materials on backs, degenerate patches, and views. Invalid characters in names become '_'.

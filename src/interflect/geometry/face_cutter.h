@@ -8,8 +8,8 @@
 
 namespace interflect::detail {
 
-/// Clips `segment` to the polygon's interior. Returns false, without a change, if the rest is shorter than `tolerance`
-/// [m] or lies along an edge.
+/// Clips `segment` to the polygon's interior. Returns false, unchanged, if the rest is shorter than `tolerance` [m] or
+/// along an edge.
 bool clip_to_interior(const PlanarPolygon& polygon, double tolerance, PlanarSegment& segment);
 
 struct CutPolygon {

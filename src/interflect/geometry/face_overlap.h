@@ -14,7 +14,7 @@ struct FacePair {
     std::uint32_t larger, smaller;  ///< By area; at equal areas the later face is larger.
 };
 
-/// Returns the distance within which two faces coincide [m]. The larger face's plane has a rounding of an eighth of its
+/// Returns the distance within which two faces coincide [m]. The larger one's plane is rounded by an eighth of its
 /// tolerance.
 inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pair) {
     return std::max(tolerance[pair.smaller], tolerance[pair.larger] / 8);

@@ -14,8 +14,8 @@ enum class PolygonResult {
     self_crossing,  ///< Opposite areas of the outline cancel; not added.
 };
 
-/// Adds triangles and convex planar quadrilaterals (planarity.h) as one patch, and triangulates others. Keeps the
-/// vertex order; merges consecutive vertices at one position. Omits patches below smallest_face_area, and degenerate
+/// Adds triangles and convex planar quadrilaterals (planarity.h) as one patch; triangulates others. Keeps the vertex
+/// order; merges consecutive vertices at one position. Omits patches below smallest_face_area, and degenerate
 /// triangles.
 /// @param loops      Outline, counter-clockwise from the front, then holes in any direction (even-odd rule). Doubled
 ///     edges may join outline and hole. Crossings become new vertices with interpolated attributes.

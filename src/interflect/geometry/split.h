@@ -12,7 +12,7 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
 /// Returns an edge length [m]: 1/48 of the diagonal of core_bounds(), or more for at most about 200,000 patches.
 float default_mesh_size(const Scene& scene);
 
-/// Returns a minimum element side [m]: 5 mm, but at most a thousandth of the area-weighted median patch side.
+/// Returns a minimum element side [m]: 5 mm, at most a thousandth of the area-weighted median patch side.
 double default_element_size(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// Exact means over triangles of a texture as filtered by texel_at(). Integrates F dy along the border instead of f
-/// over the area (Green's theorem, dF/dx = f). F is cubic between texel lines, so Simpson's rule is exact.
+/// Exact means over triangles of a texture as filtered by texel_at(). Integrates F dy along the border, with dF/dx = f
+/// (Green's theorem). F is cubic between texel lines, so Simpson's rule is exact.
 class TextureIntegral {
   public:
     /// @param texture  Without faults; must outlive this.

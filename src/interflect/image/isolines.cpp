@@ -72,7 +72,7 @@ class Contour {
     }
 
     const std::vector<Segment>& segments() const { return segments_; }
-    /// Length of the whole line [pixels].
+    /// Of the whole line [pixels].
     float length(const Segment& segment) const { return lengths_.at(segment.line); }
 
   private:

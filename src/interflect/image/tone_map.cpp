@@ -20,7 +20,7 @@ namespace {
 constexpr double key = 0.2;                   // logarithmic mean after exposure; 1 is white
 constexpr double ignored_pixel_share = 0.05;  // of the lit pixels, at each end
 
-/// Averages over finite pixels with `measure` > 0; 0 without such pixels.
+/// Averages over finite pixels with `measure` > 0; else 0.
 double logarithmic_mean(const Image& image, float (*measure)(const Rgb&)) {
     std::vector<float> lit;
     lit.reserve(image.pixels.size());

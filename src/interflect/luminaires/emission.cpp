@@ -149,7 +149,7 @@ void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
     emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
-/// Emits from the bounding rectangle of the box as seen along the light, enlarged for the tilted rays of a disc.
+/// Emits from the bounding rectangle of the box along the light, enlarged for the tilted rays of a disc.
 void Emission::add(const DirectionalLight& light) {
     const V3f direction = light.direction.normalized();
     const TangentFrame frame(direction);
@@ -246,7 +246,7 @@ Ray Emission::Rectangle::ray(float u, float v, float c, float d) const {
     return {corner + edge_u * u + edge_v * v, turned(direction, s, t, std::sqrt(1 - squared), std::sqrt(squared), d)};
 }
 
-/// A cell of the table may extend behind the side's plane; its directions are mirrored to the front.
+/// Directions of cells that extend behind the side's plane are mirrored to the front.
 Ray Emission::SkySide::ray(float u, float v, float c, float d) const {
     V3f direction = -sky->frame().direction(places->sample(c, d));
     const float cosine = direction.dot(normal);
@@ -285,7 +285,7 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-/// The ray misses the scene if its line misses the target `box`, or crosses a later box, which samples it. Else moves
+/// The ray misses the scene if its line misses the target `box` or crosses a later one, which samples it. Else moves
 /// the origin of a target's ray back to the scene's box.
 Ray Emission::restrict_to_box(const Ray& ray, std::size_t box) const {
     const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };

@@ -28,10 +28,10 @@ struct SkyComponent {
 
 bool line_crosses(const Imath::Box3f& box, const Ray& ray);
 
-/// Generates the rays of luminaires. A point, spot or measured light is one emitter. Outside light (directional lights
-/// and skies) has emitters for each box: the scene's box and targets, boxes of high importance inside it. Each line of
-/// outside light is sampled from the last box that it crosses. Each emitter has parts of equal power: by direction, or
-/// by position for outside light. Immutable, thread-safe.
+/// Rays of luminaires. A point, spot or measured light is one emitter. Outside light (directional lights and skies) has
+/// emitters per box: the scene's, and targets of high importance inside it. A line of outside light is sampled from the
+/// last box that it crosses. Emitters have parts of equal power, by direction or, for outside light, by position.
+/// Immutable, thread-safe.
 class Emission {
   public:
     Emission() = default;  ///< No luminaires.
@@ -42,7 +42,7 @@ class Emission {
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
     /// Excludes targets.
     RgbD total_power() const { return power_of_boxes(0, 1); }
-    /// Returns the power of the targets [lm or W], also part of total_power().
+    /// Returns the power of the targets [lm or W], part of total_power().
     RgbD repeated_power() const { return power_of_boxes(1, boxes_.size()); }
     /// Returns an index into Scene::luminaires.
     std::size_t luminaire(std::size_t part) const { return emitters_[part / parts_per_emitter].luminaire; }
@@ -51,7 +51,7 @@ class Emission {
 
     bool has_sky() const;
     std::size_t sun_count() const { return suns_.size(); }
-    /// Samples the direction in which the sun's light travels. @param c, d  Uniform in (0, 1).
+    /// Samples the direction of sunlight. @param c, d  Uniform in (0, 1).
     V3f sun_direction(std::size_t sun, float c, float d) const;
     const Imath::Box3f& scene_box() const { return boxes_.front(); }
     /// Box 0 is the scene's; targets follow.
@@ -66,14 +66,14 @@ class Emission {
     /// @param sun    Index; `none` for skies.
     std::vector<PartAlong> parts_along(const Ray& light, std::uint32_t sun) const;
 
-    /// Generates rays of equal power from the part's samples, starting with number `first_sample`. Rays of outside
-    /// light start on or outside the scene's box; if another box samples the line of a ray, the ray misses the scene.
+    /// Generates rays of equal power from the part's samples, beginning with `first_sample`. Those of outside light
+    /// start on or outside the scene's box, and miss the scene if another box samples their line.
     /// @param key     Of the part's point sequence (fill_points).
     /// @param points  Working memory.
     void shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                std::span<Ray> rays) const;
 
-    /// Point source that stands for a part in the oracle. At the end of a ray, both cause about the same irradiance.
+    /// Point source for the oracle, with about the irradiance of the part at the end of a ray.
     struct Proxy {
         V3f position{0, 0, 0};  ///< [m]
         V3f normal{0, 0, 0};    ///< Emission is proportional to the cosine; zero: isotropic.
@@ -138,8 +138,8 @@ class Emission {
     RgbD power_of_boxes(std::size_t begin, std::size_t end) const;
     Ray restrict_to_box(const Ray& ray, std::size_t box) const;
 
-    std::vector<Imath::Box3f> boxes_;  // the scene's, then targets
-    std::vector<std::size_t> suns_;    // emitters for box 0
+    std::vector<Imath::Box3f> boxes_;
+    std::vector<std::size_t> suns_;  // emitters for box 0
     std::vector<std::vector<std::size_t>> emitters_of_boxes_;
     std::vector<Emitter> emitters_;
     std::map<const PhotometricWeb*, std::shared_ptr<const WebSampler>> samplers_;

@@ -24,8 +24,6 @@ using Imath::V3d;
 
 constexpr double max_pixels_per_degree = 1000;  // eight times the resolution of the eye
 
-// --- Colour spaces
-
 /// Linear Rec. 709 to XYZ relative to white (D65), exact. Transposed, since Imath multiplies rows.
 const M33d xyz_of_rgb(10135552.0 / 23359437, 2613072.0 / 12288897, 1425312.0 / 80288307,  //
                       8788810.0 / 23359437, 8788810.0 / 12288897, 8788810.0 / 80288307,   //
@@ -57,8 +55,6 @@ V3d perceived_colour(const V3d& rgb) {
     const V3d lab = lab_of_xyz(rgb * xyz_of_rgb);
     return {lab.x, 0.01 * lab.x * lab.y, 0.01 * lab.x * lab.z};
 }
-
-// --- Separable filters
 
 struct Channel {
     int width = 0, height = 0;
@@ -136,8 +132,6 @@ Channel filter(const Channel& plane, const Kernel& along_x, const Kernel& along_
     return filter_columns(filter_rows(plane, along_x), along_y);
 }
 
-// --- The colour pipeline
-
 /// Contrast sensitivity term a sqrt(pi / b) exp(-pi^2 r^2 / b), r in degrees.
 struct Gaussian {
     double a, b;
@@ -204,8 +198,6 @@ double colour_difference(const V3d& a, const V3d& b) {
     if (distance < knee) return knee_value * distance / knee;
     return knee_value + (1 - knee_value) * (distance - knee) / (largest - knee);
 }
-
-// --- The feature pipeline
 
 Channel response(const Channel& lightness, const Kernel& detector, const Kernel& blur) {
     const Channel across = filter(lightness, detector, blur), down = filter(lightness, blur, detector);

@@ -8,8 +8,8 @@ namespace interflect::detail {
 /// @param cycles_per_degree  f >= 0.
 double contrast_sensitivity(double cycles_per_degree);
 
-/// Computes the first model of Rushmeier et al. 1995 (formulas in docs/metrics.md) from luminances, clamped to >= 0. A
-/// black reference gives 0 for a black image, otherwise infinity.
+/// Computes the first model of Rushmeier et al. 1995 (docs/metrics.md) from luminances, clamped to >= 0. A black
+/// reference gives 0 for a black image, otherwise infinity.
 /// @param field_of_view  Full vertical angle [degrees], in (0, 180).
 /// @throws InputError for different sizes, no pixels, or a field of view out of range. Pixels must be finite.
 /// O(N log N) for sides with small prime factors, at worst O(N (width + height)).

@@ -13,10 +13,10 @@
 
 namespace interflect::detail {
 
-/// Resolves hits on coincident faces, where a ray tracer reports whichever face it tests first. The face of highest
-/// priority intercepts a ray: smaller flat surface (flat_surfaces.h), then emitters, then scene order. One-sided faces
-/// intercept only rays to their front. Faces, identified by their first patches, coincide if they have the same corners
-/// or are overlapping_faces().
+/// Resolves hits on coincident faces: a ray tracer reports whichever face it tests first. The face of highest priority
+/// intercepts a ray: smaller flat surface (flat_surfaces.h), then emitters, then scene order. One-sided faces intercept
+/// only rays to their front. Faces, identified by their first patches, coincide if they have the same corners or are
+/// overlapping_faces().
 class CoincidentFaces {
   public:
     /// @param scene      Valid (scene_faults), with convex quadrilaterals.
@@ -35,7 +35,7 @@ class CoincidentFaces {
     /// @param x_error  Maximum distance of x from the face [m].
     std::uint32_t intercepting_patch(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
 
-    /// Returns the fraction of a patch's area that intercepts rays; the rest must not emit. Slivers count as covered.
+    /// Returns the share of a patch that intercepts rays; the rest must not emit. Slivers count as covered.
     float uncovered_share(std::uint32_t patch) const {
         return covered_[patch] ? uncovered_share_[covered_.rank(patch)] : 1.0f;
     }

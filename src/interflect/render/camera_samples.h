@@ -24,14 +24,14 @@ struct PixelOffset {
     float x = 0, y = 0;
 };
 
-/// Rays and hits of a pixel, ordered by sample.
+/// Ordered by sample.
 struct PixelSamples {
     std::size_t pixel = 0;  ///< y * width + x.
     std::span<const Ray> rays;
     std::span<const Hit> hits;
 };
 
-/// Traces one camera ray per sample and offset. Calls `visit` once per pixel, from any thread and in any order.
+/// Traces one camera ray per sample and offset. Calls `visit` once per pixel, from any thread, in any order.
 /// @throws InputError for less than one sample or pixel.
 void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
                   std::span<const PixelOffset> offsets, const Monitor& monitor,

@@ -22,8 +22,8 @@ class ElementVertices {
         std::array<std::uint32_t, 2> ends;
         float fraction = 0.5f;  // 0 at ends[0], 1 at ends[1]
     };
-    /// Vertex on a seam (SmoothSurfaces::Seam), inside a leaf edge of the other side that is not clearly longer than
-    /// its own. It averages both sides.
+    /// Vertex on a seam (SmoothSurfaces::Seam), inside a leaf edge of the other side not clearly longer than its own.
+    /// Averages both sides.
     struct Coupling {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;

@@ -18,8 +18,8 @@ namespace {
 /// A record's paths are traced in groups; the variance between groups estimates its error. 128 to 1,024 paths.
 constexpr std::size_t paths_per_group = 16, min_groups = 8, max_groups = 64;
 /// Groups of a record: groups_per_deviation x sigma / E x reach / spacing, with the standard deviation sigma of a group
-/// and all irradiance E at the record, but at least min_share_of_mean of the mean E. For a given number of rays, this
-/// gives the picture the least squared error (Neyman allocation): a record affects all pixels in its reach.
+/// and all irradiance E at the record, but at least min_share_of_mean of the mean E. This minimises the squared error
+/// of the picture per ray (Neyman allocation): a record affects all pixels in its reach.
 constexpr float groups_per_deviation = 7, min_share_of_mean = 0.25f;
 /// Reach of a record, relative to the harmonic mean length of its rays; limits in spacings of the points. With 0.35 and
 /// 512 paths, errors are 1.1 to 1.8 times as large.
@@ -46,7 +46,7 @@ std::vector<Boxed> make_tree(const std::vector<Contact>& contacts) {
     return tree;
 }
 
-/// Returns a random permutation, the same for the same seed.
+/// Returns a random permutation.
 std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);

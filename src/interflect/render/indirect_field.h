@@ -25,10 +25,9 @@ struct SurfacePoint {
     float spacing = 0;  ///< Distance to the nearest such points: size of a pixel or texel [m].
 };
 
-/// Indirect irradiance of surfaces, interpolated between sparse records (irradiance caching, Ward et al. 1988). A
-/// record gathers the light of a solution, which averages its noise over a hemisphere. Its reach is a share of the
-/// harmonic mean length of its rays, but at least a few spacings. Noisy records gather more. Values are local linear
-/// fits to the records in reach. No record reaches across a contact. Immutable, thread-safe.
+/// Indirect irradiance of surfaces, interpolated between sparse records (irradiance caching, Ward et al. 1988), which
+/// average the noise of a solution over a hemisphere. Their reach is a share of the harmonic mean length of their rays,
+/// at least a few spacings, and ends at contacts. Values are local linear fits. Immutable, thread-safe.
 class IndirectField {
   public:
     /// Makes records until all points are covered.

@@ -55,7 +55,7 @@ class LightTree {
         Floats x{}, y{}, z{};
         void set(std::size_t i, const V3f& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
     };
-    /// Up to eight children, lights or nodes, side by side for vector instructions; others have no power.
+    /// Up to eight lights or nodes, side by side for vector instructions; others have no power.
     struct alignas(64) Node {
         Vectors centre, half, axis;  // of bounding boxes [m] and cones
         Floats cone_cosine{}, cone_sine{};
@@ -88,8 +88,7 @@ class LightTree {
 std::vector<LightTree::Light> patch_lights(const Scene& scene, std::span<const PatchGeometry> geometry,
                                            std::span<const float> power);
 
-/// Returns the power per patch, sum of channels [W or lm], plus 1% of a texture's largest texel, which keeps it
-/// positive.
+/// Returns the power per patch, sum of channels [W or lm], plus 1% of a texture's largest texel to keep it positive.
 std::vector<float> emitted_powers(const Scene& scene, std::span<const PatchGeometry> geometry);
 
 }  // namespace interflect::detail

@@ -11,7 +11,7 @@
 namespace interflect::detail {
 
 /// Samples a luminaire by unoccluded irradiance (resampled importance sampling, Talbot et al. 2005). A LightTree
-/// proposes candidates; directional lights are always candidates. Thread-safe.
+/// proposes candidates; directional lights always are. Thread-safe.
 class LuminaireChoice {
   public:
     /// @param scene  Must outlive this object.

@@ -162,8 +162,8 @@ class PathPicture {
         trace_chunk(chunk);
     }
 
-    /// In hybrid shading, the batches of a pixel continue one sequence, which stratifies them; the error is then
-    /// overestimated. Otherwise they are independent.
+    /// In hybrid shading, one sequence stratifies the batches of a pixel, so the error is overestimated. Otherwise they
+    /// are independent.
     BatchOfPaths batch_of(std::uint32_t pixel, std::uint32_t number) const {
         if (!s_.indirect_field) return {pixel, number};
         return {pixel, 0, number * static_cast<std::uint32_t>(s_.batch_size)};

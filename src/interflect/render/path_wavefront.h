@@ -121,7 +121,6 @@ class PathWavefront {
         bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
         std::uint32_t place = none;  // in seen_: ends at the next vertex
     };
-    /// Points of a batch.
     struct Sequence {
         std::uint64_t key;
         std::uint32_t first;
@@ -138,7 +137,7 @@ class PathWavefront {
         std::uint32_t next_half = 0;
         Rgb result() const;
     };
-    /// Surface point of a pixel: its light is computed once for all paths to the patch.
+    /// Surface point of a pixel, lit once for all paths to the patch.
     struct SeenPlace {
         std::uint32_t batch = none, patch = none, index = 0;  // index: in light_
         V3f normal{0, 0, 0};
@@ -146,7 +145,7 @@ class PathWavefront {
         std::optional<Rgb> indirect;  // irradiance
         ExactLight patches, luminaires;
     };
-    /// Contribution of a shadow ray that hits `patch` or, without a patch, is unoccluded up to `distance`.
+    /// Contribution of a shadow ray that hits `patch` or, for `none`, is free up to `distance`.
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
@@ -168,7 +167,7 @@ class PathWavefront {
     void split_paths();
     void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
     Rgb reflectance_of_hit(const Ray& ray, const Hit& hit) const;
-    /// Replaces `ray` and `path` by their reflection; returns whether the path continues.
+    /// Reflects `ray` and `path`; returns whether the path continues.
     bool interact(const Hit& hit, Ray& ray, Path& path);
     /// Connects `ray.origin` to the lights and samples a direction. Returns as interact().
     /// @param middle  Of the pixel's or texel's part of the surface.
@@ -176,13 +175,12 @@ class PathWavefront {
     /// Returns the index in seen_, added if new; none without indirect light.
     std::uint32_t seen_place(const V3f& x, const Path& path);
     void add_light_of_seen_places();
-    /// Connects a place, to estimate the visible share of its exact light.
     void estimate_visible_share(Connection& connection, const Path& path, ExactLight SeenPlace::*kind);
     void add_sky(const Ray& ray, const Path& path);
     void add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance);
     /// Returns the density of the path's own direction [1/sr], per path.
     float direction_density(const Path& path, const V3f& direction) const;
-    /// Returns the MIS weight of light found by the path's own direction. Densities in [1/sr].
+    /// Returns the MIS weight of the path's own direction. Densities in [1/sr].
     float direction_weight(float direction_density, float light_density) const;
     std::uint32_t shadow_rays_at(std::uint32_t vertex) const;
     const Sequence& sequence(const Path& path) const { return sequences_[path.index / s_.batch_size]; }
@@ -197,7 +195,7 @@ class PathWavefront {
     void trace_shadow_rays();
     void pass_panes();
     static bool is_unoccluded(const Connection& connection, const Hit& hit);
-    /// Ends a path with solved light at a far element, if possible.
+    /// Returns whether the path ends.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
     /// Returns the density of KnownLight::sample() [1/sr].
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,

@@ -10,7 +10,7 @@
 
 namespace interflect::detail {
 
-/// Element values, continuous on each smooth surface: linear on triangles, bilinear on quadrilaterals.
+/// Continuous on each smooth surface: linear on triangles, bilinear on quadrilaterals.
 class SmoothField {
   public:
     /// @param forest, vertices  Must not change during use.

@@ -24,8 +24,7 @@ class SmoothNormals {
     /// @param irradiance  Per element; only leaves change.
     void apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const;
 
-    /// Returns the unit normal at a point; the patch's own normal unless all corners have normals.
-    /// @param geometry  Of the patch.
+    /// Returns the unit normal; the patch's own unless all corners have normals.
     V3f at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const;
 
   private:

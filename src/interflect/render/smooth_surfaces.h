@@ -15,8 +15,8 @@ struct SmoothSurfaces {
         std::vector<std::uint32_t> group;
         std::uint32_t count = 0;
     };
-    /// Common part of two edges across which their patches continue. Parameters follow each patch's vertex order, in
-    /// [0, 1]; from[0] and to[1] coincide.
+    /// Common part of two edges across which their patches continue. Parameters in [0, 1] follow each patch's vertex
+    /// order; from[0] and to[1] coincide.
     struct Seam {
         std::array<std::uint32_t, 2> edge;  ///< 4 patch + first corner.
         std::array<float, 2> from, to;      ///< from < to.

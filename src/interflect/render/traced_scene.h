@@ -22,7 +22,7 @@ struct KnownIrradiance {
     bool is_interpolated = false;  ///< Hybrid shading: an IndirectField replaces gathered directions.
 };
 
-/// Data structures for tracing paths in a scene. Immutable, thread-safe.
+/// Immutable, thread-safe.
 class TracedScene {
   public:
     /// @param known  Of the scene; may be null. Arguments must outlive this object.
@@ -57,8 +57,7 @@ constexpr double hybrid_target = 0.06;
 /// @param stop  If set, some points are missing; may be null.
 std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop);
 
-/// Irradiance of gauges by hybrid shading, with up to options.samples paths for each where light varies.
-/// @param known  Irradiance of a solution.
+/// Irradiance of gauges by hybrid shading, with up to options.samples paths where light varies.
 /// @return       [as H], per gauge; the same bits for any number of threads. @throws Stopped
 std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance& known,
                                    std::span<const Gauge> gauges, const PathOptions& options, const Monitor& monitor);

@@ -34,8 +34,8 @@ class UnoccludedLight {
     bool has_patches_ = false, has_luminaires_ = false;
 };
 
-/// Returns the irradiance at x on a surface with normal n by the part above it of a convex polygon of unit radiance.
-/// The vertices may be in either order.
+/// Returns the irradiance at x on a surface with normal n by the part above it of a convex polygon of unit radiance, in
+/// either vertex order.
 float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f& n);
 
 }  // namespace interflect::detail

@@ -39,8 +39,8 @@ struct Core {
 /// Returns zeros without faces.
 Core core_of(std::span<const FaceExtent> faces);
 
-/// Preserves float precision: 0 if the middle is within 8 reaches, which costs at most 3 bits, otherwise the middle in
-/// steps of a power of two, so exact coordinates stay exact.
+/// Preserves float precision: 0 if the middle is within 8 reaches, which costs at most 3 bits, else the middle in steps
+/// of a power of two, which keeps exact coordinates exact.
 Imath::V3d origin_for(const Core& core);
 
 /// Bounds the faces with centres within 64 reaches of the middle [m], relative to the scene's origin.

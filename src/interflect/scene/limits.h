@@ -42,7 +42,7 @@ inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<
     return texture == none ? factor : factor * largest[texture];
 }
 
-/// Returns the maximum sum of reflectance, specular reflectance and transmittance; an upper bound if textures differ in
+/// Returns the maximum of reflectance + specular reflectance + transmittance; an upper bound if textures differ in
 /// size.
 /// @param largest  largest_texels() of `textures`.
 Rgb largest_sum(const Material& material, const std::vector<Texture>& textures, const std::vector<Rgb>& largest);

@@ -8,8 +8,7 @@
 namespace interflect::detail {
 
 /// Returns twice the area [m^2] times the unit normal.
-/// @param corners  Of a triangle or a convex, nearly planar quadrilateral, counter-clockwise seen from the side of the
-/// normal.
+/// @param corners  Of a triangle or a convex, nearly planar quadrilateral, counter-clockwise about the normal.
 template <class T>
 Imath::Vec3<T> doubled_area_vector(std::span<const Imath::Vec3<T>> corners) {
     assert(corners.size() == 3 || corners.size() == 4);

@@ -16,7 +16,7 @@ const View& find_view(const Scene& scene, const std::string& name);
 /// Returns the default view from inside an upper corner of core_bounds() to its middle.
 View overview(const Scene& scene);
 
-/// Returns an orthographic view of core_bounds() beyond a plane, with a margin. `up` is z, or y for a view along z.
+/// Returns an orthographic view of core_bounds() beyond a plane, with a margin; z up, or y in views along z.
 /// @param point  On the plane, in world coordinates [m].
 /// @param direction  Normal to the plane; not 0.
 /// @param aspect  Width over height.

@@ -13,8 +13,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Bounds of the decay of mean squared differences per level: 1/4 for smooth irradiance, 1/2 at edges. The upper bound
-/// leaves room for noise of the measured ratio.
+/// Bounds of the decay of mean squared differences per level: 1/4 for smooth irradiance; 1/2 at edges, plus room for
+/// noise of the measured ratio.
 constexpr double min_decay = 0.25, max_decay = 0.7;
 
 struct ErrorSums {
@@ -117,8 +117,7 @@ ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure) {
         squared_error_of_differences(state.risk_check, sums.noise - sums.noise_of_patches, sums.bias) +
         error_within_leaves(state.risk_check) + sums.assumed_bias;
     const double squared_discretisation = state.options.method.refines ? std::max(0.0, squared_total - sums.noise) : 0;
-    // `mean` and `sums` average over pixels with a surface, a share s. Over the picture, the mean is s mean and the
-    // mean square error s sum.
+    // `mean` and `sums` average over pixels with a surface, a share s: over the picture, s mean and s sum.
     const double surface_share = measure == ErrorMeasure::surfaces ? 1 : state.view.surface_share();
     const double scale = 1 / (mean * std::sqrt(total_weight * surface_share));
     return {std::sqrt(sums.noise) * scale, std::sqrt(squared_discretisation) * scale};

@@ -13,8 +13,7 @@ namespace interflect::detail {
 
 float shown_of_patch(const SolverState& state, ErrorMeasure measure, std::uint32_t patch);
 float shown_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first);
-/// Returns the share for the descendants of a leaf, by level. Assumes variation along one side only, as at shadow
-/// edges.
+/// Returns the share for descendants of a leaf, by level. Assumes variation along one side, as at shadow edges.
 std::array<float, finer_levels> shown_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf);
 
 }  // namespace interflect::detail

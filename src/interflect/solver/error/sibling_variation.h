@@ -37,15 +37,12 @@ bool uses_shrinkage(const SolverState& state);
 struct AddedError {
     float noise = 0, bias = 0;
 };
-/// @param variation  Of the siblings.
 AddedError added_error(const SolverState& state, std::uint32_t first, const SiblingVariation& variation);
 
-/// Factors of the differences of four siblings from their parent, and the remaining noise variance of each, relative to
-/// the mean.
+/// Factors of four siblings' differences from their parent, and their remaining noise variances, relative to the mean.
 struct Shrinkage {
     std::array<float, 4> kept, noise;
 };
-/// @param variation  Of the siblings.
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first, const SiblingVariation& variation);
 
 /// Returns 0 if unknown.

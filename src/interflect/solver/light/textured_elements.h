@@ -16,7 +16,6 @@ struct MeanSurface {
     Rgb transmittance{0, 0, 0};
 };
 
-/// Mean surfaces of textured elements.
 class TexturedElements {
   public:
     /// @param exitance_share  By patch; empty: 1.

@@ -37,7 +37,7 @@ struct SamplingWeights {
     }
 };
 
-/// Shares of rays (Eq. 11). A weight that is 0 everywhere leaves its share to the others.
+/// Shares of rays (Eq. 11). A weight of 0 everywhere leaves its share to the others.
 struct MixtureWeights {
     double power = 0, weighted_power = 0, importance = 0;
     double power_nearby = 0;

@@ -27,7 +27,7 @@ struct SampleStreams {
     std::uint64_t allocations = 0;
 };
 
-/// Generates rays. Origins are uniform on the cell, `offset` above the patch. Directions have density cos(theta) / pi.
+/// Origins are uniform on the cell, `offset` above the patch. Directions have density cos(theta) / pi.
 /// @param key     Of the point sequence (fill_points).
 /// @param starts  Origins to sample (StartPoints::of); empty: uniform.
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,

@@ -8,7 +8,6 @@
 
 namespace interflect::detail {
 
-/// Point of a leaf that received power.
 struct StartPoint {
     std::uint32_t leaf;
     float power;                   ///< Sum of the channels; cumulative over the leaf in StartPoints.

@@ -51,8 +51,8 @@ std::vector<PartImportance> found_by_parts(const RayPlan& plan, const RayAllocat
     return parts;
 }
 
-/// Averages the importance that a leaf received and the importance found by its rays, weighted by effective numbers of
-/// rays. The weights are independent of the estimates: the mean is unbiased.
+/// Averages received importance and the importance found by a leaf's rays, weighted by effective numbers of rays.
+/// Unbiased, because the weights are independent of the estimates.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const FoundImportance& found, const PayloadTotals& payload, std::size_t elements,
            std::vector<float>& received) {

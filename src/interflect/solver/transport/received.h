@@ -32,7 +32,7 @@ struct Received {
     std::int64_t escaped_rays = 0;
 };
 
-/// Converts the contributions of a step to received values and zeroes them. Sorts new elements and drops those beyond
+/// Converts contributions to received values and zeroes them. Sorts new elements and drops those beyond
 /// the oracle's limit, whose parents receive the contributions. Reuses buffers of the step.
 /// @param importance  Found by the rays, or null.
 Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_size, const RayAllocation& allocation,

@@ -49,9 +49,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Returns an upper bound of the number of elements that receive a particle's power: the expected number, at most
-/// 1 / (1 - rho), times a margin for chance and for deposits behind panes. The expected sum then has 2^49 of the 2^61
-/// units of FixedPoint.
+/// Returns an upper bound of the deposits of a particle: the expected number, at most 1 / (1 - rho), times a margin for
+/// chance and panes. The expected sum then has 2^49 of the 2^61 units of FixedPoint.
 double max_deposits_per_particle(const Scene& scene) {
     constexpr double margin = 0x1p12;
     double rho = 0;
@@ -92,7 +91,7 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Returns nullopt if the step carries no importance, or if it deposits importance at patches and no luminaire shoots.
+/// Returns nullopt without importance, or if it is deposited at patches and no luminaire shoots.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -218,8 +217,8 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     received.start_points = start_points_of(start_points);
     received.escaped_rays = escaped.rays;
     received.escaped_power = data.contribution_units.power.to_colour(escaped.power);
-    // Boxes of outdoor light overlap: a line through several is sampled from one, and rays of the others miss the
-    // scene. Their mean power, that of the targets, would count twice.
+    // Boxes of outdoor light overlap: a line through several is sampled from one; rays of the others miss the scene.
+    // Their mean power, that of the targets, would count twice.
     if (step.emission) {
         received.shot_power -= step.emission->repeated_power();
         received.escaped_power -= step.emission->repeated_power();

@@ -46,8 +46,8 @@ void Walks::follow(std::uint64_t task, Walkers& walkers, Descent& descent) const
     descent.finish_batch();
 }
 
-/// Applies Russian roulette: a particle survives with probability p, the reflected share of its ray's power (all
-/// channels), and its power is divided by p.
+/// Russian roulette with survival probability p: the reflected share of its ray's power (all channels). Divides the
+/// power by p.
 void Walks::survive(double offset, Walkers& walkers) const {
     const std::size_t groups = step_.groups.size();
     walkers.reflected.clear();

@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-/// Power that a leaf is about to reflect.
+/// Power to be reflected by a leaf.
 struct ReflectedPower {
     std::uint32_t leaf, patch;
     Parameters at;  ///< Where the leaf received it.
