@@ -116,13 +116,13 @@ void add_arrivals(benchmark::State& state) {
     ContributionSums::ScatterBuffer buffer(sums);
     std::uint32_t random = 1;
     for (auto _ : state) {
-        const std::uint32_t source = buffer.add_source({1, 2, 3, 4});
+        const std::uint32_t payload = buffer.add_payload({1, 2, 3, 4});
         for (std::size_t i = 0; i < block; ++i) {
             random = random * 1664525u + 1013904223u;
-            buffer.add(static_cast<std::uint32_t>(std::uint64_t{random} * elements >> 32), source,
+            buffer.add(static_cast<std::uint32_t>(std::uint64_t{random} * elements >> 32), payload,
                        ContributionSums::ScatterBuffer::Terms::both);
         }
-        buffer.release_sources();
+        buffer.release_payloads();
     }
     count_items(state, block);
 }

@@ -19,7 +19,7 @@ TEST(ContributionSums, GivesEachElementThePartsOfContributionsThatArriveThere) {
     ContributionSums sums(5);
     sums.begin_step(3);
     ContributionSums::ScatterBuffer buffer(sums);
-    const std::uint32_t a = buffer.add_source({1, 10, 100, 5, 1000}), b = buffer.add_source({2, 20, 200, 7, 2000});
+    const std::uint32_t a = buffer.add_payload({1, 10, 100, 5, 1000}), b = buffer.add_payload({2, 20, 200, 7, 2000});
     buffer.add(0, a, Terms::both);
     buffer.add(0, b, Terms::power);
     buffer.add(2, b, Terms::importance);
@@ -33,9 +33,9 @@ TEST(ContributionSums, GivesEachElementThePartsOfContributionsThatArriveThere) {
 }
 
 TEST(ContributionSums, AreTheSameWhateverThreadsBringThem) {
-    constexpr std::size_t elements = 1000, sources = 7, rays = 200'000;
+    constexpr std::size_t elements = 1000, payloads = 7, rays = 200'000;
     std::vector<Contribution> contributions;
-    for (std::int64_t s = 0; s < static_cast<std::int64_t>(sources); ++s)
+    for (std::int64_t s = 0; s < static_cast<std::int64_t>(payloads); ++s)
         contributions.push_back({s, 3 * s, -s, s * s, 1 + s});
     std::vector<Contribution> expected(elements, Contribution{});
     ContributionSums sums(elements);
@@ -43,12 +43,12 @@ TEST(ContributionSums, AreTheSameWhateverThreadsBringThem) {
     const auto element = [](std::size_t ray) { return static_cast<std::uint32_t>(ray * ray % elements); };
     for (std::size_t ray = 0; ray < rays; ++ray)
         for (std::size_t c = 0; c < contributions[0].size(); ++c)
-            expected[element(ray)][c] += contributions[ray % sources][c];
+            expected[element(ray)][c] += contributions[ray % payloads][c];
     parallel_for_ranges(rays, 10'000, [&](std::size_t begin, std::size_t end) {
         ContributionSums::ScatterBuffer buffer(sums);
         for (std::size_t ray = begin; ray < end; ++ray) {
-            buffer.add(element(ray), buffer.add_source(contributions[ray % sources]), Terms::both);
-            buffer.release_sources();
+            buffer.add(element(ray), buffer.add_payload(contributions[ray % payloads]), Terms::both);
+            buffer.release_payloads();
         }
         buffer.flush_all();
     });

@@ -39,7 +39,7 @@ TEST(ElementFloor, IsWhatAPixelShows) {
     EXPECT_NEAR(floor.pixel_area({0, 2, 0}, oblique), 0.0032f, 1e-8f) << "and with the obliquity,";
     EXPECT_NEAR(floor.pixel_area({0, 2, 0}, grazing), 0.016f, 1e-8f) << "but tenfold at most";
     EXPECT_EQ(floor.min_area({0, 2, 0}, facing, true), floor.pixel_area({0, 2, 0}, facing));
-    EXPECT_EQ(floor.min_area({0, 2, 0}, facing, false), floor.min_invisible_area());
+    EXPECT_EQ(floor.min_area({0, 2, 0}, facing, false), floor.default_min_area());
 }
 
 TEST(ElementFloor, IsThatOfTheNearestViewInWorldCoordinates) {
@@ -56,7 +56,7 @@ TEST(ElementFloor, IsThatOfTheNearestViewInWorldCoordinates) {
 TEST(ElementFloor, WithoutAViewIsThatOfUnseenElements) {
     const ElementFloor floor(room(), {});
     EXPECT_TRUE(std::isinf(floor.pixel_area({0, 1, 0}, {0, -1, 0})));
-    EXPECT_EQ(floor.min_area({0, 1, 0}, {0, -1, 0}, true), floor.min_invisible_area());
+    EXPECT_EQ(floor.min_area({0, 1, 0}, {0, -1, 0}, true), floor.default_min_area());
 }
 
 TEST(ElementFloor, GivenByTheCallerHoldsEverywhere) {
@@ -64,17 +64,17 @@ TEST(ElementFloor, GivenByTheCallerHoldsEverywhere) {
     options.views = {from({0, 0, 0})};
     options.refinement.min_area = 0.25;
     const ElementFloor floor(room(), options);
-    EXPECT_EQ(floor.min_invisible_area(), 0.25f);
+    EXPECT_EQ(floor.default_min_area(), 0.25f);
     EXPECT_EQ(floor.min_area({0, 1, 0}, {0, -1, 0}, true), 0.25f);
 }
 
 TEST(ElementFloor, DoesNotDependOnTheSizeOfTheWorld) {
-    const float expected = ElementFloor(room(), {}).min_invisible_area();
+    const float expected = ElementFloor(room(), {}).default_min_area();
     EXPECT_GT(expected, 1e-6f);
     EXPECT_LE(expected, 25e-6f) << "at most 5 mm";
     Scene with_stray_face = room();
     add_rectangle(with_stray_face, {1e5f, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
-    EXPECT_EQ(ElementFloor(with_stray_face, {}).min_invisible_area(), expected);
+    EXPECT_EQ(ElementFloor(with_stray_face, {}).default_min_area(), expected);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class KnownLight {
     const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
     Rgb reflected_radiance(const Place& place) const;
 
-    /// Whether the constant irradiance of the leaf is invisible.
+    /// Whether the leaf is small enough, at this squared distance [m^2], for its constant irradiance.
     bool is_far(const Place& place, float distance2) const {
         constexpr float max_solid_angle = 0.25f;  // [sr]
         return forest_.area(place.leaf) <= max_solid_angle * distance2;
@@ -40,7 +40,7 @@ class KnownLight {
     /// @param choice  Selects the patch; in (0, 1).
     /// @param u, v    In [0, 1).
     Place sample(const V3f& x, const V3f& n, double choice, float u, float v) const;
-    /// Returns the density of sample() [1/m^2].
+    /// Density of sample() [1/m^2].
     float density(const Place& place, const V3f& x, const V3f& n) const;
 
   private:
@@ -48,7 +48,7 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> excess_;  // reflected power above the limit, sum of channels [lm or W]
+    std::vector<float> excess_;  // reflected power beyond bright_over_mean, sum of channels [lm or W]
     LightTree tree_;
 };
 

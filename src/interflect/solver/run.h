@@ -43,7 +43,7 @@ struct Run {
     void dim_sources();
 };
 
-/// Main loop, until a limit or the end of the plan. @throws Interrupted
-void iterate_until(Run& run, const Limits& limits);
+/// Main loop, until a limit of the call or the run. @throws Interrupted
+void iterate_until(Run& run, const Limits& call_limits);
 
 }  // namespace interflect::detail

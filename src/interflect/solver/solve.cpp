@@ -22,7 +22,7 @@ namespace {
 constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
 
 void start_time_limit(SolverState& state) {
-    state.stop.limit_time(state.start, state.options.limits.time - state.earlier_seconds);
+    state.stop.limit_time(state.start_of_this_call, state.options.limits.time - state.earlier_seconds);
 }
 
 /// An interruption restores the state before the step, but deterministic methods keep finished links.
@@ -57,25 +57,26 @@ IterationPlan plan_or_extend(Run& run, std::int64_t requested_rays) {
     SolverState& state = run.state;
     IterationPlan next = run.method->plan(state);
     if (next.rays > 0 || requested_rays == unlimited) return next;
-    if (requested_rays <= std::max(state.schedule.rays(), state.options.limits.rays)) return next;
-    state.solution.options.limits.rays = requested_rays;
-    state.schedule.set_limits(state.options.limits);
+    Limits& run_limits = state.solution.options.limits;
+    if (requested_rays <= std::max(state.schedule.rays(), run_limits.rays)) return next;
+    run_limits.rays = requested_rays;
+    state.schedule.set_limits(run_limits);
     return run.method->plan(state);
 }
 
 }  // namespace
 
-void iterate_until(Run& run, const Limits& limits) {
+void iterate_until(Run& run, const Limits& call_limits) {
     SolverState& state = run.state;
     IterationMethod& method = *run.method;
     const std::int64_t before = state.schedule.rays();
-    const std::int64_t requested_rays = limits.rays < unlimited - before ? before + limits.rays : unlimited;
-    const double target_error = std::max(limits.until, state.options.limits.until);
+    const std::int64_t requested_rays = call_limits.rays < unlimited - before ? before + call_limits.rays : unlimited;
+    const double target_error = std::max(call_limits.until, state.options.limits.until);
     bool has_advanced = !run.is_prepared;  // preparation is progress, too
     prepare(run);
     run.is_finished = false;
     while (!(run.error <= target_error) && state.schedule.rays() < requested_rays) {
-        if (has_advanced && state.seconds_of_this_call() >= limits.time) return;
+        if (has_advanced && state.seconds_of_this_call() >= call_limits.time) return;
         IterationPlan plan = plan_or_extend(run, requested_rays);
         run.is_finished = plan.rays == 0;
         if (run.is_finished) return;
@@ -87,7 +88,7 @@ void iterate_until(Run& run, const Limits& limits) {
             method.refine(state);                                 // by variance
         });
         state.schedule.done(plan);
-        report(state, ++run.iteration);
+        append_report(state, ++run.iteration);
         run.error = state.solution.iterations.back().error_estimate;
         has_advanced = true;
     }

@@ -15,7 +15,7 @@ void ContributionSums::ScatterBuffer::flush(std::size_t region) {
     for (std::size_t i = 0; i < bin.count; ++i) __builtin_prefetch(&sums_->sums_[bin.deposits[i].element], 1);
     for (std::size_t i = 0; i < bin.count; ++i) {
         const Deposit& a = bin.deposits[i];
-        const Contribution& contribution = contributions_[a.source];
+        const Contribution& contribution = contributions_[a.payload];
         Contribution& sum = sums_->sums_[a.element];
         const std::int64_t power = -static_cast<std::int64_t>(a.power);  // all ones or all zeros
         for (std::size_t c = 0; c < power_terms; ++c) sum[c] += contribution[c] & power;
@@ -32,7 +32,7 @@ void ContributionSums::ScatterBuffer::add_groups(const Bin& bin) {
     for (std::size_t i = 0; i < bin.count; ++i) {
         const Deposit& a = bin.deposits[i];
         if (!a.power) continue;
-        const std::int64_t* power = &group_contributions_[a.source * terms];
+        const std::int64_t* power = &group_contributions_[a.payload * terms];
         std::int64_t* sum = &sums_->group_sums_[a.element * terms];
         for (std::size_t c = 0; c < terms; ++c) sum[c] += power[c];
     }

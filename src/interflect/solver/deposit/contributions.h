@@ -59,26 +59,26 @@ class ContributionSums {
 
         /// Returns its index.
         /// @param contribution  Of one ray. @param power_by_group  Empty: 0.
-        std::uint32_t add_source(const Contribution& contribution, std::span<const std::int64_t> power_by_group = {}) {
+        std::uint32_t add_payload(const Contribution& contribution, std::span<const std::int64_t> power_by_group = {}) {
             contributions_.push_back(contribution);
             group_contributions_.insert(group_contributions_.end(), power_by_group.begin(), power_by_group.end());
             group_contributions_.resize(contributions_.size() * sums_->group_terms_);
             return static_cast<std::uint32_t>(contributions_.size() - 1);
         }
-        const Contribution& contribution(std::uint32_t source) const { return contributions_[source]; }
+        const Contribution& contribution(std::uint32_t payload) const { return contributions_[payload]; }
 
         enum class Terms { power, importance, both };
-        void add(std::uint32_t element, std::uint32_t source, Terms terms) {
+        void add(std::uint32_t element, std::uint32_t payload, Terms terms) {
             const std::size_t region = element >> sums_->region_shift_ & (regions - 1);
             Bin& bin = bins_[region];
-            bin.deposits[bin.count++] = {element, source & (max_sources - 1), terms != Terms::importance,
+            bin.deposits[bin.count++] = {element, payload & (max_payloads - 1), terms != Terms::importance,
                                          terms != Terms::power};
             if (bin.count == bin.deposits.size()) flush(region);
         }
-        void release_sources() {
-            if (contributions_.size() >= enough_sources) flush_all();
+        void release_payloads() {
+            if (contributions_.size() >= enough_payloads) flush_all();
         }
-        /// Invalidates the indices of sources, as does release_sources().
+        /// Invalidates the indices of payloads, as does release_payloads().
         void flush_all() {
             for (std::size_t region = 0; region < regions; ++region) flush(region);
             contributions_.clear();
@@ -88,7 +88,7 @@ class ContributionSums {
       private:
         struct Deposit {
             std::uint32_t element;
-            std::uint32_t source : 30;
+            std::uint32_t payload : 30;
             std::uint32_t power : 1, importance : 1;
         };
         struct Bin {
@@ -106,8 +106,8 @@ class ContributionSums {
 
   private:
     static constexpr std::size_t regions = 64;
-    static constexpr std::uint32_t max_sources = 1u << 30;  // width of Deposit::source
-    static constexpr std::size_t enough_sources = 8192;     // a quarter of a second-level cache
+    static constexpr std::uint32_t max_payloads = 1u << 30;  // width of Deposit::payload
+    static constexpr std::size_t enough_payloads = 8192;     // a quarter of a second-level cache
 
     static constexpr std::size_t max_kept = std::size_t{1} << 20;  // elements
 

@@ -8,7 +8,7 @@ namespace interflect::detail {
 void Descent::deposit(std::uint32_t source, const Contribution& contribution,
                       std::span<const std::int64_t> power_by_group, std::span<const Ray> rays,
                       std::span<const Parameters> origins, std::span<const Hit> hits, float transmitted) {
-    const std::uint32_t payload = buffer_.add_source(contribution, power_by_group);
+    const std::uint32_t payload = buffer_.add_payload(contribution, power_by_group);
     sources_in_task_.push_back({source, 0, transmitted});
     const auto source_in_task = static_cast<std::uint32_t>(sources_in_task_.size() - 1);
     bool has_path = false;  // one for all rays of a leaf
@@ -16,14 +16,14 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution,
         if (hits[r].patch == none) {
             count_escaped(contribution);
         } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
-            buffer_.add(hits[r].patch, payload, Terms::both);
+            buffer_.add(hits[r].patch, payload, Terms::both);  // absent terms are 0
             if (step_.reflects_where_received(hits[r].patch)) {
                 const V3f point = rays[r].origin + hits[r].distance * rays[r].direction;
                 add_start_point(hits[r].patch, forest_.geometry(hits[r].patch).parameters_of(point), contribution);
             }
             if (found_importance_) add_found_importance(source_in_task, hits[r].patch, hits[r].patch);
         } else {
-            while (open_count_ == lanes) advance();
+            while (active_count_ == lanes) advance();
             const bool is_luminaire_part = source >= old_size_;
             if (refines_ && is_luminaire_part)
                 path_ = source_paths_.append_part(source - old_size_, rays[r], hits[r]);
@@ -43,10 +43,10 @@ void Descent::prefetch(const Hit& hit) const {
     if (step_.oracle.by_importance) __builtin_prefetch(&step_.oracle.importance[hit.patch]);
 }
 
-void Descent::finish_batch() {
-    while (open_count_ > 0) advance();
+void Descent::finish_task() {
+    while (active_count_ > 0) advance();
     source_paths_.clear();
-    buffer_.release_sources();
+    buffer_.release_payloads();
     if (found_importance_)
         for (const auto& [source, found, transmitted] : sources_in_task_)
             found_importance_->add(source, found * double{transmitted});
@@ -60,12 +60,12 @@ Escaped Descent::finish() {
 
 void Descent::begin(std::uint32_t payload, std::uint32_t source_in_task, const Ray& ray, const Parameters& start,
                     const Hit& hit) {
-    const std::size_t i = open_[open_count_++];
+    const std::size_t i = active_[active_count_++];
     const PatchGeometry& geometry = forest_.geometry(hit.patch);
     const PatchGeometry::Shape& shape = geometry.shape();
     const Parameters p = geometry.parameters_of(ray.origin + hit.distance * ray.direction);
     rays_[i] = {payload, hit.patch, source_in_task, start};
-    pairs_.origin.set(i, shape.origin);
+    pairs_.patch_origin.set(i, shape.origin);
     pairs_.edge_u.set(i, shape.edge_u);
     pairs_.edge_v.set(i, shape.edge_v);
     pairs_.twist.set(i, shape.twist);
@@ -87,23 +87,24 @@ void Descent::begin(std::uint32_t payload, std::uint32_t source_in_task, const R
 /// power; a ray with importance for leaves continues to its leaf.
 void Descent::advance() {
     Lanes selected, kept;
-    for (const std::uint32_t i : open()) look_up_receiver(i);
+    for (const std::uint32_t i : active()) look_up_receiver(i);
     if (refines_) {
         for (const std::uint32_t i :
-             open_lanes_if(selected, [&](auto i) { return SourcePaths::is_too_large(pairs_, i); }))
-            source_paths_.choose(pairs_, i, rays_[i].reflectance);
+             active_lanes_if(selected, [&](auto i) { return SourcePaths::shooter_is_too_large(pairs_, i); }))
+            source_paths_.choose_shooter(pairs_, i, rays_[i].reflectance);
         pairs_.evaluate_oracle(step_.oracle);
     }
     pairs_.choose_next(needs_leaf_, old_size_);
-    for (const std::uint32_t i : open_lanes_if(selected, [&](std::size_t i) { return pairs_.needs_children[i] != 0; }))
+    for (const std::uint32_t i :
+         active_lanes_if(selected, [&](std::size_t i) { return pairs_.needs_children[i] != 0; }))
         provide_children(i);
-    const auto arrived = open_lanes_if(selected, [&](std::size_t i) { return pairs_.continues[i] == 0; });
-    const auto continuing = open_lanes_if(kept, [&](std::size_t i) { return pairs_.continues[i] != 0; });
+    const auto arrived = active_lanes_if(selected, [&](std::size_t i) { return pairs_.continues[i] == 0; });
+    const auto continuing = active_lanes_if(kept, [&](std::size_t i) { return pairs_.continues[i] != 0; });
     for (const std::uint32_t i : arrived) deposit_ray(i);
-    std::copy(arrived.begin(), arrived.end(), std::copy(continuing.begin(), continuing.end(), open_.begin()));
-    open_count_ = continuing.size();
+    std::copy(arrived.begin(), arrived.end(), std::copy(continuing.begin(), continuing.end(), active_.begin()));
+    active_count_ = continuing.size();
     pairs_.descend();
-    for (const std::uint32_t i : open()) {
+    for (const std::uint32_t i : active()) {
         const std::uint32_t element = pairs_.receiver[i];
         forest_.prefetch(element);
         if (step_.oracle.by_importance)
@@ -112,9 +113,9 @@ void Descent::advance() {
 }
 
 template <class Condition>
-inline std::span<const std::uint32_t> Descent::open_lanes_if(Lanes& found, const Condition& condition) const {
+inline std::span<const std::uint32_t> Descent::active_lanes_if(Lanes& found, const Condition& condition) const {
     std::size_t count = 0;
-    for (const std::uint32_t i : open()) {
+    for (const std::uint32_t i : active()) {
         found[count] = i;
         count += condition(i);
     }
@@ -144,19 +145,19 @@ void Descent::provide_children(std::size_t i) {
 
 void Descent::deposit_ray(std::size_t i) {
     const auto& [payload, patch, source_in_task, start, reflectance] = rays_[i];
-    std::uint32_t leaf = pairs_.receiver[i];  // in the mesh before the step
-    while (leaf >= old_size_) leaf = forest_.parent(leaf);
-    const std::uint32_t power_receiver = refines_ ? pairs_.power_receiver[i] : leaf;
-    const std::uint32_t importance_receiver = step_.importance_at_patches ? patch : leaf;
+    std::uint32_t old_receiver = pairs_.receiver[i];
+    while (old_receiver >= old_size_) old_receiver = forest_.parent(old_receiver);
+    const std::uint32_t power_receiver = refines_ ? pairs_.power_receiver[i] : old_receiver;
+    const std::uint32_t importance_receiver = step_.importance_at_patches ? patch : old_receiver;
     if (step_.carries_power() && step_.carries_importance() && power_receiver == importance_receiver) {
         buffer_.add(power_receiver, payload, Terms::both);
     } else {
         if (step_.carries_power()) buffer_.add(power_receiver, payload, Terms::power);
         if (step_.carries_importance()) buffer_.add(importance_receiver, payload, Terms::importance);
     }
-    if (found_importance_) add_found_importance(source_in_task, patch, leaf);
-    if (step_.reflects_where_received(leaf))
-        add_start_point(leaf, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(payload));
+    if (found_importance_) add_found_importance(source_in_task, patch, old_receiver);
+    if (step_.reflects_where_received(old_receiver))
+        add_start_point(old_receiver, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(payload));
 }
 
 void Descent::add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution) {
@@ -165,9 +166,9 @@ void Descent::add_start_point(std::uint32_t leaf, const Parameters& at, const Co
     if (power > 0) start_points_.push_back({leaf, power, at});
 }
 
-inline void Descent::add_found_importance(std::uint32_t source_in_task, std::uint32_t patch, std::uint32_t leaf) {
+inline void Descent::add_found_importance(std::uint32_t source_in_task, std::uint32_t patch, std::uint32_t element) {
     sources_in_task_[source_in_task].found +=
-        static_cast<double>(materials_.mean_reflectance(patch, leaf) * step_.importance[leaf]);
+        static_cast<double>(materials_.mean_reflectance(patch, element) * step_.importance[element]);
 }
 
 }  // namespace interflect::detail

@@ -51,7 +51,7 @@ class Descent {
           buffer_(sums),
           found_importance_(importance),
           source_paths_(forest, step) {
-        std::iota(open_.begin(), open_.end(), 0u);
+        std::iota(active_.begin(), active_.end(), 0u);
         pairs_.next.fill(none);
     }
 
@@ -63,11 +63,10 @@ class Descent {
                  std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
                  float transmitted = 1);
     void prefetch(const Hit& hit) const;
-    /// Call at the end of each task.
-    void finish_batch();
+    void finish_task();
     void deposit_at(std::uint32_t leaf, const Contribution& contribution,
                     std::span<const std::int64_t> power_by_group) {
-        buffer_.add(leaf, buffer_.add_source(contribution, power_by_group), Terms::power);
+        buffer_.add(leaf, buffer_.add_payload(contribution, power_by_group), Terms::power);
     }
     void count_escaped(const Contribution& contribution) {
         for (std::size_t c = 0; c < 3; ++c) escaped_.power[c] += contribution[c];
@@ -86,9 +85,9 @@ class Descent {
     };
 
     using Lanes = std::array<std::uint32_t, lanes>;
-    std::span<const std::uint32_t> open() const { return std::span(open_).first(open_count_); }
+    std::span<const std::uint32_t> active() const { return std::span(active_).first(active_count_); }
     template <class Condition>
-    std::span<const std::uint32_t> open_lanes_if(Lanes& found, const Condition& condition) const;
+    std::span<const std::uint32_t> active_lanes_if(Lanes& found, const Condition& condition) const;
     void begin(std::uint32_t payload, std::uint32_t source_in_task, const Ray& ray, const Parameters& start,
                const Hit& hit);
     void advance();
@@ -96,7 +95,7 @@ class Descent {
     void provide_children(std::size_t i);
     void deposit_ray(std::size_t i);
     void add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution);
-    void add_found_importance(std::uint32_t source_in_task, std::uint32_t patch, std::uint32_t leaf);
+    void add_found_importance(std::uint32_t source_in_task, std::uint32_t patch, std::uint32_t element);
 
     const Materials& materials_;
     ElementForest& forest_;
@@ -115,8 +114,8 @@ class Descent {
     std::vector<SourceInTask> sources_in_task_;
     RayPairs pairs_{};
     std::array<RayState, lanes> rays_;
-    Lanes open_;  // `open_count_` lanes in use, then free lanes
-    std::size_t open_count_ = 0;
+    Lanes active_;  // `active_count_` lanes in use, then free lanes
+    std::size_t active_count_ = 0;
     SourcePaths source_paths_;
     SourcePaths::Path path_;
 };

@@ -9,8 +9,8 @@ void RayPairs::evaluate_oracle(const Oracle& oracle) {
     const float divisible_area = 4 * oracle.min_area;
     for (std::size_t i = 0; i < lanes; ++i) {
         const Cell cell{u[i], v[i], size[i]};
-        const V3f centre =
-            PatchGeometry::Shape{origin[i], edge_u[i], edge_v[i], twist[i]}.point(cell.centre(is_triangle[i] != 0));
+        const V3f centre = PatchGeometry::Shape{patch_origin[i], edge_u[i], edge_v[i], twist[i]}.point(
+            cell.centre(is_triangle[i] != 0));
         const ElementProxy from{shooter_centre[i], shooter_normal[i], shooter_area[i], shooter_least_cosine[i]};
         const ElementProxy to{centre, normal[i], area[i]};
         const bool is_small = (from.area < divisible_area) & (to.area < divisible_area);

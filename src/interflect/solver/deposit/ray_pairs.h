@@ -21,7 +21,7 @@ struct alignas(64) RayPairs {
     };
 
     // The hit patch (PatchGeometry::Shape) and point.
-    Vectors origin, edge_u, edge_v, twist;
+    Vectors patch_origin, edge_u, edge_v, twist;
     Numbers is_triangle;
     Floats hit_u, hit_v;
     // Receiver: the current element around the hit.

@@ -34,14 +34,14 @@ class SourcePaths {
         take(pairs, i, path.first, reflectance);
     }
 
-    static bool is_too_large(const RayPairs& pairs, std::size_t i) {
+    static bool shooter_is_too_large(const RayPairs& pairs, std::size_t i) {
         const float shooter = pairs.shooter_area[i], receiver = pairs.area[i];
         const std::uint32_t number = pairs.shooter[i], lowest = pairs.lowest_shooter[i];
         return (shooter > receiver) & (number < lowest);
     }
 
     /// Selects the largest shooter not larger than the receiver, or the lowest. Larger ones give the same power.
-    void choose(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
+    void choose_shooter(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
         while (number < pairs.lowest_shooter[i] && sources_[number].area > pairs.area[i]) ++number;
         take(pairs, i, number, reflectance);

@@ -14,18 +14,17 @@ namespace interflect::detail {
 struct TransportStep : RayPlan {
     explicit TransportStep(RayPlan plan = {}) : RayPlan(std::move(plan)) {}
 
-    Radiosity known_light;  ///< Radiosity for the oracle; empty: `light`.
-    const Radiosity& light_for_oracle() const { return known_light.empty() ? light : known_light; }
+    Radiosity oracle_light;  ///< Empty: `light`.
+    const Radiosity& light_for_oracle() const { return oracle_light.empty() ? light : oracle_light; }
     bool importance_at_patches = false;
     Oracle oracle;
-    /// See Walks.
     bool completes_by_walks = false;
     /// Nonzero for leaves that reflect where they receive (StartPoints); may be empty.
     std::span<const std::uint8_t> reflecting_where_received;
     bool reflects_where_received(std::uint32_t leaf) const {
         return !reflecting_where_received.empty() && reflecting_where_received[leaf] != 0;
     }
-    /// Buffer to reuse after tracing, or null.
+    /// Reused after tracing; may be null.
     std::vector<Rgb>* reusable_buffer = nullptr;
     /// Inner elements receive 0. Not with a refining oracle.
     bool leaves_only = false;

@@ -20,7 +20,7 @@ double fraction_done(const Limits& limits, const IterationReport& report) {
 
 }  // namespace
 
-void report(SolverState& state, int iteration) {
+void append_report(SolverState& state, int iteration) {
     IterationReport r;
     r.iteration = iteration;
     r.seconds = state.seconds();

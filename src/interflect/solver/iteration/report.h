@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// Appends an IterationReport and calls the monitor.
-void report(SolverState& state, int iteration);
+/// Also calls the monitor.
+void append_report(SolverState& state, int iteration);
 
 }  // namespace interflect::detail

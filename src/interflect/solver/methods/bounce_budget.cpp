@@ -13,15 +13,18 @@ constexpr double fewest_rays_of_bounce = 2;
 constexpr double min_share_left = 0.05;
 /// Fewer make small passes noisy. Rays beyond the plan are not counted.
 constexpr std::int64_t fewest_walks = 32;
-/// Value of bounces() until measured.
+/// Value of total_unshot() until measured.
 constexpr double assumed_bounces = 2;
 /// Expected ratio of unshot power between bounces: first; after an increase; maximum.
 constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, highest_decay = 0.99;
 
 }  // namespace
 
-BounceBudget::BounceBudget(std::int64_t rays, double bounces)
-    : rays_(rays), left_(rays), bounces_(bounces > 0 ? bounces : assumed_bounces), is_known_(bounces > 0) {}
+BounceBudget::BounceBudget(std::int64_t rays, double previous_total)
+    : rays_(rays),
+      left_(rays),
+      previous_total_(previous_total > 0 ? previous_total : assumed_bounces),
+      is_measured_(previous_total > 0) {}
 
 BounceRays BounceBudget::next(double unshot) {
     const double left = static_cast<double>(left_);
@@ -29,12 +32,12 @@ BounceRays BounceBudget::next(double unshot) {
     decay_ = ratio < 1 ? std::min(highest_decay, ratio) : decay_while_it_grows;
     last_unshot_ = unshot;
     // Unshot power from here on: as in the previous pass, or a geometric series.
-    const double geometric = unshot / (1 - decay_), planned = is_known_ ? bounces_ - unshot_sum_ : geometric;
+    const double geometric = unshot / (1 - decay_), planned = is_measured_ ? previous_total_ - unshot_sum_ : geometric;
     // Later bounces keep a tenth, for light that the previous pass did not find.
-    const double to_come = is_known_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;
-    const double share = std::min(left * unshot / to_come, static_cast<double>(rays_) * unshot / bounces_);
+    const double to_come = is_measured_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;
+    const double share = std::min(left * unshot / to_come, static_cast<double>(rays_) * unshot / previous_total_);
     const double to_walk = std::max(planned, geometric);
-    is_last_ = share < fewest_rays_of_bounce || share + 1 > left || to_walk < min_share_left * bounces_;
+    is_last_ = share < fewest_rays_of_bounce || share + 1 > left || to_walk < min_share_left * previous_total_;
     const double starting = is_last_ ? left * unshot / to_walk : share;  // a walk has to_walk / unshot rays
     const std::int64_t fewest = is_last_ ? fewest_walks : 1;
     const std::int64_t started = std::max<std::int64_t>(fewest, std::llround(starting));

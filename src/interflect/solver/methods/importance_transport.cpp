@@ -17,12 +17,12 @@ constexpr double negligible_importance = 0.005;
 
 }  // namespace
 
-void find_importance(SolverState& state, std::int64_t rays) {
+void transport_importance(SolverState& state, std::int64_t rays) {
     Solution& solution = state.solution;
     std::vector<float> unshot = solution.view_importance;
     BounceBudget budget(rays, 0);
     double left = 1;  // importance received in a bounce; initially all of V
-    while (left > negligible_importance && !budget.has_ended()) {
+    while (left > negligible_importance && !budget.has_planned_last_bounce()) {
         TransportStep step(plan_importance(state.materials, solution, Importance(unshot),
                                            std::max<std::int64_t>(1, budget.next(left).expected)));
         state.importance_rays += step.rays;

@@ -45,7 +45,7 @@ Estimate OneBounce::trace(SolverState& state, IterationPlan& plan) {
     step.groups = group_radiosity(state, solution.groups);
     const bool is_deferred = state.options.experimental.defer_refinement && plan.warms_up;
     if (state.options.method.refines && !is_deferred)
-        step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.min_invisible_area());
+        step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.default_min_area());
     Received received = run_step(state, std::move(step));
     state.solution.non_finite += power.non_finite_leaves;
     return {.irradiance = std::move(received.irradiance),

@@ -25,9 +25,9 @@ namespace {
 /// One ray each for importance, the two passes of prepare() and an iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Returns unshot power relative to the first bounce; with importance, its mean (weight `beta`) with the same ratio of
-/// importance-weighted power.
-double unshot_weight(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
+/// Returns beta p + (1 - beta) w, with unshot power p and importance-weighted power w relative to the first bounce;
+/// without importance, p.
+double relative_unshot(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
     if (!(first_weighted_power > 0)) return power;
@@ -35,13 +35,15 @@ double unshot_weight(const PowerPlan& bounce, double first_power, double first_w
 }
 
 Estimate zero_estimate(const SolverState& state) {
-    Estimate zero{std::vector<Rgb>(state.forest->size(), Rgb(0)), std::vector<float>(state.forest->size(), 0.0f)};
+    const std::size_t elements = state.forest->size();
+    Estimate zero{.irradiance = std::vector<Rgb>(elements, Rgb(0)), .variance = std::vector<float>(elements, 0.0f)};
     zero.groups.assign(state.groups.size(), zero.irradiance);
-    if (state.options.keep_direct) zero.direct.assign(std::max<std::size_t>(1, state.groups.size()), zero.irradiance);
+    const std::size_t direct_parts = std::max<std::size_t>(1, state.groups.size());  // one without groups
+    if (state.options.keep_direct) zero.direct.assign(direct_parts, zero.irradiance);
     return zero;
 }
 
-/// May move `received.variance`, but not the irradiance, which the next bounce reflects.
+/// May move `received.variance`; the next bounce reflects the irradiance.
 void add(Estimate& sum, Received& received) {
     sum.escaped_power += received.escaped_power;
     accumulate(sum.groups, received.groups);
@@ -74,24 +76,24 @@ bool oracle_refines_passes(const SolverState& state) {
 }  // namespace
 
 void Passes::prepare(SolverState& state) {
-    set_estimate(state, zero_estimate(state));  // an interrupted preparation may have left light
+    set_estimate(state, zero_estimate(state));  // IterationStart keeps the light of an interrupted preparation
     if (state.options.limits.rays < fewest_rays_with_preparation) return;
     const std::int64_t rays = state.schedule.start_rays();
-    bounces_ = 0;
-    if (importance_use(state.solution) == ImportanceUse::full) find_importance(state, rays);
+    total_unshot_ = 0;
+    if (importance_use(state.solution) == ImportanceUse::full) transport_importance(state, rays);
     aim_outdoor_light(state);
     if (state.options.method.refines)  // the first pass estimates the light that the oracle needs
         for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));
-    aim_outdoor_light(state);
+    aim_outdoor_light(state);  // again: passes improve importance
     state.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state));
-    if (rays_so_far(state) > 0) report(state, 0);
+    if (rays_so_far(state) > 0) append_report(state, 0);
 }
 
 void Passes::update_importance(SolverState& state, IterationPlan& plan) {
     if (importance_use(state.solution) != ImportanceUse::full) return;
     if (needs_importance_) {
         const std::int64_t rays_before = rays_so_far(state);
-        find_importance(state, state.schedule.start_rays());
+        transport_importance(state, state.schedule.start_rays());
         aim_outdoor_light(state);
         if (!view_change_.empty()) plan.history_factor = view_change_.history_factor(state);
         plan.rays_for_new_views = rays_so_far(state) - rays_before;
@@ -138,7 +140,7 @@ struct Passes::Pass {
     const bool oracle_refines;
     BounceBudget budget;
     ImportanceWeights weights;
-    /// See leaves_reflecting_where_received(). Empty while the oracle refines.
+    /// Nonzero for leaves whose rays start at hit points (StartPoints). Empty while the oracle refines.
     std::vector<std::uint8_t> reflecting_where_received = {};
     bool emits = true;             ///< Whether the next bounce shoots emitted power.
     std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
@@ -151,43 +153,46 @@ struct Passes::Pass {
 /// @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
     state.payloads = {};  // reported for the last pass only
-    Pass pass{rays, oracle_refines, BounceBudget(rays, bounces_),
+    Pass pass{rays, oracle_refines, BounceBudget(rays, total_unshot_),
               importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance)};
     pass.unshot.assign(state.forest->size(), Rgb(0));
     pass.unshot_groups.assign(state.groups.size(), pass.unshot);
     if (!oracle_refines) pass.reflecting_where_received = leaves_reflecting_where_received(state);
-    while (!pass.budget.has_ended() && trace_bounce(state, pass)) {
+    while (!pass.budget.has_planned_last_bounce() && trace_bounce(state, pass)) {
     }
-    bounces_ = pass.budget.bounces();
+    total_unshot_ = pass.budget.total_unshot();
     Estimate& sum = pass.sum;
     if (sum.irradiance.empty()) sum = zero_estimate(state);  // no power to shoot
-    if (!oracle_refines) {  // TransportStep::leaves_only: inner elements are still empty
+    if (!oracle_refines) {
+        // Inner elements are still empty.
         pull(*state.forest, sum.irradiance), pull_variance(*state.forest, sum.variance);
         pull(*state.forest, sum.groups), pull(*state.forest, sum.direct);
     }
     return std::move(sum);
 }
 
-/// @return  False if no unshot light or no rays are left.
+/// @return  False if no unshot light or rays are left.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     Solution& solution = state.solution;
     // Only the first bounce, with the most rays, transports importance.
     const bool carries_importance = pass.emits && importance_use(solution) == ImportanceUse::full &&
                                     !state.options.experimental.separate_iterations;
     const Radiosity light(state.materials, pass.unshot, pass.emits);
+    // The number of rays follows from the planned power.
     PowerPlan bounce =
         plan_power(state.materials, state.emission, solution, light, pass.weights, carries_importance, /*rays=*/0);
     solution.non_finite += bounce.non_finite_leaves;
     if (pass.emits) pass.first_power = bounce.power, pass.first_weighted_power = bounce.weighted_power;
-    const double weight =
-        unshot_weight(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
-    const BounceRays rays = bounce.power > 0 ? pass.budget.next(weight) : BounceRays();
+    const double unshot =
+        relative_unshot(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
+    const BounceRays rays = bounce.power > 0 ? pass.budget.next(unshot) : BounceRays();
     if (rays.expected == 0) return false;
 
-    bounce.plan.rays = rays.started;
+    bounce.plan.rays = rays.started;  // walks trace the others
     TransportStep step = make_step(state, pass, std::move(bounce.plan));
     const std::uint32_t old_elements = state.forest->size();
-    Received received = step.completes_by_walks ? run_step(state, std::move(step)) : trace_step(state, std::move(step));
+    Received received =
+        step.completes_by_walks ? run_step(state, std::move(step)) : trace_without_walks(state, std::move(step));
 
     // Eq. 11: the share alpha of the rays is sampled by importance.
     const double importance_share = carries_importance ? state.options.experimental.alpha : 0;
@@ -212,14 +217,14 @@ TransportStep Passes::make_step(const SolverState& state, Pass& pass, RayPlan pl
     TransportStep step(std::move(plan));
     step.groups = group_radiosity(state, pass.unshot_groups, pass.emits);
     step.start_points = &pass.start_points;
-    step.known_light = Radiosity(state.materials, state.solution.irradiance);
-    step.completes_by_walks = pass.budget.has_ended();
+    step.oracle_light = Radiosity(state.materials, state.solution.irradiance);
+    step.completes_by_walks = pass.budget.has_planned_last_bounce();
     step.reflecting_where_received = pass.reflecting_where_received;
     step.leaves_only = !pass.oracle_refines;
     if (pass.oracle_refines)
         step.oracle =
-            make_oracle(state.solution, state.schedule.averaged_rays() + pass.rays, state.floor.min_invisible_area());
-    step.reusable_buffer = &pass.unshot;
+            make_oracle(state.solution, state.schedule.averaged_rays() + pass.rays, state.floor.default_min_area());
+    step.reusable_buffer = &pass.unshot;  // after tracing
     return step;
 }
 
@@ -238,20 +243,21 @@ void Passes::make_first_estimate(SolverState& state) {
     set_estimate(state, trace_pass(state, state.schedule.start_rays(), false));
     state.solution.direct.clear();  // the method that continues does not separate direct light
     state.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state));
-    report(state, 0);
+    append_report(state, 0);
 }
 
 void Passes::change_views(SolverState& state) {
-    const bool keeps_light =
+    const bool adapts_history =
         state.schedule.averaged_rays() > 0 && importance_use(state.solution) == ImportanceUse::full;
-    if (keeps_light && view_change_.empty()) view_change_.record(state);
+    if (adapts_history && view_change_.empty()) view_change_.record(state);
     IterationMethod::change_views(state);
-    needs_importance_ = !state.solution.iterations.empty() && importance_use(state.solution) == ImportanceUse::full;
+    const bool has_begun = !state.solution.iterations.empty();  // otherwise, prepare() transports importance
+    needs_importance_ = has_begun && importance_use(state.solution) == ImportanceUse::full;
     if (!needs_importance_) view_change_.clear();
 }
 
 void Passes::archive(StateArchive& archive) {
-    archive("passes/bounces", bounces_);
+    archive("passes/bounces", total_unshot_);
     archive("passes/finds_importance", needs_importance_);
     view_change_.archive(archive);
 }

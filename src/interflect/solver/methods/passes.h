@@ -28,8 +28,10 @@ class Passes : public IterationMethod {
     void make_first_estimate(SolverState& state);
 
   protected:
-    /// Traces the rays of a bounce, unless random walks complete it. @throws Interrupted
-    virtual Received trace_step(SolverState& state, TransportStep step) { return run_step(state, std::move(step)); }
+    /// Traces a bounce. @throws Interrupted
+    virtual Received trace_without_walks(SolverState& state, TransportStep step) {
+        return run_step(state, std::move(step));
+    }
 
   private:
     struct Pass;
@@ -38,9 +40,9 @@ class Passes : public IterationMethod {
     static TransportStep make_step(const SolverState& state, Pass& pass, RayPlan plan);
     static void grow_pass(const ElementForest& forest, std::uint32_t first, Pass& pass);
 
-    /// BounceBudget::bounces() of the last pass; 0: unknown.
-    double bounces_ = 0;
-    bool needs_importance_ = false;  // the next iteration starts with find_importance()
+    /// BounceBudget::total_unshot() of the last pass; 0: unknown.
+    double total_unshot_ = 0;
+    bool needs_importance_ = false;  // the next iteration starts with transport_importance()
     ViewChange view_change_;
 };
 

@@ -35,7 +35,7 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
 double reference_power(const Solution& so_far) {
     const ElementForest& forest = *so_far.forest;
     if (so_far.view_importance.empty()) return channel_sum(so_far.emitted_power) / 3;
-    double mean_irradiance = 0, visible_area = 0;  // of the picture [lm/m^2 or W/m^2]; [m^2]
+    double mean_irradiance = 0, visible_area = 0;  // of the picture, as V sums to 1 [lm/m^2 or W/m^2]; [m^2]
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
         if (!(so_far.view_importance[i] > 0)) continue;
         mean_irradiance += static_cast<double>(so_far.view_importance[i]) * forest.area(i) *

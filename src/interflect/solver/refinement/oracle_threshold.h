@@ -8,7 +8,6 @@
 
 namespace interflect::detail {
 
-/// Makes the oracle of Eq. 14 or 15.
 /// @param rays      In the running mean after this step, > 0.
 /// @param min_area  Of elements [m^2].
 Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area);

@@ -59,7 +59,7 @@ class VarianceOracle {
         const bool blurs =
             weight(leaf) * static_cast<double>(signal) > min_gain && forest_.area(leaf) >= 4 * min_area(state_, leaf);
         const bool misplaces = misplaced_power(leaf, signal) > min_misplaced_power_ &&
-                               forest_.area(leaf) >= 4 * state_.floor.min_invisible_area();
+                               forest_.area(leaf) >= 4 * state_.floor.default_min_area();
         return blurs || misplaces;
     }
 

@@ -18,7 +18,7 @@ constexpr float min_cosine = 0.1f;
 
 ElementFloor::ElementFloor(const Scene& scene, const SolveOptions& options)
     : is_given_(options.refinement.min_area > 0) {
-    min_invisible_area_ =
+    default_min_area_ =
         static_cast<float>(is_given_ ? options.refinement.min_area : std::pow(default_element_size(scene), 2));
     for (const WeightedView& w : options.views) {
         const double height = 2 * std::tan(0.5 * static_cast<double>(w.view.fov) * std::numbers::pi / 180);
@@ -38,7 +38,7 @@ float ElementFloor::pixel_area(const V3f& centre, const V3f& normal) const {
 }
 
 float ElementFloor::min_area(const V3f& centre, const V3f& normal, bool is_seen) const {
-    return !is_seen || is_given_ || cameras_.empty() ? min_invisible_area_ : pixel_area(centre, normal);
+    return !is_seen || is_given_ || cameras_.empty() ? default_min_area_ : pixel_area(centre, normal);
 }
 
 }  // namespace interflect::detail

@@ -15,12 +15,12 @@ class ElementFloor {
     /// Smallest area that a pixel of any view covers [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// RefinementOptions::min_area if given, else pixel_area() if a view sees the element, else min_invisible_area()
+    /// RefinementOptions::min_area if given, else pixel_area() if a view sees the element, else default_min_area()
     /// [m^2].
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
     /// Returns default_element_size() squared, or RefinementOptions::min_area if given [m^2].
-    float min_invisible_area() const { return min_invisible_area_; }
+    float default_min_area() const { return default_min_area_; }
 
   private:
     struct ViewPoint {
@@ -28,7 +28,7 @@ class ElementFloor {
         float pixel;  // width at distance 1
     };
     std::vector<ViewPoint> cameras_;
-    float min_invisible_area_;
+    float default_min_area_;
     bool is_given_;
 };
 

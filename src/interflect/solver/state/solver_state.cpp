@@ -61,7 +61,7 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
 void SolverState::begin_work(const Monitor& m) {
     monitor = m;
     stop = StopRequest(m.stop);
-    start = StopRequest::Clock::now();
+    start_of_this_call = StopRequest::Clock::now();
 }
 
 void set_sources(SolverState& state, const Scene& lit) {

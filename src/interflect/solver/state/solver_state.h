@@ -65,13 +65,13 @@ struct SolverState {
     // The work in progress:
     Monitor monitor;
     StopRequest stop;  // after a first estimate, also by the time limit
-    StopRequest::Clock::time_point start;
+    StopRequest::Clock::time_point start_of_this_call;
     double earlier_seconds = 0;
 
     void begin_work(const Monitor& m);
     void end_work() { earlier_seconds = seconds(); }
     double seconds_of_this_call() const {
-        return std::chrono::duration<double>(StopRequest::Clock::now() - start).count();
+        return std::chrono::duration<double>(StopRequest::Clock::now() - start_of_this_call).count();
     }
     /// Includes earlier calls [s].
     double seconds() const { return earlier_seconds + seconds_of_this_call(); }

@@ -145,7 +145,7 @@ void deposit(const TransportStep& step, const StepData& data, ThreadBuffers& buf
         deposit_behind_panes(step, data, source, behind.first(count), buffers);
         behind = behind.subspan(count);
     }
-    descent.finish_batch();
+    descent.finish_task();
 }
 
 /// @param first_ray  Of the batch; key of the random numbers.

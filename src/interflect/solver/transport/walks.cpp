@@ -43,7 +43,7 @@ void Walks::follow(std::uint64_t task, Walkers& walkers, Descent& descent) const
         shoot(mix(reflection, bounce), walkers);
         receive(walkers, descent);
     }
-    descent.finish_batch();
+    descent.finish_task();
 }
 
 /// Russian roulette with survival probability p: the reflected share of its ray's power (all channels). Divides the

@@ -194,7 +194,7 @@ class GlobalLines final : public Passes {
     }
 
   protected:
-    Received trace_step(SolverState& state, TransportStep step) override {
+    Received trace_without_walks(SolverState& state, TransportStep step) override {
         const double rays_per_line = 1 + 2 * area_ / (4 * domain_.cross_section());
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.forest;

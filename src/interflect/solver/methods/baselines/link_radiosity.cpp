@@ -255,7 +255,7 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
 }
 
 bool LinkedElements::may_divide(std::uint32_t element) const {
-    return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.min_invisible_area());
+    return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.default_min_area());
 }
 
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {

@@ -74,7 +74,7 @@ Estimate WellDistributedRays::trace(SolverState& state, IterationPlan& plan) {
     keep_lacking_rays(forest, total_ + plan.rays, step);
     const std::int64_t rays = plan.rays = plan.traced = step.rays;
     if (state.options.method.refines)
-        step.oracle = make_oracle(state.solution, total_ + rays, state.floor.min_invisible_area());
+        step.oracle = make_oracle(state.solution, total_ + rays, state.floor.default_min_area());
 
     std::vector<std::uint64_t> used_before = state.streams.used, used_by_parts_before = state.streams.used_by_parts;
     used_by_parts_before.resize(shot_by_parts_.size(), 0);
