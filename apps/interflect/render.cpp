@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -11,11 +12,13 @@
 #include "apps/interflect/cut_options.h"
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/drawing_progress.h"
+#include "apps/interflect/drawing_time.h"
 #include "apps/interflect/false_colour_options.h"
 #include "apps/interflect/light_group_options.h"
 #include "apps/interflect/long_work.h"
 #include "apps/interflect/machine_memory.h"
 #include "apps/interflect/parse.h"
+#include "apps/interflect/progress.h"
 #include "apps/interflect/read_light.h"
 #include "apps/interflect/refused_options.h"
 #include "apps/interflect/run_path_tracer.h"
@@ -80,6 +83,8 @@ struct RenderArguments {
     bool shows_irradiance() const { return false_colour.measured == Measured::illuminance; }
     /// Height of the view, above the legend [pixels].
     int rows() const { return size.height - legend_rows; }
+    /// Time left to the command [s]; infinite without --time.
+    double seconds_left() const { return solver.time() - seconds_of_process(); }
 };
 
 /// Returns the requested view, the scene's first, or an overview.
@@ -156,12 +161,16 @@ PathOptions path_options(const RenderArguments& options) {
     return result;
 }
 
-/// @param solution  Null for path tracing.
+Tracer tracer_of(const RenderArguments& options) {
+    return options.shading == PictureShading::hybrid ? render_hybrid : gather;
+}
+
+/// @param solution  Null for path tracing. @param time  As PathOptions::time.
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-                   const RenderArguments& options) {
-    const Tracer tracer = options.shading == PictureShading::hybrid ? render_hybrid : gather;
-    PathTracing traced =
-        run_path_tracer(scene, solution, tracer, ray_caster, view, path_options(options), options.path);
+                   const RenderArguments& options, double time = PathOptions().time) {
+    PathOptions tracing = path_options(options);
+    tracing.time = time;
+    PathTracing traced = run_path_tracer(scene, solution, tracer_of(options), ray_caster, view, tracing, options.path);
     Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
     picture.traced = std::move(traced);
     return picture;
@@ -220,9 +229,11 @@ std::array<NamedFile, 3> outputs_of(const RenderArguments& options) {
         {{"--output", options.output}, {"--stats", options.solver.stats}, {"--error-image", options.path.error_image}}};
 }
 
-/// Whether coarser pictures may precede the final one: not in formats for numbers, pipes and devices.
+/// Whether coarser pictures may precede the final one: not within a time limit, in formats for numbers, pipes and
+/// devices.
 bool takes_previews(const RenderArguments& options) {
     constexpr std::size_t fewest_pixels = 1 << 16;  // smaller pictures take less than a second
+    if (std::isfinite(options.solver.time())) return false;
     if (!is_for_people(options) || options.shown != Shown::light || options.size.pixels() < fewest_pixels) return false;
     std::error_code unknown;
     const auto status = std::filesystem::status(options.output, unknown);
@@ -246,6 +257,31 @@ void write_preview(const Scene& scene, const Solution& solution, const RayCaster
     spdlog::info("{}: picture so far; a better one will replace it", options.output.string());
 }
 
+bool needs_paths(const RenderArguments& options) { return options.path.layers || !options.path.error_image.empty(); }
+
+/// Predicts the time of drawing. Changes to smooth shading with few samples if the time is too short.
+DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                         RenderArguments& options) {
+    constexpr double largest_share = 0.8;
+    constexpr int few_samples = 4;
+    if (traces_paths(options.shading)) {
+        const DrawingTime paths = predict_time_of_paths(scene, solution, ray_caster, view, tracer_of(options),
+                                                        path_options(options), options.path.denoise);
+        const double left = options.seconds_left();
+        if (paths.total() <= largest_share * left) return paths;
+        const std::string needed = fmt::format("per-pixel shading takes about {}, but --time leaves {}",
+                                               duration(paths.total()), duration(std::max(0.0, left)));
+        if (needs_paths(options)) {
+            spdlog::warn("{}: the picture will be late", needed);
+            return paths;
+        }
+        spdlog::warn("{}: the light is drawn as by --shading smooth; a smaller --size takes less time", needed);
+        options.shading = PictureShading::smooth;
+        options.render.samples = std::min(options.render.samples, few_samples);
+    }
+    return predict_time_of_elements(scene, solution, ray_caster, view, options.render);
+}
+
 /// Draws the light of a solution; solves a scene first.
 void run_solution(RenderArguments& options, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
@@ -256,12 +292,23 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     // A plan shows the whole scene equally: importance has no benefit.
     const std::vector<View> important = options.cut.is_given() ? std::vector<View>() : std::vector{view};
-    const SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
+    SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     StatsFile stats(options.solver.threads, options.solver.stats);
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
+
+    // --time limits the whole command and does not replace the default number of rays.
+    constexpr double shortest_time = 1e-3;  // [s]
+    const bool is_limited = !solved_before && std::isfinite(options.solver.time());
+    double seconds_to_preview = 1;
+    if (is_limited) {
+        const double left = std::max(shortest_time, options.seconds_left());
+        seconds_to_preview = std::min(seconds_to_preview, left / 10);
+        solve_options.limits.time = left / 2;  // until the time of drawing is known
+        if (options.solver.limits_time_only()) solve_options.limits.rays = SolveOptions().limits.rays;
+    }
 
     options.render.width = options.size.width;
     options.render.height = options.rows();
@@ -269,21 +316,29 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     options.render.samples = options.samples.value_or(options.render.samples);
     options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
 
-    constexpr double seconds_to_preview = 1;
-    const auto preview = [&](const Solution& so_far) {
+    std::optional<DrawingTime> planned;
+    const auto plan_or_preview = [&](const Solution& so_far) -> std::optional<Limits> {
         if (takes_previews(options)) write_preview(solved.scene, so_far, ray_caster, view, options);
+        if (!is_limited) return {};
+        planned = plan_drawing(solved.scene, so_far, ray_caster, view, options);
+        const double left = options.seconds_left(),
+                     spent = so_far.iterations.empty() ? 0 : so_far.iterations.back().seconds;
+        Limits limits = solve_options.limits;
+        limits.time = spent + std::max(shortest_time, left - reserved_for(*planned, left));
+        return limits;
     };
     if (!solved_before)
         solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory, {},
-                                    {.after = seconds_to_preview, .use = preview});
-    if (traces_paths(options.shading) && !is_stop_requested()) preview(solved.solution);
+                                    {.after = seconds_to_preview, .use = plan_or_preview});
+    if (traces_paths(options.shading) && !planned && !is_stop_requested()) plan_or_preview(solved.solution);
 
     // A signal that ended the solver would end gathering before its first ray.
-    const bool needs_paths = options.path.layers || !options.path.error_image.empty();
-    const bool gathers = traces_paths(options.shading) && (needs_paths || !is_stop_requested());
+    const bool gathers = traces_paths(options.shading) && (needs_paths(options) || !is_stop_requested());
+    const double time = is_limited && planned ? std::max(shortest_time, options.seconds_left() - planned->finishing)
+                                              : PathOptions().time;
     Picture picture;
-    if (gathers) picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options);
-    const bool is_drawn = gathers && (needs_paths || picture.traced.paths > 0);
+    if (gathers) picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options, time);
+    const bool is_drawn = gathers && (needs_paths(options) || picture.traced.paths > 0);
     if (traces_paths(options.shading) && !is_drawn)
         spdlog::warn("stopped before the first pixel: the light is drawn as by --shading smooth");
     if (!is_drawn)
@@ -447,6 +502,11 @@ void add_render(CLI::App& app, int& exit_code) {
     options->false_colour.add_to(command);
     options->dimming.add_to(command);
     options->solver.add_to(command);
+    command.get_option("--rays")->description(
+        "Most rays to trace in all, such as 20M (default 20M, unless --until is given)");
+    command.get_option("--time")->description(
+        "Most seconds of the whole command, divided between solving and drawing; too short for --shading hybrid: "
+        "smooth");
     options->mesh.add_to(command);
     command.callback([options, &command, &exit_code] { run(*options, command, exit_code); });
 }

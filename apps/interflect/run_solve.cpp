@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "apps/interflect/leaks.h"
@@ -133,7 +134,8 @@ Solution run_to_end(Solver solver, const Checkpoints& checkpoints, const EarlyLi
         Limits first = limits;
         if (early_light.use) first.time = std::min(first.time, early_light.after);
         AdvanceReport report = solver.advance(first, monitor);
-        if (early_light.use && !report.is_finished && !report.is_stopped) early_light.use(solver.solution());
+        if (early_light.use && !report.is_finished && !report.is_stopped)
+            if (const std::optional<Limits> plan = early_light.use(solver.solution())) solver.set_plan(*plan);
         checkpoints.save(solver);
         while (!report.is_finished && !report.is_stopped) {
             report = solver.advance(limits, monitor);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "apps/interflect/checkpoints.h"
 #include "apps/interflect/shared_options.h"
@@ -16,7 +17,8 @@ void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster);
 /// Use of the light of a run that takes longer, once.
 struct EarlyLight {
     double after = 0;  ///< [s]
-    std::function<void(const Solution&)> use = {};
+    /// May return a new SolveOptions::limits.
+    std::function<std::optional<Limits>(const Solution&)> use = {};
 };
 
 /// Solves with progress on stderr; Ctrl-C ends it early with a usable result.

@@ -101,6 +101,9 @@ struct SolverOptions {
     SolveOptions resolved(const std::vector<View>& views, float aspect = 16.0f / 9, int pixel_rows = 720) const;
     std::uint64_t seed() const { return solve_.seed; }
     double until() const { return limits_.resolved().until; }  ///< Target of the relative error; 0 if not given.
+    double time() const { return limits_.resolved().time; }    ///< [s]; infinite if not given.
+    /// Whether --time is the only limit.
+    bool limits_time_only() const { return limits_.time && !limits_.rays && !limits_.until; }
 
   private:
     void add_refinement(CLI::App& app);

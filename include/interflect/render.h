@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "interflect/image.h"
@@ -78,6 +79,9 @@ struct PathOptions {
     /// Target of each pixel's relative standard error, >= 0; 0: every pixel gets `samples`. Relative to the larger of
     /// the pixel's radiance and the picture's mean reflected radiance, which relaxes the target for dark pixels.
     double until = 0;
+    /// Maximum duration [s], > 0. Every pixel gets two batches of paths, however long they take; later ones are omitted
+    /// once it is over.
+    double time = std::numeric_limits<double>::infinity();
     PathQuantity quantity = PathQuantity::radiance;
     bool mirrors = true;  ///< Whether the camera sees mirrors (Material::specular_reflectance).
     EmitterSampling emitter_sampling = EmitterSampling::combined;
@@ -148,7 +152,7 @@ struct PathTracing {
 /// pixel's variance is too noisy. The bias is far below the standard error.
 ///
 /// @param ray_caster  Of the same scene.
-/// @return            The same bits for the same seed and any number of threads, unless interrupted.
+/// @return            The same bits for the same seed and any number of threads, unless interrupted or out of time.
 /// @throws InputError for a view that defines no picture, an option out of range or a ray caster of another scene.
 /// Cost: two rays a vertex and, for reflectances about rho, 1 / (1 - rho) vertices a path or a few more; 250 bytes a
 /// patch and 600 a pixel.

@@ -4,6 +4,7 @@ import json
 import math
 import re
 import struct
+import time
 import unittest
 
 from command import BAD_INPUT, LARGE, PAINT, SMALL, VIEW, VIEWS, WRONG_USAGE, CommandTest, methods, room, vertices
@@ -69,6 +70,52 @@ class Reproducibility(RenderTest):
             said = self.interflect("render", "room.mgf", "-o", f"last.{kind}", *SOLVED, *size).stderr
             self.assertEqual("picture so far" in said, has_preview, kind)
         self.assertNotEqual(self.bytes("last.png"), self.render("smooth.png", "--shading", "smooth", size=size))
+
+
+class TimeLimit(RenderTest):
+    """--time limits solving and drawing together."""
+
+    ENDLESS = ("--rays", "1e12", "--mesh-size", "0.5")
+
+    def limited(self, name, seconds, *options):
+        start = time.monotonic()
+        said = self.interflect("render", "room.mgf", "-o", name, "--time", seconds, *options).stderr
+        return time.monotonic() - start, said
+
+    def test_of_per_pixel_shading(self):
+        """Took 3.9 to 4.4 s on two busy cores; the bound allows for a speed that changes threefold."""
+        for shading in ("hybrid", "gather"):
+            picture = ("--size", "160x90", "--shading", shading, "--samples", "16384")  # would take minutes
+            took, said = self.limited("out.png", 4, *picture, *self.ENDLESS)
+            self.assertGreater(took, 2, shading)
+            self.assertLess(took, 12, shading)
+            self.assertNotIn("warning", said)
+            self.assertIn("shading:" if shading == "hybrid" else "gathering:", said)
+
+    def test_of_pictures_of_elements(self):
+        took, _ = self.limited("out.png", 4, "--size", "160x90", "--show", "mesh", *self.ENDLESS)
+        self.assertGreater(took, 2)
+        self.assertLess(took, 12)
+
+    def test_too_short_for_per_pixel_shading(self):
+        took, said = self.limited("out.png", 0.5, "--mesh-size", "0.5")
+        self.assertLess(took, 10)
+        self.assertRegex(said, r"per-pixel shading takes about .*, but --time leaves .*: .* as by --shading smooth")
+        self.assertNotIn("not reached", said)
+
+    def test_too_short_for_layers(self):
+        _, said = self.limited("out.exr", 0.1, "--size", "320x180", "--mesh-size", "0.5", "--layers")
+        self.assertIn("the picture will be late", said)
+        self.assertNotIn("not reached", said)
+
+    def test_a_long_time_changes_neither_rays_nor_picture(self):
+        picture = ("--size", "64x36", "--samples", "16", "--mesh-size", "0.5", "--method", "srr")
+        self.interflect("render", "room.mgf", "-o", "a.exr", *picture, "--stats", "a.json")
+        self.limited("b.exr", 1000, *picture, "--stats", "b.json")
+        rays = [json.loads((self.folder / n).read_text().splitlines()[-1])["rays"] for n in ("a.json", "b.json")]
+        self.assertEqual(*rays)
+        difference = self.json("compare", "b.exr", "a.exr")
+        self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.01)
 
 
 class Views(RenderTest):

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -85,6 +86,35 @@ TEST(Gather, SameSeedSameBits) {
     const PathTracing a = gather(scene, solution, ray_caster, into_corner, options);
     const PathTracing b = gather(scene, solution, ray_caster, into_corner, options);
     EXPECT_EQ(a.image.pixels, b.image.pixels);
+}
+
+/// Two batches of two samples for each pixel, however short the time is; with a long time, all samples.
+TEST(PathOptions, TimeLimitsAllButTwoBatches) {
+    const Scene scene = furnished_room();
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 100'000}});
+    const auto paths = [](const Scene& s, const Solution&, const RayCaster& r, const View& v, const PathOptions& o,
+                          const Monitor& m) { return trace_paths(s, r, v, o, m); };
+    const auto least = [](const PathTracing& p) { return *std::min_element(p.batches.begin(), p.batches.end()); };
+    const auto most = [](const PathTracing& p) { return *std::max_element(p.batches.begin(), p.batches.end()); };
+    for (const auto tracer : {+paths, &gather, &render_hybrid}) {
+        constexpr double unreachable = 1e-4;  // error; pixels get all samples
+        PathOptions options{
+            .width = 40, .height = 30, .samples = 64, .max_samples = 64, .until = unreachable, .time = 1e-9};
+        const PathTracing shortest = tracer(scene, solution, ray_caster, into_corner, options, {});
+        EXPECT_EQ(least(shortest), 2u);
+        EXPECT_EQ(most(shortest), 2u);
+        EXPECT_EQ(shortest.paths, 40 * 30 * 4);
+        EXPECT_FALSE(shortest.interrupted);
+        options.time = 1e6;
+        const PathTracing longest = tracer(scene, solution, ray_caster, into_corner, options, {});
+        options.time = PathOptions().time;
+        const PathTracing unlimited = tracer(scene, solution, ray_caster, into_corner, options, {});
+        EXPECT_EQ(most(longest), 32u);
+        EXPECT_NEAR(mean_of(longest.image) / mean_of(unlimited.image), 1, 0.01);
+        options.time = 0;
+        EXPECT_THROW(tracer(scene, solution, ray_caster, into_corner, options, {}), InputError);
+    }
 }
 
 /// The mean of 1 / density over sampled points is the sampled area: here the bright area in front of the

@@ -13,6 +13,7 @@
 
 #include "interflect/base/monitor_section.h"
 #include "interflect/base/parallel.h"
+#include "interflect/base/stop_request.h"
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/render/camera_samples.h"
@@ -27,20 +28,26 @@ namespace {
 
 /// Minimum batches per pixel: 7 degrees of freedom for its standard error.
 constexpr int min_batches = 8;
-/// Hybrid shading begins with fewer. Without a target, only pixels of a larger relative error get all.
-constexpr std::uint32_t first_hybrid_batches = 2;
-/// Each batch looks up its indirect and unoccluded light.
-constexpr std::size_t min_hybrid_batch = 2;
+/// Hybrid shading and pictures with a time limit begin with fewer, one for each half of the samples. In hybrid shading
+/// without a target, only pixels of a larger relative error get all.
+constexpr std::uint32_t starting_batches = 2;
+/// Minimum of hybrid shading, whose batches look up indirect and unoccluded light; maximum within a time limit.
+constexpr std::size_t small_batch = 2;
 /// Amortises the cost of a call.
 constexpr std::size_t paths_per_tile = 2048;
 constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
 
+bool is_limited(const PathOptions& options) { return std::isfinite(options.time); }
+
 class PathPicture {
   public:
-    PathPicture(const PathScene& scene, const PathOptions& options, const Monitor& monitor)
+    /// @param time_left  As PathOptions::time.
+    PathPicture(const PathScene& scene, const PathOptions& options, const Monitor& monitor,
+                const StopRequest& time_left)
         : s_(scene),
           options_(options),
           monitor_(monitor),
+          time_left_(time_left),
           pixels_(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height)) {}
 
     void trace() {
@@ -51,13 +58,14 @@ class PathPicture {
         const bool has_target = options_.until > 0, is_hybrid = s_.indirect_field != nullptr;
         const double target = has_target || !is_hybrid ? options_.until : hybrid_target;
         const std::uint32_t usual = batches_of(options_.samples);
-        const std::uint32_t least = is_hybrid ? std::min(usual, first_hybrid_batches) : usual;
+        const std::uint32_t least = is_hybrid || is_limited(options_) ? std::min(usual, starting_batches) : usual;
         const std::uint32_t most = has_target ? batches_of(std::max(options_.max_samples, options_.samples)) : usual;
         std::vector<std::uint32_t> wanted(pixels_.size(), least);
         foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
         trace_round(wanted);
-        if (target <= 0) return;
-        while (!stopped() && want_more(wanted, target, most)) trace_round(wanted);
+        has_all_pixels_ = true;
+        if (target <= 0 && !is_limited(options_)) return;
+        while (!is_over() && want_more(wanted, target, most)) trace_round(wanted);
         if (!stopped()) report(1);
     }
 
@@ -130,9 +138,11 @@ class PathPicture {
     }
 
     bool stopped() const { return monitor_.stop && *monitor_.stop; }
+    bool is_over() const { return stopped() || (has_all_pixels_ && time_left_.is_out_of_time()); }
 
     bool want_more(std::vector<std::uint32_t>& wanted, double target, std::uint32_t most) {
-        const std::vector<double> needed = needed_batches(pixels_, options_, target);
+        const std::vector<double> needed =
+            target > 0 ? needed_batches(pixels_, options_, target) : std::vector<double>(pixels_.size(), most);
         bool more = false;
         foreseen_ = 0;
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
@@ -152,7 +162,7 @@ class PathPicture {
         std::vector<BatchOfPaths> chunk;
         for (bool more = true; more;) {
             more = false;
-            for (std::uint32_t i = 0; i < pixels_.size() && !stopped(); ++i) {
+            for (std::uint32_t i = 0; i < pixels_.size() && !is_over(); ++i) {
                 if (present[i] >= wanted[i]) continue;
                 chunk.push_back(batch_of(i, present[i]++));
                 more = true;
@@ -170,11 +180,11 @@ class PathPicture {
     }
 
     void trace_chunk(std::vector<BatchOfPaths>& chunk) {
-        if (chunk.empty() || stopped()) return chunk.clear();
+        if (chunk.empty() || is_over()) return chunk.clear();
         const std::size_t per_tile = std::max<std::size_t>(1, paths_per_tile / s_.batch_size);
         std::vector<RayCounts> counts((chunk.size() + per_tile - 1) / per_tile);
         parallel_for_ranges(chunk.size(), per_tile, [&](std::size_t begin, std::size_t end) {
-            if (stopped()) return;
+            if (is_over()) return;
             PathWavefront wavefront(s_);
             wavefront.trace(std::span(chunk).subspan(begin, end - begin));
             counts[begin / per_tile] = wavefront.counts();
@@ -202,6 +212,8 @@ class PathPicture {
     const PathScene& s_;
     const PathOptions& options_;
     const Monitor& monitor_;
+    const StopRequest& time_left_;
+    bool has_all_pixels_ = false;
     std::vector<PixelStatistics> pixels_;
     double foreseen_ = 0;  // expected total of batches
     std::int64_t batches_done_ = 0;
@@ -211,6 +223,7 @@ class PathPicture {
 };
 
 void require_valid(const PathOptions& options) {
+    if (!(options.time > 0)) throw InputError(fmt::format("a time of {} s: expected more than 0", options.time));
     if (options.samples < 2)
         throw InputError(
             fmt::format("{} samples a pixel: expected 2 or more, whose spread tells the error", options.samples));
@@ -225,8 +238,9 @@ void require_valid(const PathOptions& options) {
 
 namespace {
 
-PathTracing draw(const PathScene& scene, const PathOptions& options, const Monitor& monitor) {
-    PathPicture picture(scene, options, monitor);
+PathTracing draw(const PathScene& scene, const PathOptions& options, const Monitor& monitor,
+                 const StopRequest& time_left) {
+    PathPicture picture(scene, options, monitor, time_left);
     picture.trace();
     return picture.result();
 }
@@ -237,16 +251,21 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
                           const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
     ray_caster.require_made_for(scene);
+    StopRequest time_left;
+    time_left.limit_time(StopRequest::Clock::now(), options.time);
     const TracedScene traced(scene, ray_caster, known);
     const bool is_hybrid = known && known->is_interpolated;
-    PathScene path_scene = traced.paths(start, options, TracedScene::batch_size(options.samples, min_batches));
-    if (!is_hybrid) return draw(path_scene, options, monitor);
-    path_scene.batch_size = std::max(path_scene.batch_size, min_hybrid_batch);
+    const std::size_t usual_batch = TracedScene::batch_size(options.samples, min_batches);
+    PathScene path_scene =
+        traced.paths(start, options, is_limited(options) ? std::min(usual_batch, small_batch) : usual_batch);
+    if (!is_hybrid) return draw(path_scene, options, monitor, time_left);
+    path_scene.batch_size = std::max(path_scene.batch_size, small_batch);
     constexpr double share_of_records = 0.25;  // of the time; roughly
     const IndirectField field(path_scene, first_points(path_scene, monitor.stop),
                               monitor_section(monitor, 0, share_of_records));
     path_scene.indirect_field = &field;
-    PathTracing result = draw(path_scene, options, monitor_section(monitor, share_of_records, 1, field.rays()));
+    PathTracing result =
+        draw(path_scene, options, monitor_section(monitor, share_of_records, 1, field.rays()), time_left);
     result.rays += field.rays();
     return result;
 }

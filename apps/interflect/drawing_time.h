@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+
+#include "apps/interflect/parse.h"
+#include "apps/interflect/run_path_tracer.h"
+#include "interflect/render.h"
+
+namespace interflect::command {
+
+/// Time since the process began [s].
+double seconds_of_process();
+
+/// Predicted duration of drawing a picture [s].
+struct DrawingTime {
+    double least = 0;      ///< Of paths: two batches per pixel.
+    double useful = 0;     ///< More samples of paths reduce the noise.
+    double finishing = 0;  ///< Filtering noise and writing.
+
+    double total() const { return least + finishing; }
+};
+
+/// Predicts the time of a picture from a smaller one. Within 20% for hybrid shading of 1280 x 720 pixels in three
+/// offices and a maze.
+/// @param options  Of the full picture.
+DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
+                                  const View& view, const Tracer& tracer, const PathOptions& options, bool filters);
+DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
+                                     const View& view, const RenderOptions& options);
+
+/// Returns the part of `left` [s] that solving leaves to drawing: half of it, within the limits of the prediction.
+double reserved_for(const DrawingTime& predicted, double left);
+
+}  // namespace interflect::command
