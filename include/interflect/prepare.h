@@ -73,10 +73,11 @@ struct ValidateOptions {
 /// Finds problems that would spoil a solution. Call it with the scene as read, before cut_at_contacts(). Problems:
 /// "degenerate-face" (without area, omitted by the reader), "duplicate-face" (same corners as another), "inverted-face"
 /// (one-sided, with the scene and its light behind it), "inverted-lamp" (its front is against a surface, its back is
-/// not), "hidden-lamp" (covered, or enclosed by close surfaces), "zero-power-lamp", "high-reflectance", "no-light",
-/// "implausible-size", "maintenance-factor". Notes: "coincident-face" (partly covered by another in its plane),
-/// "open-edge" (belongs to one face only) and "no-view"; then the findings of validate_setup(). Surroundings of faces
-/// and lamps are sampled with 64 rays a face, for at most 4096 faces of a kind.
+/// not), "hidden-lamp" (covered, or enclosed by close surfaces), "open-lamp-back" (one-sided, close before a surface
+/// that its reflected light reaches), "zero-power-lamp", "high-reflectance", "no-light", "implausible-size",
+/// "maintenance-factor". Notes: "coincident-face" (partly covered by another in its plane), "open-edge" (belongs to one
+/// face only) and "no-view"; then the findings of validate_setup(). Surroundings of faces and lamps are sampled with 64
+/// rays a face, for at most 4096 faces of a kind.
 /// @param ray_caster  Of this scene.
 /// @return            In the order above. O(n log n) for n patches.
 /// @throws InputError for a ray caster of another scene.

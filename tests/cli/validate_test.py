@@ -5,6 +5,7 @@ import unittest
 
 from command import DONE, FAILED, LAMP, PAINT, VIEWS, CommandTest, room, vertices
 
+ROOM = room().replace(" 2.4\n", " 2.499\n")  # its lamp is flush with the ceiling
 ONE_SIDED = PAINT.replace("rd .6", "sides 1\n\trd .6")
 
 
@@ -25,7 +26,8 @@ FAULTS = {  # addition to the room: kind, count and first place of the finding
     "degenerate-face": (vertices((0, 0, 1), (1, 0, 1), (2, 0, 1)) + PAINT + "f v0 v1 v2\n", 1, "room.mgf:"),
     "duplicate-face": (panel() + panel(), 1, [1, 1.5, 1]),
     "coincident-face": (panel() + panel(size=0.5), 1, [1, 1.5, 1]),
-    "inverted-lamp": (panel(z=2.49, material=LAMP), 1, [1, 1.5, 2.49]),
+    "inverted-lamp": (panel(z=2.49, size=0.3, corner=(0.85, 0.35), material=LAMP), 1, [1, 0.5, 2.49]),
+    "open-lamp-back": (panel(z=2.4, size=0.5, corner=(0.2, 2.2), material=LAMP, reverse=True), 1, [0.45, 2.45, 2.4]),
     "hidden-lamp": (
         panel(z=0.5, size=0.02, corner=(1, 1), material=LAMP) + box((0.97, 0.97, 0.48), (1.05, 1.05, 0.56)),
         1,
@@ -41,7 +43,7 @@ class Validate(CommandTest):
         return {finding["kind"]: finding for finding in self.json("validate", name, *options)["findings"]}
 
     def write_room(self, added="", base=None):
-        self.write("room.mgf", (base or room()) + added)
+        self.write("room.mgf", (base or ROOM) + added)
         self.write("room.views.json", json.dumps(VIEWS))
 
     def test_a_sound_room_has_no_problem(self):
@@ -74,7 +76,7 @@ class Validate(CommandTest):
         self.assertNotIn("enclosed-luminaire", self.findings("room.mgf"))
 
     def test_a_one_sided_wall_that_looks_out_is_inverted(self):
-        inwards = room().replace(PAINT, ONE_SIDED)
+        inwards = ROOM.replace(PAINT, ONE_SIDED)
         self.write_room(base=inwards)
         self.assertNotIn("inverted-face", self.findings("room.mgf"))
         self.write_room(base=inwards.replace("f v0 v1 v3 v2", "f v2 v3 v1 v0"))

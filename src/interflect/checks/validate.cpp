@@ -8,6 +8,7 @@
 
 #include "interflect/checks/face_surroundings.h"
 #include "interflect/checks/finder.h"
+#include "interflect/checks/lamp_backs.h"
 #include "interflect/checks/open_edges.h"
 #include "interflect/raycast/coincident.h"
 #include "interflect/scene/limits.h"
@@ -140,6 +141,9 @@ class Validator {
         }
         inverted.append_to(findings_);
         hidden.append_to(findings_);
+        const SightLines lines(scene_, ray_caster_);
+        for (Finding& finding : find_open_lamp_backs(scene_, ray_caster_, lines, options_.places))
+            findings_.push_back(std::move(finding));
         dark.append_to(findings_);
     }
 
