@@ -43,12 +43,27 @@ struct ExportArguments {
     std::optional<Imath::V3d> up;
     ProbeOptions probes;
     bool has_lightmap = false;
+    BakeOptions bake;
+    std::size_t quality = 1;  // in `qualities`
     LightmapOptions lightmap;
+    VertexOptions vertices;
     DimmingOptions dimming;
     int threads = 0;
 };
 
+/// Effort of a bake; other options take precedence.
+struct Quality {
+    const char* name;
+    float texels_per_metre;
+    int samples_of_texel;
+    int max_triangles, samples_of_vertex;
+};
+constexpr std::array qualities{Quality{"low", 10, 4, 50'000, 16}, Quality{"medium", 20, 16, 200'000, 64},
+                               Quality{"high", 40, 64, 800'000, 256}};
+
 constexpr const char* lightmap_group = "Lightmaps";
+constexpr const char* bake_group = "Light of texels and vertices";
+constexpr const char* vertices_group = "Light in vertices";
 
 /// Options that only some formats use.
 struct OptionsOfFormats {
@@ -57,6 +72,7 @@ struct OptionsOfFormats {
 };
 std::vector<OptionsOfFormats> options_of_formats() {
     return {{{lightmap_group, "--up"}, {".glb", ".gltf"}},
+            {{bake_group, vertices_group}, {".glb", ".gltf", ".ply", ".obj"}},
             {{"--exposure"}, {".glb", ".gltf", ".ply", ".obj"}},
             {{"--probe-spacing", "--probe-rays"}, {".json", ".exr"}},
             {{"--size"}, {".rad", ".xml", ".pbrt", ".py"}},
@@ -104,8 +120,9 @@ void run_scene(const ExportArguments& arguments) {
 
 bool traces_rays(const std::filesystem::path& output, const ExportOptions& options) {
     const std::string extension = lower_case_extension(output);
-    return (options.lightmap && options.lightmap->shading != LightmapShading::smooth) || extension == ".json" ||
-           extension == ".exr";
+    const bool is_bake =
+        options.lightmap || extension == ".glb" || extension == ".gltf" || extension == ".ply" || extension == ".obj";
+    return (is_bake && options.bake.shading != BakeShading::smooth) || extension == ".json" || extension == ".exr";
 }
 
 /// Before the first rays a signal ends the process. Later it stops the rays and keeps a usable result.
@@ -149,9 +166,23 @@ void check_format_options(const ExportArguments& arguments, const CLI::App& comm
         if (std::find(formats.begin(), formats.end(), extension) == formats.end())
             refuse_options(command, options, fmt::format("it has no effect on {}: it is for{}", extension, known));
     }
-    constexpr std::array<std::string_view, 2> of_sampling = {"--samples", "--seed"};
-    if (arguments.lightmap.shading == LightmapShading::smooth)
+    constexpr std::array<std::string_view, 3> of_sampling = {"--samples", "--seed", vertices_group};
+    if (arguments.bake.shading == BakeShading::smooth)
         refuse_options(command, of_sampling, "it has no effect with --shading smooth");
+}
+
+void set_bake(ExportOptions& options, const ExportArguments& arguments, const CLI::App& command) {
+    const auto is_given = [&](const char* option) { return command.get_option(option)->count() > 0; };
+    options.bake = arguments.bake;
+    options.vertices = arguments.vertices;
+    if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
+    if (!is_given("--quality")) return;
+    const Quality& quality = qualities[arguments.quality];
+    if (!is_given("--samples") && arguments.bake.shading == BakeShading::hybrid)
+        options.bake.samples = arguments.has_lightmap ? quality.samples_of_texel : quality.samples_of_vertex;
+    if (!is_given("--max-triangles")) options.vertices.max_triangles = quality.max_triangles;
+    if (options.lightmap && !is_given("--texels-per-metre"))
+        options.lightmap->texels_per_metre = quality.texels_per_metre;
 }
 
 void run(const ExportArguments& arguments, const CLI::App& command, int& exit_code) {
@@ -171,10 +202,7 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
     options.exposure = arguments.exposure.stops + (arguments.exposure.relative ? automatic_exposure_of(solved) : 0);
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
     options.probes = arguments.probes;
-    if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
-    constexpr int gathered_directions = 64;
-    if (arguments.lightmap.shading == LightmapShading::gather && command.get_option("--samples")->count() == 0)
-        options.lightmap->samples = gathered_directions;
+    set_bake(options, arguments, command);
     if (options.lightmap) options.lightmap->max_bytes = free_memory();
     Warnings warnings;
     options.warnings = &warnings;
@@ -182,6 +210,42 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
         spdlog::info("{}: exposure {:+.2f}", path.string(), options.exposure);
     log_warnings(warnings);
     if (is_stop_requested()) exit_code = interrupted;
+}
+
+void add_bake(CLI::App& command, ExportArguments& arguments) {
+    const auto group = [](CLI::Option* option) { return option->group(bake_group); };
+    group(add_choice<BakeShading>(
+              command, "--shading", arguments.bake.shading,
+              {{"smooth", BakeShading::smooth}, {"hybrid", BakeShading::hybrid}, {"gather", BakeShading::gather}},
+              "smooth: interpolated between the elements; hybrid: direct light of each texel or vertex, indirect light "
+              "interpolated; gather: each texel or vertex finds its own light"))
+        ->default_str("hybrid");
+    group(add_choice<std::size_t>(command, "--quality", arguments.quality, {{"low", 0}, {"medium", 1}, {"high", 2}},
+                                  "low: 10 texels a metre or 50,000 triangles, few samples; medium: 20, 200,000; high: "
+                                  "40, 800,000, many samples. Each takes about three times as long as the one before"))
+        ->default_str("medium");
+    group(command.add_option(
+              "--samples", arguments.bake.samples,
+              "Points a texel (default: 16) or vertex (default: 64); with --shading gather, directions (default: 64)"))
+        ->check(CLI::Range(2, 1 << 24));
+    group(add_parsed(command, "--seed", arguments.bake.seed, parse_seed, "Of sampling"))->default_str("1");
+}
+
+void add_vertices(CLI::App& command, ExportArguments& arguments) {
+    VertexOptions& vertices = arguments.vertices;
+    const auto of_vertices = [](CLI::Option* option) {
+        return option->group(vertices_group)->capture_default_str()->excludes("--lightmap");
+    };
+    of_vertices(command.add_option("--max-triangles", vertices.max_triangles, "About; faces are never merged"))
+        ->type_name("N")
+        ->check(CLI::Range(1, 1 << 28));
+    of_vertices(command.add_option("--vertex-error", vertices.max_error,
+                                   "Largest error of interpolated direct light, relative to the irradiance"))
+        ->type_name("FRACTION")
+        ->check(number_between(1e-3, 10));
+    of_vertices(command.add_option("--min-edge", vertices.min_edge, "Shorter edges are not divided [m]"))
+        ->type_name("METRES")
+        ->check(number_between(1e-6, 1e15));
 }
 
 void add_lightmap(CLI::App& command, ExportArguments& arguments) {
@@ -211,18 +275,6 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
                     {{"irradiance", LightmapContent::irradiance}, {"radiance", LightmapContent::radiance}},
                     "irradiance, which the renderer multiplies by the reflectance; or radiance, shown as it is"))
         ->default_str("irradiance");
-    of_lightmap(add_choice<LightmapShading>(
-                    command, "--shading", lightmap.shading,
-                    {{"smooth", LightmapShading::smooth},
-                     {"hybrid", LightmapShading::hybrid},
-                     {"gather", LightmapShading::gather}},
-                    "smooth: interpolated between the elements; hybrid: direct light of each texel, indirect light "
-                    "interpolated; gather: each texel finds its own light"))
-        ->default_str("hybrid");
-    of_lightmap(command.add_option("--samples", lightmap.samples,
-                                   "Points a texel (default: 16); with --shading gather, directions (default: 64)"))
-        ->check(CLI::Range(2, 1 << 24));
-    of_lightmap(add_parsed(command, "--seed", lightmap.seed, parse_seed, "Of gathering"))->default_str("1");
     of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image, {{"exr", ".exr"}, {"hdr", ".hdr"}},
                                         "Of the unclamped images beside the file"))
         ->default_str("exr");
@@ -264,6 +316,8 @@ void add_export(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 65536))
         ->capture_default_str();
     add_lightmap(command, *options);
+    add_bake(command, *options);
+    add_vertices(command, *options);
     options->dimming.add_to(command);
     add_threads(command, options->threads);
     command.callback([options, &command, &exit_code] { run(*options, command, exit_code); });

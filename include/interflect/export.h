@@ -18,11 +18,29 @@
 
 namespace interflect {
 
-/// Source of the irradiance of a lightmap's texels.
-enum class LightmapShading {
-    smooth,  ///< Interpolated between the elements, as by Shading::smooth.
+/// Source of the irradiance of texels and vertices.
+enum class BakeShading {
+    smooth,  ///< Interpolated between the elements, as by Shading::smooth. Vertices are those of the elements.
     hybrid,  ///< Direct light of each texel, averaged over it; indirect light interpolated, as by render_hybrid().
     gather,  ///< Gathered at each texel, as by measure_irradiance().
+};
+
+struct BakeOptions {
+    BakeShading shading = BakeShading::hybrid;
+    /// Points per texel or vertex, at which direct light is sampled; or gathered directions. >= 2. Default: 16 per
+    /// texel, 64 per vertex (there are fewer, and each lights a larger surface), 64 directions.
+    std::optional<int> samples;
+    std::uint64_t seed = 1;
+};
+
+/// Triangles of light in vertices, except for BakeShading::smooth: finer where direct light varies.
+struct VertexOptions {
+    /// Largest error of interpolated direct light, relative to the irradiance there, or to the mean where that is
+    /// darker; > 0.
+    float max_error = 0.1f;
+    float min_edge = 0.05f;       ///< Shorter edges are not divided [m], > 0.
+    float max_edge = 0.5f;        ///< Longer edges are divided wherever max_triangles suffices [m], >= min_edge.
+    int max_triangles = 200'000;  ///< About; faces of the scene are never merged. >= 1.
 };
 
 /// Quantity stored in lightmaps.
@@ -35,10 +53,7 @@ struct LightmapOptions {
     float texels_per_metre = 20;  ///< Minimum, > 0; less only on surfaces that would exceed an image.
     int max_size = 4096;          ///< Side of an image [texels], 64 to 16384, a multiple of 4; more images if needed.
     int gutter = 2;               ///< Margin of each chart, filled from its edge [texels], 1 to 64.
-    LightmapShading shading = LightmapShading::hybrid;
     LightmapContent content = LightmapContent::irradiance;
-    int samples = 16;  ///< Points per texel, at which direct light is sampled; or gathered directions. >= 2.
-    std::uint64_t seed = 1;
     std::string image = ".exr";  ///< Format of the images beside the file: .exr or .hdr.
     bool own_charts = false;     ///< Ignores Scene::lightmap_coordinates.
     /// Memory limit [bytes], checked before allocation.
@@ -52,7 +67,9 @@ struct ExportOptions {
     /// preserving their hue. See automatic_exposure().
     float exposure = 0;
     V3f up{0, 0, 1};                          ///< Up axis of the scene; rotated for formats with a fixed one.
-    std::optional<LightmapOptions> lightmap;  ///< nullopt: the light is stored at the vertices of the elements.
+    BakeOptions bake;                         ///< For .glb, .gltf, .ply and .obj.
+    std::optional<LightmapOptions> lightmap;  ///< nullopt: the light is stored in vertices.
+    VertexOptions vertices;                   ///< For light in vertices.
     ProbeOptions probes;                      ///< For formats that store probes instead of surfaces.
     Monitor monitor;                          ///< Monitors gathering and probes.
     Warnings* warnings = nullptr;             ///< Receives features that could not be exported unchanged; may be null.

@@ -229,7 +229,7 @@ TEST_P(SealedRoomsLightmap, LeaksNoLightWithHybridShading) {
     const Solution solution =
         solve(scene, RayCaster(scene), {.method = find_method("hsrr"), .limits = {.rays = 300'000}});
     ExportOptions options = at(10);
-    options.lightmap->shading = LightmapShading::hybrid;
+    options.bake.shading = BakeShading::hybrid;
     const Lightmap lightmap = make_lightmap(scene, solution, options);
     const float radians = GetParam().turn * std::numbers::pi_v<float> / 180;
     const V3f across(std::cos(radians), std::sin(radians), 0);
@@ -251,7 +251,7 @@ INSTANTIATE_TEST_SUITE_P(Walls, SealedRoomsLightmap,
                          testing::Values(TwoRoomsOptions{}, TwoRoomsOptions{.turn = 30},
                                          TwoRoomsOptions{.turn = 30, .furniture = true}));
 
-class LightmapOfGroups : public testing::TestWithParam<std::tuple<LightmapShading, LightmapContent>> {};
+class LightmapOfGroups : public testing::TestWithParam<std::tuple<BakeShading, LightmapContent>> {};
 
 TEST_P(LightmapOfGroups, SumsToTheTotal) {
     const auto [shading, content] = GetParam();
@@ -265,7 +265,7 @@ TEST_P(LightmapOfGroups, SumsToTheTotal) {
         solve(scene, RayCaster(scene), {.method = find_method("hsrr"), .limits = {.rays = 50'000}});
     ASSERT_EQ(solution.group_names, (std::vector<std::string>{"a", "b"}));
     ExportOptions options = at(4);
-    options.lightmap->shading = shading;
+    options.bake.shading = shading;
     options.lightmap->content = content;
     const Lightmap total = make_lightmap(scene, solution, options);
     options.lightmap->groups = true;
@@ -282,17 +282,17 @@ TEST_P(LightmapOfGroups, SumsToTheTotal) {
             difference += channel_sum(texel - total.images[page].pixels[i]);
             sum += channel_sum(total.images[page].pixels[i]);
         }
-    EXPECT_NEAR(difference / sum, 0, shading == LightmapShading::smooth ? 1e-5 : 0.02);
+    EXPECT_NEAR(difference / sum, 0, shading == BakeShading::smooth ? 1e-5 : 0.02);
     EXPECT_GT(lightmap.groups[0][0].pixels[0].x, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LightmapOfGroups,
-                         testing::Combine(testing::Values(LightmapShading::smooth, LightmapShading::gather,
-                                                          LightmapShading::hybrid),
+                         testing::Combine(testing::Values(BakeShading::smooth, BakeShading::gather,
+                                                          BakeShading::hybrid),
                                           testing::Values(LightmapContent::irradiance, LightmapContent::radiance)));
 
-class SampledLightmap : public testing::TestWithParam<LightmapShading> {};
-INSTANTIATE_TEST_SUITE_P(Shading, SampledLightmap, testing::Values(LightmapShading::gather, LightmapShading::hybrid));
+class SampledLightmap : public testing::TestWithParam<BakeShading> {};
+INSTANTIATE_TEST_SUITE_P(Shading, SampledLightmap, testing::Values(BakeShading::gather, BakeShading::hybrid));
 
 // Closed box, exitance M and reflectance rho everywhere: H = M / (1 - rho) at every point. Every texel finds this
 // value, also in corners. Rays that started beyond a wall would escape, and those texels would lose half.
@@ -302,8 +302,8 @@ TEST_P(SampledLightmap, HasLightAtBordersAsAnywhere) {
     const Imath::Eulerf turn(0.3f, 0.5f, 0.7f);  // rounds vertices to either side of the walls' planes
     for (V3f& vertex : scene.vertices) vertex = vertex * turn.toMatrix33();
     ExportOptions options = at(6);
-    options.lightmap->shading = GetParam();
-    options.lightmap->samples = 256;
+    options.bake.shading = GetParam();
+    options.bake.samples = 256;
     const Lightmap lightmap = make_lightmap(scene, uniform(scene, expected), options);
     for (const LightmapChart& chart : lightmap.charts)
         for (int row = -2; row < chart.rows + 2; ++row)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
@@ -56,9 +57,15 @@ MeshCorner between(const MeshCorner& a, const MeshCorner& b, float t, std::uint3
 }  // namespace
 
 ElementMesh::ElementMesh(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance)
+    : ElementMesh(scene, forest, ElementVertices(scene, forest), {}) {
+    values_ = vertex_values(forest, vertices_, irradiance);
+}
+
+ElementMesh::ElementMesh(const Scene& scene, const ElementForest& forest, ElementVertices vertices,
+                         std::vector<Rgb> irradiance)
     : forest_(forest),
-      vertices_(scene, forest),
-      values_(vertex_values(forest, vertices_, irradiance)),
+      vertices_(std::move(vertices)),
+      values_(std::move(irradiance)),
       corners_(forest.size(), {none, none, none, none}),
       tolerance_(joining_distance(scene)) {
     number_points();

@@ -15,7 +15,7 @@ namespace interflect::detail {
 struct MeshCorner {
     std::uint32_t point;  ///< Index into points().
     Parameters at;
-    Rgb irradiance{0, 0, 0};  ///< Interpolated as by SmoothField.
+    Rgb irradiance{0, 0, 0};  ///< Interpolated between vertices as by SmoothField.
 };
 using MeshTriangle = std::array<MeshCorner, 3>;
 
@@ -27,6 +27,8 @@ class ElementMesh {
     /// @param irradiance  Per element; only leaves count.
     /// @throws InputError for a forest of another scene.
     ElementMesh(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
+    /// @param irradiance  One value per vertex.
+    ElementMesh(const Scene& scene, const ElementForest& forest, ElementVertices vertices, std::vector<Rgb> irradiance);
 
     /// Relative to Scene::origin [m]; triangulate() appends the centres of fans.
     const std::vector<V3f>& points() const { return points_; }

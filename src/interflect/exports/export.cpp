@@ -44,9 +44,19 @@ void require_usable(const LightmapOptions& options) {
     require(options.max_size >= 64 && options.max_size <= 16384 && options.max_size % 4 == 0,
             fmt::format("max_size is {}, expected a multiple of 4 from 64 to 16384", options.max_size));
     require(options.gutter >= 1 && options.gutter <= 64, fmt::format("gutter is {}, expected 1 to 64", options.gutter));
-    require(options.samples >= 2, fmt::format("samples is {}, expected at least 2", options.samples));
     require(options.image == ".exr" || options.image == ".hdr",
             fmt::format("image is '{}', expected .exr or .hdr", options.image));
+}
+
+void require_usable(const VertexOptions& options) {
+    const auto require = [](bool holds, const std::string& fault) {
+        if (!holds) throw InputError("vertices: " + fault);
+    };
+    require(options.max_error > 0, fmt::format("max_error is {}, expected a number above 0", options.max_error));
+    require(options.min_edge > 0, fmt::format("min_edge is {}, expected a number above 0", options.min_edge));
+    require(options.max_edge >= options.min_edge,
+            fmt::format("max_edge is {}, expected at least min_edge, {}", options.max_edge, options.min_edge));
+    require(options.max_triangles >= 1, fmt::format("max_triangles is {}, expected at least 1", options.max_triangles));
 }
 
 void require_usable(const ExportFormat& format, const ExportOptions& options) {
@@ -54,7 +64,9 @@ void require_usable(const ExportFormat& format, const ExportOptions& options) {
         throw InputError(fmt::format("exposure is {}, expected a finite number of stops", options.exposure));
     const float length = options.up.length();
     if (!(length > 0 && std::isfinite(length))) throw InputError("up has no direction");
-    if (!options.lightmap) return;
+    if (const int samples = options.bake.samples.value_or(2); samples < 2)
+        throw InputError(fmt::format("samples is {}, expected at least 2", samples));
+    if (!options.lightmap) return require_usable(options.vertices);
     if (!format.takes_lightmaps)
         throw InputError(fmt::format("{} ({}) takes no lightmaps", format.name, format.extension));
     require_usable(*options.lightmap);

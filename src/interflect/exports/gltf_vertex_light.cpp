@@ -6,10 +6,10 @@
 
 #include "interflect/base/escapes.h"
 #include "interflect/exports/display_range.h"
-#include "interflect/exports/element_mesh.h"
 #include "interflect/exports/gltf_scene.h"
 #include "interflect/exports/opacity.h"
 #include "interflect/exports/shown_patches.h"
+#include "interflect/exports/vertex_light.h"
 #include "interflect/exports/welded_vertices.h"
 #include "interflect/geometry/texture_mapping.h"
 
@@ -38,9 +38,9 @@ Rgb peak_of(const Scene& scene, const Material& material) {
     return peak;
 }
 
-class VertexLight {
+class VertexColours {
   public:
-    VertexLight(const Scene& scene, float exposure)
+    VertexColours(const Scene& scene, float exposure)
         : scene_(scene), scale_(std::exp2(exposure) / std::numbers::pi_v<float>) {
         for (const Material& material : scene.materials)
             brightest_.push_back(keeps_texture(material) ? material.reflectance * peak_of(scene, material) : Rgb(0));
@@ -93,20 +93,19 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Scene& sc
 /// Keys: object and material.
 using LitPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, LitPrimitive>;
 
-LitPrimitives primitives_of(const Scene& scene, const Solution& solution, ElementMesh& mesh, float exposure) {
-    const ElementForest& forest = *solution.forest;
-    const std::vector<bool> shown = shown_patches(scene, solution);
-    const VertexLight light(scene, exposure);
+LitPrimitives primitives_of(const Scene& scene, VertexLight& light, const std::vector<bool>& shown, float exposure) {
+    const ElementForest& forest = *light.forest;
+    const VertexColours colours(scene, exposure);
     LitPrimitives primitives;
     std::vector<MeshTriangle> triangles;
     for (const std::uint32_t leaf : forest.leaves()) {
         if (!shown[forest.patch(leaf)]) continue;
         triangles.clear();
-        mesh.triangulate(leaf, triangles);
+        light.mesh.triangulate(leaf, triangles);
         const Patch& patch = scene.patches[forest.patch(leaf)];
         LitPrimitive& primitive = primitives[{patch.object, patch.material}];
         for (const MeshTriangle& triangle : triangles)
-            for (const MeshCorner& corner : triangle) primitive.add(light.vertex(patch, corner));
+            for (const MeshCorner& corner : triangle) primitive.add(colours.vertex(patch, corner));
     }
     return primitives;
 }
@@ -115,15 +114,16 @@ LitPrimitives primitives_of(const Scene& scene, const Solution& solution, Elemen
 
 void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution& solution,
                       const ExportOptions& options) {
-    ElementMesh mesh(scene, *solution.forest, solution.irradiance);
+    VertexLight light = make_vertex_light(scene, solution, options);
+    const LitPrimitives primitives = primitives_of(scene, light, shown_patches(scene, solution), options.exposure);
     GltfTextures textures(document, scene);
     std::map<std::uint32_t, int> materials;
     GltfPrimitives written;
-    for (const auto& [key, primitive] : primitives_of(scene, solution, mesh, options.exposure)) {
+    for (const auto& [key, primitive] : primitives) {
         const auto& [object, material] = key;
         const auto [entry, is_new] = materials.try_emplace(material, 0);
         if (is_new) entry->second = add_material(document, textures, scene, scene.materials[material]);
-        Json json = write_primitive(document, primitive, mesh.points(), scene.materials[material]);
+        Json json = write_primitive(document, primitive, light.mesh.points(), scene.materials[material]);
         json["material"] = entry->second;
         written[object].push_back(std::move(json));
     }

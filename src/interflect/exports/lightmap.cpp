@@ -8,32 +8,27 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "interflect/base/monitor_section.h"
 #include "interflect/base/parallel.h"
 #include "interflect/core.h"
-#include "interflect/elements/forest.h"
+#include "interflect/exports/baked_light.h"
 #include "interflect/exports/lightmap_atlas.h"
 #include "interflect/exports/shown_patches.h"
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/measure.h"
-#include "interflect/render/element_vertices.h"
 #include "interflect/render/gauge.h"
 #include "interflect/render/path_picture.h"
-#include "interflect/render/smooth_field.h"
-#include "interflect/render/traced_scene.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
 
 namespace {
 
-struct TexelPlace {
-    std::uint32_t patch = none;
-    Parameters at;
-    std::array<Parameters, 2> sides{};  ///< Steps to the next column and row, in the patch's parameters.
+constexpr int samples_of_texel = 16;
+
+struct TexelPlace : BakedPoint {
     bool is_inside = false;
     bool is_near = false;  ///< Less than a texel from the patch: bilinear interpolation may use it.
 };
@@ -78,7 +73,7 @@ class NearestPatch {
             const bool precedes = nearest.patch == none || patches_[i].patch < nearest.patch;
             if (distance2 < least2 || (distance2 == least2 && precedes)) {
                 least2 = distance2;
-                nearest = {patches_[i].patch, p, sides_[i]};
+                nearest = {{patches_[i].patch, p, sides_[i]}};
             }
         });
         constexpr float rounding = 1e-3f;  // [texels]
@@ -132,102 +127,7 @@ Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const
     return geometry.parameters_of(is_inside ? x : nearest);
 }
 
-class IrradianceSource {
-  public:
-    IrradianceSource(const Scene& scene, const Solution& solution, const ExportOptions& options)
-        : scene_(scene),
-          solution_(solution),
-          options_(options),
-          vertices_(scene, *solution.forest),
-          smooth_(*solution.forest, vertices_, solution.irradiance) {
-        if (options.lightmap->shading != LightmapShading::smooth) ray_caster_.emplace(scene);
-    }
-
-    std::vector<Rgb> irradiance(std::span<const TexelPlace> places, float texel_size) const {
-        switch (options_.lightmap->shading) {
-            case LightmapShading::hybrid:
-                return hybrid(places, texel_size);
-            case LightmapShading::gather:
-                return gathered(places, texel_size);
-            default:
-                return interpolated(places);
-        }
-    }
-
-  private:
-    std::vector<Rgb> interpolated(std::span<const TexelPlace> places) const {
-        std::vector<Rgb> values(places.size());
-        constexpr std::size_t texels_per_task = 1 << 12;
-        parallel_for_ranges(places.size(), texels_per_task, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) values[i] = smooth_.at(places[i].patch, places[i].at);
-        });
-        return values;
-    }
-
-    /// Least distance of ray starts from the border of a patch [texels]. At the foot of a wall, they would otherwise
-    /// start in its plane.
-    static constexpr float inset = 0.05f;
-
-    PathOptions path_options() const {
-        PathOptions path;
-        path.samples = options_.lightmap->samples;
-        path.max_samples = std::max(path.max_samples, path.samples);
-        path.seed = options_.lightmap->seed;
-        path.quantity = PathQuantity::irradiance;
-        return path;
-    }
-
-    std::vector<Rgb> hybrid(std::span<const TexelPlace> places, float texel_size) const {
-        std::vector<Gauge> gauges;
-        gauges.reserve(places.size());
-        for (const TexelPlace& place : places) {
-            const PatchGeometry& geometry = solution_.forest->geometry(place.patch);
-            const auto side = [&](const Parameters& p) {
-                return geometry.shape().edge_u * p.u + geometry.shape().edge_v * p.v;
-            };
-            Gauge gauge;
-            gauge.position = geometry.point(geometry.inset(place.at, inset * texel_size));
-            gauge.normal = vertices_.normals().at(geometry, place.patch, place.at);
-            gauge.patch = place.patch;
-            gauge.side_u = side(place.sides[0]), gauge.side_v = side(place.sides[1]);
-            gauge.inset = inset * texel_size;
-            gauges.push_back(gauge);
-        }
-        const KnownIrradiance known{*solution_.forest, solution_.irradiance, /*is_interpolated=*/true};
-        return hybrid_irradiance(scene_, *ray_caster_, known, gauges, path_options(), options_.monitor);
-    }
-
-    std::vector<Rgb> gathered(std::span<const TexelPlace> places, float texel_size) const {
-        std::vector<MeasuringPoint> points;
-        points.reserve(places.size());
-        for (const TexelPlace& place : places) {
-            const PatchGeometry& geometry = solution_.forest->geometry(place.patch);
-            const V3f x = geometry.point(geometry.inset(place.at, inset * texel_size));
-            const V3f normal = vertices_.normals().at(geometry, place.patch, place.at);
-            points.push_back({scene_.origin + Imath::V3d(x), normal});
-        }
-        const std::vector<MeasuredIrradiance> measured =
-            measure_irradiance(scene_, &solution_, *ray_caster_, points, path_options(), options_.monitor);
-        const auto finished = std::count_if(measured.begin(), measured.end(),
-                                            [](const MeasuredIrradiance& m) { return m.is_measured(); });
-        if (static_cast<std::size_t>(finished) < measured.size())
-            throw Stopped(
-                fmt::format("stopped when {} of {} texels of the lightmap had light", finished, measured.size()));
-        std::vector<Rgb> values;
-        values.reserve(measured.size());
-        for (const MeasuredIrradiance& m : measured) values.push_back(m.sum());
-        return values;
-    }
-
-    const Scene& scene_;
-    const Solution& solution_;
-    const ExportOptions& options_;
-    ElementVertices vertices_;
-    SmoothField smooth_;
-    std::optional<RayCaster> ray_caster_;
-};
-
-Rgb content_of(const Scene& scene, const TexelPlace& place, const Rgb& irradiance, LightmapContent content) {
+Rgb content_of(const Scene& scene, const BakedPoint& place, const Rgb& irradiance, LightmapContent content) {
     if (content == LightmapContent::irradiance) return irradiance;
     const Patch& patch = scene.patches[place.patch];
     const Rgb radiosity = exitance_at(scene, patch, place.at) + reflectance_at(scene, patch, place.at) * irradiance;
@@ -292,8 +192,9 @@ class LightmapTexels {
             targets_.push_back({static_cast<std::size_t>(chart.page), place_index[copied[i]], column, row});
         }
     }
-    void evaluate(const Scene& scene, const IrradianceSource& source, std::vector<Image>& images) const {
-        const std::vector<Rgb> irradiance = source.irradiance(places_, 1 / options_.texels_per_metre);
+    void evaluate(const Scene& scene, const BakedLight& light, const Monitor& monitor,
+                  std::vector<Image>& images) const {
+        const std::vector<Rgb> irradiance = light.irradiance(places_, 1 / options_.texels_per_metre, monitor);
         for (const Target& target : targets_)
             images[target.page].at(target.column, target.row) =
                 content_of(scene, places_[target.place], irradiance[target.place], options_.content);
@@ -308,7 +209,7 @@ class LightmapTexels {
     };
 
     const LightmapOptions& options_;
-    std::vector<TexelPlace> places_;
+    std::vector<BakedPoint> places_;
     std::vector<Target> targets_;
     std::int64_t texels_inside_ = 0;
 };
@@ -330,12 +231,10 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
         Solution group_solution = solution;
         group_solution.irradiance = std::move(group_solution.groups[g]);
         group_solution.groups.clear();
-        ExportOptions group_options = options;
         const auto count = static_cast<double>(groups.size()), before = static_cast<double>(g);
-        group_options.monitor = monitor_section(options.monitor, before / count, (before + 1) / count);
         lightmap.groups.push_back(lightmap.images);  // still black
-        texels.evaluate(group_scene, IrradianceSource(group_scene, group_solution, group_options),
-                        lightmap.groups.back());
+        texels.evaluate(group_scene, BakedLight(group_scene, group_solution, options.bake, samples_of_texel),
+                        monitor_section(options.monitor, before / count, (before + 1) / count), lightmap.groups.back());
     }
     for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
 }
@@ -345,7 +244,8 @@ double texel_count(const LightmapChart& chart, int gutter) {
 }
 
 /// @param image_texels  Of all images. @param chart_texels  With gutters.
-void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, std::size_t groups) {
+void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, bool gathers,
+                    std::size_t groups) {
     constexpr double encoded_bytes = 16, target_bytes = 16;
     // Per image texel: itself, a copy to encode.
     constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
@@ -353,7 +253,6 @@ void require_memory(double image_texels, double chart_texels, const LightmapOpti
     constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb),
                      gathered_bytes =
                          path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);
-    const bool gathers = options.shading == LightmapShading::gather;
     const double bytes =
         image_texels * (image_bytes + (options.groups ? static_cast<double>(groups) * group_bytes : 0)) +
         chart_texels * (texel_bytes + (gathers ? gathered_bytes : 0));
@@ -386,7 +285,8 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     double image_texels = 0, chart_texels = 0;
     for (const Imath::V2i& size : sizes) image_texels += static_cast<double>(size.x) * size.y;
     for (const LightmapChart& chart : lightmap.charts) chart_texels += texel_count(chart, lightmap_options.gutter);
-    require_memory(image_texels, chart_texels, lightmap_options, solution.groups.size());
+    require_memory(image_texels, chart_texels, lightmap_options, options.bake.shading == BakeShading::gather,
+                   solution.groups.size());
     for (const Imath::V2i& size : sizes) lightmap.images.emplace_back(size.x, size.y);
     LightmapTexels texels(lightmap_options);
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {
@@ -400,7 +300,8 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     if (lightmap_options.groups)
         evaluate_groups(texels, scene, solution, options, lightmap);
     else
-        texels.evaluate(scene, IrradianceSource(scene, solution, options), lightmap.images);
+        texels.evaluate(scene, BakedLight(scene, solution, options.bake, samples_of_texel), options.monitor,
+                        lightmap.images);
     lightmap.used = static_cast<double>(texels.count()) / image_texels;
     lightmap.covered = static_cast<double>(texels.count_inside()) / image_texels;
     return lightmap;

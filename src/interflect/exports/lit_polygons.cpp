@@ -29,8 +29,12 @@ struct VertexHash {
 }  // namespace
 
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution) {
-    const ElementForest& forest = *solution.forest;
-    const ElementMesh mesh(scene, forest, solution.irradiance);
+    return lit_polygons(scene, {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance)});
+}
+
+LitPolygons lit_polygons(const Scene& scene, const VertexLight& light) {
+    const ElementForest& forest = *light.forest;
+    const ElementMesh& mesh = light.mesh;
     LitPolygons polygons;
     polygons.points = mesh.points();
     std::unordered_map<LitPolygons::Vertex, std::uint32_t, VertexHash> numbers;

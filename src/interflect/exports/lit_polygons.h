@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "interflect/exports/vertex_light.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/scene.h"
 #include "interflect/solution.h"
@@ -33,6 +34,8 @@ struct LitPolygons {
 };
 
 /// Omits leaves without area.
+LitPolygons lit_polygons(const Scene& scene, const VertexLight& light);
+/// Of the solution's own elements.
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution);
 
 /// Returns radiance times 2^exposure, within_display_range(), as 8-bit sRGB. @param radiosity  [lm/m^2 or W/m^2]

@@ -106,7 +106,7 @@ std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scen
         throw InputError(
             path, 0,
             "files of this format cannot hold this name, whose first blanks readers skip: expected one without");
-    const LitPolygons polygons = lit_polygons(scene, solution);
+    const LitPolygons polygons = lit_polygons(scene, make_vertex_light(scene, solution, options));
     std::vector<ExportedFile> files = texture_files(path, scene);
     const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
     std::string text = fmt::format(

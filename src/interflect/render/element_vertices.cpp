@@ -277,6 +277,12 @@ std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertice
                                std::span<const Rgb> irradiance) {
     std::vector<Rgb> values(irradiance.begin(), irradiance.end());
     vertices.normals().apply(forest, values);
+    return joined_at_vertices(forest, vertices, [&](std::uint32_t leaf, std::uint32_t) { return values[leaf]; });
+}
+
+std::vector<Rgb> joined_at_vertices(
+    const ElementForest& forest, const ElementVertices& vertices,
+    const std::function<std::optional<Rgb>(std::uint32_t leaf, std::uint32_t corner)>& at_corner) {
     std::vector<RgbD> sum(vertices.count(), RgbD(0, 0, 0));
     std::vector<double> weight(vertices.count(), 0.0);
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
@@ -284,7 +290,9 @@ std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertice
         const Corners& corners = vertices.corners(e);
         const std::array<float, 4> angles = corner_angles(forest.geometry(forest.patch(e)), forest.cell(e));
         for (std::uint32_t c = 0; c < corner_count(corners); ++c) {
-            sum[corners[c]] += RgbD(values[e]) * angles[c];
+            const std::optional<Rgb> value = at_corner(e, c);
+            if (!value) continue;
+            sum[corners[c]] += RgbD(*value) * angles[c];
             weight[corners[c]] += angles[c];
         }
     }

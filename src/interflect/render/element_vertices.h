@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,8 +54,13 @@ class ElementVertices {
     std::uint32_t count_ = 0;
 };
 
-/// Converts irradiance from leaves to vertices, after SmoothNormals. A vertex averages its leaves by angle, independent
-/// of tessellation (Thuermer and Wuethrich 1998).
+/// Averages the values of the corners of the leaves at each vertex, by angle, independent of tessellation (Thuermer and
+/// Wuethrich 1998).
+/// @param at_corner  Value of a leaf at its corner 0 to 3; nullopt to ignore it.
+std::vector<Rgb> joined_at_vertices(
+    const ElementForest& forest, const ElementVertices& vertices,
+    const std::function<std::optional<Rgb>(std::uint32_t leaf, std::uint32_t corner)>& at_corner);
+/// The same for the irradiance of leaves, after SmoothNormals.
 std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
                                std::span<const Rgb> irradiance);
 

@@ -206,7 +206,7 @@ bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
 
 bool PathWavefront::leave(Ray& ray, Path& path, const V3f& middle) {
     path.travelled = 0;
-    path.place = s_.indirect_field && vertex_ == 1 ? seen_place(middle, path) : none;
+    path.place = s_.is_hybrid() && vertex_ == 1 ? seen_place(middle, path) : none;
     const std::uint64_t key = sequence(path).key;
     const std::uint32_t point = point_index(path);
     const bool samples_emitters = s_.options.emitter_sampling != EmitterSampling::directions;
@@ -244,7 +244,7 @@ std::uint32_t PathWavefront::seen_place(const V3f& x, const Path& path) {
         i = seen_.size() + 1;
         SeenPlace& place = seen_.emplace_back();
         place.batch = batch, place.patch = path.patch, place.index = path.index, place.normal = path.normal;
-        place.indirect = s_.indirect_field->at(x, path.normal, path.patch);
+        place.indirect = s_.is_direct_only ? Rgb(0) : s_.indirect_field->at(x, path.normal, path.patch);
         if (s_.unoccluded.has_patches()) place.patches.exact = s_.unoccluded.by_patches(x, path.normal, path.patch);
         if (s_.unoccluded.has_luminaires()) place.luminaires.exact = s_.unoccluded.by_luminaires(x, path.normal);
     }
@@ -373,7 +373,7 @@ void PathWavefront::add(std::uint32_t index, std::uint32_t bounces, const Rgb& r
 std::uint32_t PathWavefront::shadow_rays_at(std::uint32_t vertex) const {
     if (vertex == 1 && s_.is_indirect_only) return 0;
     if (vertex > 1 || !s_.known) return 1;
-    return s_.indirect_field ? hybrid_shadow_rays : gathered_shadow_rays;
+    return s_.is_hybrid() ? hybrid_shadow_rays : gathered_shadow_rays;
 }
 
 void PathWavefront::connect_to_patch(const V3f& x, const Path& path, const LightSample& sample) {

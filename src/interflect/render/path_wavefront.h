@@ -51,8 +51,10 @@ struct PathScene {
     const SmoothNormals* smooth_normals = nullptr;  // of visible surfaces; null: flat patches
     const IndirectField* indirect_field = nullptr;  // replaces reflected paths at the first vertex
     bool is_indirect_only = false;                  // omits light that is reflected once
+    bool is_direct_only = false;                    // at the first vertex, of hybrid shading
     bool finds_points = false;                      // paths end at the first vertex
 
+    bool is_hybrid() const { return indirect_field || is_direct_only; }
     /// Whether some direct light is not exact.
     bool directions_find_light() const {
         return !unoccluded.has_patches() || skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;

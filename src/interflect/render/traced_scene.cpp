@@ -118,34 +118,24 @@ std::int64_t trace_gauges(const PathScene& paths, std::size_t first, std::span<R
     for (std::size_t i = 0; i < irradiance.size(); ++i) add_batches(i, 0, first_batches);
     trace();
     batches.clear();
+    const double target = paths.options.until > 0 ? paths.options.until : hybrid_target;
     const std::size_t all_batches = static_cast<std::size_t>(paths.options.samples) / size;
     for (std::size_t i = 0; i < irradiance.size(); ++i)
-        if (std::sqrt(light[i].squared_error()) > hybrid_target * mean_channel(light[i].mean))
+        if (std::sqrt(light[i].squared_error()) > target * mean_channel(light[i].mean))
             add_batches(i, first_batches, all_batches);
     trace();
     for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i] = Rgb(light[i].mean);
     return rays;
 }
 
-}  // namespace
-
-std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance& known,
-                                   std::span<const Gauge> gauges, const PathOptions& options, const Monitor& monitor) {
-    ray_caster.require_made_for(scene);
-    const TracedScene traced(scene, ray_caster, &known);
-    PathStart start;
-    start.gauges = gauges;
-    PathScene paths = traced.paths(start, options, TracedScene::batch_size(options.samples, 8));
-    constexpr double share_of_records = 0.6;  // of the time; roughly
-    const IndirectField field(paths, first_points(paths, monitor.stop), monitor_section(monitor, 0, share_of_records));
-    const Monitor rest = monitor_section(monitor, share_of_records, 1, field.rays());
-    paths.indirect_field = &field;
-    std::vector<Rgb> irradiance(gauges.size());
+std::vector<Rgb> trace_all_gauges(const PathScene& paths, const Monitor& monitor) {
+    const std::size_t gauges = paths.start->gauges.size();
+    std::vector<Rgb> irradiance(gauges);
     constexpr std::size_t per_tile = 256;
     constexpr std::size_t tiles_per_report = 256;
     std::int64_t rays = 0;
-    for (std::size_t first = 0; first < gauges.size(); first += per_tile * tiles_per_report) {
-        const std::size_t count = std::min(per_tile * tiles_per_report, gauges.size() - first);
+    for (std::size_t first = 0; first < gauges; first += per_tile * tiles_per_report) {
+        const std::size_t count = std::min(per_tile * tiles_per_report, gauges - first);
         std::vector<std::int64_t> rays_of_tile((count + per_tile - 1) / per_tile);
         parallel_for_ranges(count, per_tile, [&](std::size_t begin, std::size_t end) {
             if (monitor.stop && *monitor.stop) return;
@@ -153,12 +143,40 @@ std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_cast
                 trace_gauges(paths, first + begin, std::span(irradiance).subspan(first + begin, end - begin));
         });
         if (monitor.stop && *monitor.stop)
-            throw Stopped(fmt::format("stopped when {} of {} texels of the lightmap had light", first, gauges.size()));
+            throw Stopped(fmt::format("stopped when {} of {} baked points had light", first, gauges));
         for (const std::int64_t of_tile : rays_of_tile) rays += of_tile;
-        if (rest.on_progress)
-            rest.on_progress({rays, static_cast<double>(first + count) / static_cast<double>(gauges.size())});
+        if (monitor.on_progress)
+            monitor.on_progress({rays, static_cast<double>(first + count) / static_cast<double>(gauges)});
     }
     return irradiance;
+}
+
+PathStart start_at(std::span<const Gauge> gauges) {
+    PathStart start;
+    start.gauges = gauges;
+    return start;
+}
+
+constexpr int batches_of_gauge = 8;
+
+}  // namespace
+
+std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
+                                   const Monitor& monitor) {
+    const PathStart start = start_at(gauges);
+    PathScene paths = scene.paths(start, options, TracedScene::batch_size(options.samples, batches_of_gauge));
+    constexpr double share_of_records = 0.6;  // of the time; roughly
+    const IndirectField field(paths, first_points(paths, monitor.stop), monitor_section(monitor, 0, share_of_records));
+    paths.indirect_field = &field;
+    return trace_all_gauges(paths, monitor_section(monitor, share_of_records, 1, field.rays()));
+}
+
+std::vector<Rgb> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
+                                   const Monitor& monitor) {
+    const PathStart start = start_at(gauges);
+    PathScene paths = scene.paths(start, options, TracedScene::batch_size(options.samples, batches_of_gauge));
+    paths.is_direct_only = true;
+    return trace_all_gauges(paths, monitor);
 }
 
 }  // namespace interflect::detail

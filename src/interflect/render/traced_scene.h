@@ -57,9 +57,14 @@ constexpr double hybrid_target = 0.06;
 /// @param stop  If set, some points are missing; may be null.
 std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop);
 
-/// Irradiance of gauges by hybrid shading, with up to options.samples paths where light varies.
+/// Irradiance of gauges by hybrid shading, with up to options.samples paths for each whose estimated relative error
+/// exceeds options.until or, without it, hybrid_target.
+/// @param scene  With interpolated KnownIrradiance.
 /// @return       [as H], per gauge; the same bits for any number of threads. @throws Stopped
-std::vector<Rgb> hybrid_irradiance(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance& known,
-                                   std::span<const Gauge> gauges, const PathOptions& options, const Monitor& monitor);
+std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
+                                   const Monitor& monitor);
+/// Its direct part.
+std::vector<Rgb> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
+                                   const Monitor& monitor);
 
 }  // namespace interflect::detail

@@ -1,0 +1,265 @@
+#include "interflect/exports/vertex_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "interflect/base/monitor_section.h"
+#include "interflect/base/random.h"
+#include "interflect/exports/baked_light.h"
+#include "interflect/exports/shown_patches.h"
+#include "interflect/geometry/texture_mapping.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Corners of an element in the order of ElementVertices::corners(), then points where interpolation is tested.
+constexpr std::array<Parameters, 9> square_points{
+    {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5f, 0}, {1, 0.5f}, {0.5f, 1}, {0, 0.5f}, {0.5f, 0.5f}}};
+constexpr std::array<Parameters, 6> triangle_points{{{0, 0}, {1, 0}, {0, 1}, {0.5f, 0}, {0.5f, 0.5f}, {0, 0.5f}}};
+
+std::span<const Parameters> points_of(bool is_triangle) {
+    return is_triangle ? std::span<const Parameters>(triangle_points) : std::span<const Parameters>(square_points);
+}
+
+float longest_edge(const PatchGeometry& patch) {
+    const std::size_t corners = patch.is_triangle() ? 3 : 4;
+    const std::span<const Parameters> points = points_of(patch.is_triangle());
+    float longest = 0;
+    for (std::size_t c = 0; c < corners; ++c)
+        longest = std::max(longest, (patch.point(points[(c + 1) % corners]) - patch.point(points[c])).length());
+    return longest;
+}
+
+/// Area-weighted mean over the shown leaves, of the mean of the channels [as H].
+double mean_irradiance(const Solution& solution, const std::vector<bool>& shown) {
+    const ElementForest& forest = *solution.forest;
+    double sum = 0, area = 0;
+    for (const std::uint32_t leaf : forest.leaves()) {
+        if (!shown[forest.patch(leaf)]) continue;
+        sum += mean_channel(solution.irradiance[leaf]) * forest.area(leaf);
+        area += forest.area(leaf);
+    }
+    return area > 0 ? sum / area : 0;
+}
+
+/// Sides of the area over which a vertex averages direct light, by parameters of its patch: those of the finest
+/// elements.
+std::array<Parameters, 2> sides_of(const PatchGeometry& patch, float min_edge) {
+    const auto side = [&](const V3f& edge) { return std::min(1.0f, min_edge / edge.length()); };
+    return {{{side(patch.shape().edge_u), 0}, {0, side(patch.shape().edge_v)}}};
+}
+
+double count_triangles(const Scene& scene, const ElementForest& forest, const std::vector<bool>& shown) {
+    const ElementMesh mesh(scene, forest, std::vector<Rgb>(forest.size(), Rgb(0)));
+    double triangles = 0;
+    for (const std::uint32_t leaf : forest.leaves()) {
+        if (!shown[forest.patch(leaf)]) continue;
+        const std::size_t vertices = mesh.outline(leaf).size();
+        const bool is_fan = vertices > (forest.geometry(forest.patch(leaf)).is_triangle() ? 3u : 4u);
+        triangles += static_cast<double>(is_fan ? vertices : vertices - std::min<std::size_t>(vertices, 2));
+    }
+    return triangles;
+}
+
+/// Divides elements, coarse ones first, until direct light is interpolated well.
+class Division {
+  public:
+    Division(const Scene& scene, const BakedLight& light, const std::vector<bool>& shown, double mean,
+             const VertexOptions& options)
+        : scene_(scene),
+          light_(light),
+          shown_(shown),
+          mean_(mean),
+          options_(options),
+          forest_(std::make_shared<ElementForest>(scene, scene.patches.size() + capacity(options))) {
+        for (std::uint32_t p = 0; p < forest_->patch_count(); ++p) edges_.push_back(longest_edge(forest_->geometry(p)));
+        triangles_ = count_triangles(scene, *forest_, shown);
+    }
+
+    std::shared_ptr<const ElementForest> run(const Monitor& monitor) {
+        std::vector<std::uint32_t> leaves = divide_long_edges();
+        for (double fraction = 0; !leaves.empty(); fraction = (1 + fraction) / 2) {
+            leaves = divide_badly_interpolated(leaves, monitor_section(monitor, fraction, (1 + fraction) / 2));
+            known_.clear();
+        }
+        forest_->put_in_order(forest_->patch_count());
+        return forest_;
+    }
+
+  private:
+    struct Key {
+        std::uint32_t patch;
+        Parameters at;
+        bool operator==(const Key& o) const { return patch == o.patch && at.u == o.at.u && at.v == o.at.v; }
+    };
+    struct KeyHash {
+        std::size_t operator()(const Key& key) const {
+            return mix(mix(key.patch ^ std::hash<float>()(key.at.u), 0) ^ std::hash<float>()(key.at.v), 0);
+        }
+    };
+
+    static std::size_t capacity(const VertexOptions& options) {
+        return 2 * static_cast<std::size_t>(options.max_triangles) + 4;
+    }
+
+    bool is_triangle(std::uint32_t e) const { return forest_->geometry(forest_->patch(e)).is_triangle(); }
+    float edge(std::uint32_t e) const { return edges_[forest_->patch(e)] * std::abs(forest_->cell(e).size); }
+
+    /// Returns the first child; none if triangles or elements are used up.
+    std::uint32_t divide(std::uint32_t e, double max_triangles) {
+        // With those of fans in neighbours, measured in furnished rooms.
+        const double added = is_triangle(e) ? 6 : 9.5;
+        if (triangles_ + added > max_triangles) return none;
+        const std::uint32_t child = forest_->subdivide(e);
+        if (child != none) triangles_ += added;
+        return child;
+    }
+
+    /// Returns the leaves of shown patches.
+    std::vector<std::uint32_t> divide_long_edges() {
+        const double half_of_all = options_.max_triangles / 2.0;
+        std::vector<std::uint32_t> leaves;
+        for (std::uint32_t e = 0; e < forest_->size(); ++e) {
+            if (!shown_[forest_->patch(e)]) continue;
+            if (!(edge(e) > options_.max_edge) || divide(e, half_of_all) == none) leaves.push_back(e);
+        }
+        return leaves;
+    }
+
+    /// Returns the children.
+    std::vector<std::uint32_t> divide_badly_interpolated(const std::vector<std::uint32_t>& leaves,
+                                                         const Monitor& monitor) {
+        std::vector<std::uint32_t> tested;
+        for (const std::uint32_t e : leaves)
+            if (edge(e) > options_.min_edge) tested.push_back(e);
+        find_direct_light(tested, monitor);
+        std::vector<std::pair<double, std::uint32_t>> worst;  // error times area
+        for (const std::uint32_t e : tested)
+            if (const double error = error_of(e); error > options_.max_error)
+                worst.emplace_back(error * forest_->area(e), e);
+        std::sort(worst.begin(), worst.end(), [](const auto& a, const auto& b) {
+            return a.first > b.first || (a.first == b.first && a.second < b.second);
+        });
+        std::vector<std::uint32_t> children;
+        for (const auto& [error, e] : worst) {
+            const std::uint32_t child = divide(e, options_.max_triangles);
+            if (child == none) continue;
+            for (std::uint32_t k = 0; k < 4; ++k) children.push_back(child + k);
+        }
+        return children;
+    }
+
+    void find_direct_light(const std::vector<std::uint32_t>& leaves, const Monitor& monitor) {
+        std::vector<BakedPoint> points;
+        std::unordered_map<Key, std::uint32_t, KeyHash> numbers;
+        for (const std::uint32_t e : leaves) {
+            const Cell cell = forest_->cell(e);
+            const std::uint32_t patch = forest_->patch(e);
+            for (const auto& [s, t] : points_of(is_triangle(e))) {
+                const Parameters at = cell.at(s, t);
+                if (known_.try_emplace({patch, at}, points.size()).second)
+                    points.push_back({patch, at, sides_of(forest_->geometry(patch), options_.min_edge)});
+            }
+        }
+        direct_ = light_.direct(points, options_.min_edge, monitor);
+    }
+
+    /// Emission of textures counts as direct light.
+    Rgb direct_at(std::uint32_t e, Parameters local) const {
+        const std::uint32_t patch = forest_->patch(e);
+        const Parameters at = forest_->cell(e).at(local.u, local.v);
+        return direct_[known_.at({patch, at})] + exitance_at(scene_, scene_.patches[patch], at);
+    }
+
+    /// Largest error of interpolation, relative to the irradiance there or the mean.
+    double error_of(std::uint32_t e) const {
+        const bool triangle = is_triangle(e);
+        const std::span<const Parameters> points = points_of(triangle);
+        const std::size_t corners = triangle ? 3 : 4;
+        std::array<Rgb, 4> at_corner;
+        for (std::size_t c = 0; c < corners; ++c) at_corner[c] = direct_at(e, points[c]);
+        double largest = 0;
+        for (const Parameters& p : points.subspan(corners)) {
+            const Rgb interpolated = triangle ? at_corner[0] * (1 - p.u - p.v) + at_corner[1] * p.u + at_corner[2] * p.v
+                                              : (at_corner[0] * (1 - p.u) + at_corner[1] * p.u) * (1 - p.v) +
+                                                    (at_corner[3] * (1 - p.u) + at_corner[2] * p.u) * p.v;
+            const Rgb direct = direct_at(e, p);
+            const double all =
+                mean_channel(light_.interpolated({forest_->patch(e), forest_->cell(e).at(p.u, p.v), {}}));
+            const double scale = std::max({all, mean_channel(direct), mean_});
+            if (scale > 0) largest = std::max(largest, std::abs(mean_channel(direct - interpolated)) / scale);
+        }
+        return largest;
+    }
+
+    const Scene& scene_;
+    const BakedLight& light_;
+    const std::vector<bool>& shown_;
+    const double mean_;
+    const VertexOptions& options_;
+    std::shared_ptr<ElementForest> forest_;
+    std::vector<float> edges_;                             // longest of each patch [m]
+    double triangles_ = 0;                                 // about
+    std::unordered_map<Key, std::size_t, KeyHash> known_;  // in direct_
+    std::vector<Rgb> direct_;
+};
+
+/// One point per vertex, on its first shown patch.
+class VertexPoints {
+  public:
+    VertexPoints(const ElementForest& forest, const ElementVertices& vertices, const std::vector<bool>& shown,
+                 const VertexOptions& options)
+        : numbers_(vertices.count(), none) {
+        for (const std::uint32_t e : forest.leaves()) {
+            const std::uint32_t patch = forest.patch(e);
+            if (!shown[patch]) continue;
+            const PatchGeometry& geometry = forest.geometry(patch);
+            for (std::size_t c = 0; c < (geometry.is_triangle() ? 3u : 4u); ++c) {
+                std::uint32_t& number = numbers_[vertices.corners(e)[c]];
+                if (number != none) continue;
+                number = static_cast<std::uint32_t>(points_.size());
+                const Parameters local = points_of(geometry.is_triangle())[c];
+                points_.push_back({patch, forest.cell(e).at(local.u, local.v), sides_of(geometry, options.min_edge)});
+            }
+        }
+    }
+
+    const std::vector<BakedPoint>& points() const { return points_; }
+    /// Returns `none` for a vertex of patches that are not shown.
+    std::uint32_t number(std::uint32_t vertex) const { return numbers_[vertex]; }
+
+  private:
+    std::vector<BakedPoint> points_;
+    std::vector<std::uint32_t> numbers_;
+};
+
+}  // namespace
+
+VertexLight make_vertex_light(const Scene& scene, const Solution& solution, const ExportOptions& options) {
+    if (options.bake.shading == BakeShading::smooth)
+        return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance)};
+    constexpr int samples_of_vertex = 64;
+    const BakedLight light(scene, solution, options.bake, samples_of_vertex);
+    const std::vector<bool> shown = shown_patches(scene, solution);
+    constexpr double share_of_division = 0.3;  // of the time; roughly
+    Division division(scene, light, shown, mean_irradiance(solution, shown), options.vertices);
+    const auto forest = division.run(monitor_section(options.monitor, 0, share_of_division));
+    ElementVertices vertices(scene, *forest);
+    const VertexPoints points(*forest, vertices, shown, options.vertices);
+    const std::vector<Rgb> irradiance = light.irradiance(points.points(), options.vertices.min_edge,
+                                                         monitor_section(options.monitor, share_of_division, 1));
+    const auto at_corner = [&](std::uint32_t leaf, std::uint32_t corner) {
+        const std::uint32_t i = points.number(vertices.corners(leaf)[corner]);
+        return i == none ? std::nullopt : std::optional(irradiance[i]);
+    };
+    std::vector<Rgb> values = joined_at_vertices(*forest, vertices, at_corner);
+    return {forest, ElementMesh(scene, *forest, std::move(vertices), std::move(values))};
+}
+
+}  // namespace interflect::detail
