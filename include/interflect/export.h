@@ -37,9 +37,9 @@ struct BakeOptions {
 struct VertexOptions {
     /// Largest error of interpolated direct light, relative to the irradiance there, or to the mean where that is
     /// darker; > 0.
-    float max_error = 0.1f;
-    float min_edge = 0.05f;       ///< Shorter edges are not divided [m], > 0.
-    float max_edge = 0.5f;        ///< Longer edges are divided wherever max_triangles suffices [m], >= min_edge.
+    float max_error = 0.05f;
+    float min_edge = 0.02f;       ///< Shorter edges are not divided [m], > 0.
+    float max_edge = 0.25f;       ///< Longer edges are divided wherever max_triangles suffices [m], >= min_edge.
     int max_triangles = 200'000;  ///< About; faces of the scene are never merged. >= 1.
 };
 

@@ -18,21 +18,38 @@ namespace interflect::detail {
 
 namespace {
 
-/// Corners of an element in the order of ElementVertices::corners(), then points where interpolation is tested.
-constexpr std::array<Parameters, 9> square_points{
-    {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0.5f, 0}, {1, 0.5f}, {0.5f, 1}, {0, 0.5f}, {0.5f, 0.5f}}};
-constexpr std::array<Parameters, 6> triangle_points{{{0, 0}, {1, 0}, {0, 1}, {0.5f, 0}, {0.5f, 0.5f}, {0, 0.5f}}};
+/// Corners of an element in its cell, in the order of ElementVertices::corners().
+constexpr std::array<Parameters, 4> square_corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+constexpr std::array<Parameters, 3> triangle_corners{{{0, 0}, {1, 0}, {0, 1}}};
 
-std::span<const Parameters> points_of(bool is_triangle) {
-    return is_triangle ? std::span<const Parameters>(triangle_points) : std::span<const Parameters>(square_points);
+std::span<const Parameters> corners_of(bool is_triangle) {
+    return is_triangle ? std::span<const Parameters>(triangle_corners) : std::span<const Parameters>(square_corners);
+}
+
+/// Middle of two corners, where interpolation is tested.
+struct Middle {
+    std::size_t a, b;
+    Parameters at;
+};
+/// Of edges and of both diagonals, since either may divide a square.
+constexpr std::array<Middle, 6> square_middles{{{0, 1, {0.5f, 0}},
+                                                {1, 2, {1, 0.5f}},
+                                                {2, 3, {0.5f, 1}},
+                                                {3, 0, {0, 0.5f}},
+                                                {0, 2, {0.5f, 0.5f}},
+                                                {1, 3, {0.5f, 0.5f}}}};
+constexpr std::array<Middle, 3> triangle_middles{{{0, 1, {0.5f, 0}}, {1, 2, {0.5f, 0.5f}}, {2, 0, {0, 0.5f}}}};
+
+std::span<const Middle> middles_of(bool is_triangle) {
+    return is_triangle ? std::span<const Middle>(triangle_middles) : std::span<const Middle>(square_middles);
 }
 
 float longest_edge(const PatchGeometry& patch) {
-    const std::size_t corners = patch.is_triangle() ? 3 : 4;
-    const std::span<const Parameters> points = points_of(patch.is_triangle());
+    const std::span<const Parameters> corners = corners_of(patch.is_triangle());
     float longest = 0;
-    for (std::size_t c = 0; c < corners; ++c)
-        longest = std::max(longest, (patch.point(points[(c + 1) % corners]) - patch.point(points[c])).length());
+    for (std::size_t c = 0; c < corners.size(); ++c)
+        longest =
+            std::max(longest, (patch.point(corners[(c + 1) % corners.size()]) - patch.point(corners[c])).length());
     return longest;
 }
 
@@ -48,10 +65,10 @@ double mean_irradiance(const Solution& solution, const std::vector<bool>& shown)
     return area > 0 ? sum / area : 0;
 }
 
-/// Sides of the area over which a vertex averages direct light, by parameters of its patch: those of the finest
-/// elements.
+/// Sides of the area over which a vertex averages direct light, in the patch's parameters: two of the finest elements,
+/// which hides steps along shadow borders.
 std::array<Parameters, 2> sides_of(const PatchGeometry& patch, float min_edge) {
-    const auto side = [&](const V3f& edge) { return std::min(1.0f, min_edge / edge.length()); };
+    const auto side = [&](const V3f& edge) { return std::min(1.0f, 2 * min_edge / edge.length()); };
     return {{{side(patch.shape().edge_u), 0}, {0, side(patch.shape().edge_v)}}};
 }
 
@@ -157,15 +174,16 @@ class Division {
 
     void find_direct_light(const std::vector<std::uint32_t>& leaves, const Monitor& monitor) {
         std::vector<BakedPoint> points;
-        std::unordered_map<Key, std::uint32_t, KeyHash> numbers;
         for (const std::uint32_t e : leaves) {
             const Cell cell = forest_->cell(e);
             const std::uint32_t patch = forest_->patch(e);
-            for (const auto& [s, t] : points_of(is_triangle(e))) {
-                const Parameters at = cell.at(s, t);
+            const auto add = [&](const Parameters& local) {
+                const Parameters at = cell.at(local.u, local.v);
                 if (known_.try_emplace({patch, at}, points.size()).second)
                     points.push_back({patch, at, sides_of(forest_->geometry(patch), options_.min_edge)});
-            }
+            };
+            for (const Parameters& corner : corners_of(is_triangle(e))) add(corner);
+            for (const Middle& middle : middles_of(is_triangle(e))) add(middle.at);
         }
         direct_ = light_.direct(points, options_.min_edge, monitor);
     }
@@ -179,19 +197,13 @@ class Division {
 
     /// Largest error of interpolation, relative to the irradiance there or the mean.
     double error_of(std::uint32_t e) const {
-        const bool triangle = is_triangle(e);
-        const std::span<const Parameters> points = points_of(triangle);
-        const std::size_t corners = triangle ? 3 : 4;
-        std::array<Rgb, 4> at_corner;
-        for (std::size_t c = 0; c < corners; ++c) at_corner[c] = direct_at(e, points[c]);
         double largest = 0;
-        for (const Parameters& p : points.subspan(corners)) {
-            const Rgb interpolated = triangle ? at_corner[0] * (1 - p.u - p.v) + at_corner[1] * p.u + at_corner[2] * p.v
-                                              : (at_corner[0] * (1 - p.u) + at_corner[1] * p.u) * (1 - p.v) +
-                                                    (at_corner[3] * (1 - p.u) + at_corner[2] * p.u) * p.v;
-            const Rgb direct = direct_at(e, p);
+        for (const auto& [a, b, at] : middles_of(is_triangle(e))) {
+            const std::span<const Parameters> corners = corners_of(is_triangle(e));
+            const Rgb interpolated = 0.5f * (direct_at(e, corners[a]) + direct_at(e, corners[b]));
+            const Rgb direct = direct_at(e, at);
             const double all =
-                mean_channel(light_.interpolated({forest_->patch(e), forest_->cell(e).at(p.u, p.v), {}}));
+                mean_channel(light_.interpolated({forest_->patch(e), forest_->cell(e).at(at.u, at.v), {}}));
             const double scale = std::max({all, mean_channel(direct), mean_});
             if (scale > 0) largest = std::max(largest, std::abs(mean_channel(direct - interpolated)) / scale);
         }
@@ -224,7 +236,7 @@ class VertexPoints {
                 std::uint32_t& number = numbers_[vertices.corners(e)[c]];
                 if (number != none) continue;
                 number = static_cast<std::uint32_t>(points_.size());
-                const Parameters local = points_of(geometry.is_triangle())[c];
+                const Parameters local = corners_of(geometry.is_triangle())[c];
                 points_.push_back({patch, forest.cell(e).at(local.u, local.v), sides_of(geometry, options.min_edge)});
             }
         }
