@@ -62,6 +62,7 @@ class Exported(CommandTest):
 
 
 EXPOSED = ("--exposure", "-6")
+ELEMENTS = (*EXPOSED, "--shading", "smooth")
 
 
 class Meshes(Exported):
@@ -75,17 +76,30 @@ class Meshes(Exported):
         return self.bytes(name)
 
     def test_ply_has_every_leaf(self):
-        content = self.export("room.ply", *EXPOSED)
+        content = self.export("room.ply", *ELEMENTS)
         ply = Ply(content)
         self.assertEqual(len(ply.faces), self.leaves)
         self.assertAlmostEqual(ply.area(), AREA, places=3)
         self.assertGreater(max(len(face) for face in ply.faces), 4, "no T-junctions")
         lamp = [v for v in ply.vertices if abs(v["z"] - 2.4) < 1e-6 and v["red"] == 255]
         self.assertGreaterEqual(len(lamp), 4)  # 1000 / pi / 64 is above 1
-        self.assertEqual(self.export("again.ply", *EXPOSED), content)
+        self.assertEqual(self.export("again.ply", *ELEMENTS), content)
+
+    def test_meshes_follow_direct_light(self):
+        few, usual, many = (
+            Ply(self.export("room.ply", *EXPOSED, *options))
+            for options in (("--max-triangles", "300"), (), ("--vertex-error", "0.01"))
+        )
+        for ply in (few, usual, many):
+            self.assertAlmostEqual(ply.area(), AREA, places=3)
+        self.assertLess(sum(len(face) - 2 for face in few.faces), 330)
+        self.assertLess(2 * len(few.faces), len(usual.faces))
+        self.assertLess(1.5 * len(usual.faces), len(many.faces))
+        obj = self.export("room.obj", *EXPOSED).decode().splitlines()
+        self.assertEqual(sum(line.startswith("f ") for line in obj), len(usual.faces))
 
     def test_obj_has_geometry_and_materials(self):
-        text = self.export("room.obj", *EXPOSED).decode().splitlines()
+        text = self.export("room.obj", *ELEMENTS).decode().splitlines()
         points = [tuple(map(float, line.split()[1:4])) for line in text if line.startswith("v ")]
         faces = [[points[int(i) - 1] for i in line.split()[1:]] for line in text if line.startswith("f ")]
         self.assertEqual(len(faces), self.leaves)

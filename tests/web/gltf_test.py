@@ -9,7 +9,7 @@ from command import ROOT, CommandTest, room, vertices
 
 WEB = ROOT / "tests" / "web"
 EXPORTS = {  # by name: options, extension
-    "vertices": ((), ".glb"),
+    "vertices": (("--shading", "smooth"), ".glb"),
     "json": ((), ".gltf"),
     "irradiance": (("--lightmap", "--shading", "smooth"), ".glb"),
     "radiance": (("--lightmap", "--shading", "smooth", "--lightmap-content", "radiance"), ".glb"),

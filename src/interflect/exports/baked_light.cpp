@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "interflect/base/parallel.h"
 #include "interflect/measure.h"
@@ -18,16 +17,15 @@ constexpr float inset = 0.05f;
 constexpr int gathered_directions = 64;
 /// To test interpolation.
 constexpr int samples_of_direct = 8;
-/// Relative error, times the root of the number of samples, below which a point needs only a quarter of them.
-constexpr double noise_of_one_sample = 0.24;
 
 }  // namespace
 
-BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeOptions& options, int usual_samples)
+BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeOptions& options,
+                       const DirectSampling& sampling)
     : scene_(scene),
       solution_(solution),
       options_(options),
-      usual_samples_(usual_samples),
+      sampling_(sampling),
       vertices_(scene, *solution.forest),
       smooth_(*solution.forest, vertices_, solution.irradiance),
       known_{*solution.forest, solution.irradiance, true} {
@@ -58,9 +56,9 @@ std::vector<Rgb> BakedLight::direct(std::span<const BakedPoint> points, float sp
 PathOptions BakedLight::path_options() const {
     PathOptions path;
     path.samples =
-        options_.samples.value_or(options_.shading == BakeShading::gather ? gathered_directions : usual_samples_);
+        options_.samples.value_or(options_.shading == BakeShading::gather ? gathered_directions : sampling_.samples);
     path.max_samples = std::max(path.max_samples, path.samples);
-    path.until = noise_of_one_sample / std::sqrt(path.samples);
+    path.until = sampling_.max_noise;
     path.seed = options_.seed;
     path.quantity = PathQuantity::irradiance;
     return path;
@@ -99,7 +97,7 @@ std::vector<Rgb> BakedLight::gathered(std::span<const BakedPoint> points, float 
     const auto lit =
         std::count_if(measured.begin(), measured.end(), [](const MeasuredIrradiance& m) { return m.is_measured(); });
     if (static_cast<std::size_t>(lit) < measured.size())
-        throw Stopped(fmt::format("stopped when {} of {} baked points had light", lit, measured.size()));
+        throw Stopped(fmt::format("stopped when {} of {} texels or vertices had light", lit, measured.size()));
     std::vector<Rgb> values;
     values.reserve(measured.size());
     for (const MeasuredIrradiance& m : measured) values.push_back(m.sum());

@@ -23,12 +23,18 @@ struct BakedPoint {
     std::array<Parameters, 2> sides{};
 };
 
+/// Of direct light in hybrid shading.
+struct DirectSampling {
+    int samples;       ///< Without BakeOptions::samples.
+    double max_noise;  ///< Estimated relative error below which a quarter of the samples suffices.
+};
+
 /// Irradiance of points by the chosen shading.
 class BakedLight {
   public:
     /// Keeps references.
-    /// @param usual_samples  Of hybrid shading, without BakeOptions::samples.
-    BakedLight(const Scene& scene, const Solution& solution, const BakeOptions& options, int usual_samples);
+    BakedLight(const Scene& scene, const Solution& solution, const BakeOptions& options,
+               const DirectSampling& sampling);
 
     /// @param spacing  Distance between the points; rays start a twentieth of it inside their patch [m].
     /// @return         [as H], per point. @throws Stopped
@@ -46,7 +52,7 @@ class BakedLight {
     const Scene& scene_;
     const Solution& solution_;
     const BakeOptions& options_;
-    const int usual_samples_;
+    const DirectSampling sampling_;
     ElementVertices vertices_;
     SmoothField smooth_;
     KnownIrradiance known_;

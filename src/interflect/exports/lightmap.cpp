@@ -26,7 +26,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr int samples_of_texel = 16;
+constexpr DirectSampling texel_sampling{16, hybrid_target};
 
 struct TexelPlace : BakedPoint {
     bool is_inside = false;
@@ -233,7 +233,7 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
         group_solution.groups.clear();
         const auto count = static_cast<double>(groups.size()), before = static_cast<double>(g);
         lightmap.groups.push_back(lightmap.images);  // still black
-        texels.evaluate(group_scene, BakedLight(group_scene, group_solution, options.bake, samples_of_texel),
+        texels.evaluate(group_scene, BakedLight(group_scene, group_solution, options.bake, texel_sampling),
                         monitor_section(options.monitor, before / count, (before + 1) / count), lightmap.groups.back());
     }
     for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
@@ -300,7 +300,7 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     if (lightmap_options.groups)
         evaluate_groups(texels, scene, solution, options, lightmap);
     else
-        texels.evaluate(scene, BakedLight(scene, solution, options.bake, samples_of_texel), options.monitor,
+        texels.evaluate(scene, BakedLight(scene, solution, options.bake, texel_sampling), options.monitor,
                         lightmap.images);
     lightmap.used = static_cast<double>(texels.count()) / image_texels;
     lightmap.covered = static_cast<double>(texels.count_inside()) / image_texels;

@@ -256,8 +256,8 @@ class VertexPoints {
 VertexLight make_vertex_light(const Scene& scene, const Solution& solution, const ExportOptions& options) {
     if (options.bake.shading == BakeShading::smooth)
         return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance)};
-    constexpr int samples_of_vertex = 64;
-    const BakedLight light(scene, solution, options.bake, samples_of_vertex);
+    constexpr DirectSampling vertex_sampling{64, 1e-3};  // all samples wherever there is noise
+    const BakedLight light(scene, solution, options.bake, vertex_sampling);
     const std::vector<bool> shown = shown_patches(scene, solution);
     constexpr double share_of_division = 0.3;  // of the time; roughly
     Division division(scene, light, shown, mean_irradiance(solution, shown), options.vertices);

@@ -106,14 +106,15 @@ std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scen
         throw InputError(
             path, 0,
             "files of this format cannot hold this name, whose first blanks readers skip: expected one without");
-    const LitPolygons polygons = lit_polygons(scene, make_vertex_light(scene, solution, options));
+    const VertexLight light = make_vertex_light(scene, solution, options);
+    const LitPolygons polygons = lit_polygons(scene, light);
     std::vector<ExportedFile> files = texture_files(path, scene);
     const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
     std::string text = fmt::format(
         "# Interflect {}\n# Colours of vertices: radiance [cd/m^2] * 2^{}, scaled to at most 1, as sRGB\nmtllib {}\n",
         INTERFLECT_VERSION, options.exposure, library.filename().string());
     append_vertices(text, scene, polygons, options.exposure);
-    append_faces(text, scene, *solution.forest, polygons);
+    append_faces(text, scene, *light.forest, polygons);
     std::string materials = materials_text(path, scene, files);
     files.push_back({library, std::move(materials)});
     files.push_back({path, std::move(text)});

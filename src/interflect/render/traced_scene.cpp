@@ -143,7 +143,7 @@ std::vector<Rgb> trace_all_gauges(const PathScene& paths, const Monitor& monitor
                 trace_gauges(paths, first + begin, std::span(irradiance).subspan(first + begin, end - begin));
         });
         if (monitor.stop && *monitor.stop)
-            throw Stopped(fmt::format("stopped when {} of {} baked points had light", first, gauges));
+            throw Stopped(fmt::format("stopped when {} of {} texels or vertices had light", first, gauges));
         for (const std::int64_t of_tile : rays_of_tile) rays += of_tile;
         if (monitor.on_progress)
             monitor.on_progress({rays, static_cast<double>(first + count) / static_cast<double>(gauges)});
