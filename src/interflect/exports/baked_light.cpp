@@ -58,7 +58,7 @@ PathOptions BakedLight::path_options() const {
     path.samples =
         options_.samples.value_or(options_.shading == BakeShading::gather ? gathered_directions : sampling_.samples);
     path.max_samples = std::max(path.max_samples, path.samples);
-    path.until = sampling_.max_noise;
+    if (options_.shading == BakeShading::hybrid) path.until = sampling_.max_noise;
     path.seed = options_.seed;
     path.quantity = PathQuantity::irradiance;
     return path;
