@@ -299,7 +299,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
 
-    // --time limits the whole command and does not replace the default number of rays.
+    // --time limits the whole command.
     constexpr double shortest_time = 1e-3;  // [s]
     const bool is_limited = !solved_before && std::isfinite(options.solver.time());
     double seconds_to_preview = 1;
@@ -307,7 +307,6 @@ void run_solution(RenderArguments& options, PendingFile& output) {
         const double left = std::max(shortest_time, options.seconds_left());
         seconds_to_preview = std::min(seconds_to_preview, left / 10);
         solve_options.limits.time = left / 2;  // until the time of drawing is known
-        if (options.solver.limits_time_only()) solve_options.limits.rays = SolveOptions().limits.rays;
     }
 
     options.render.width = options.size.width;

@@ -287,7 +287,7 @@ void LimitOptions::add_to(CLI::App& app) {
                      "Most rays to trace in all, such as 20M (default 20M, unless --time or --until is given)")
               ->type_name("COUNT"));
     group(app.add_option("--time", time,
-                         "Most seconds to solve; reading and cutting the scene, and drawing and writing, come on top")
+                         "Most seconds to solve, besides reading, cutting and writing; in render: for the whole command")
               ->type_name("SECONDS")
               ->check(number_between(1e-3, 1e9)));
     group(add_parsed(app, "--until", until, parse_share,

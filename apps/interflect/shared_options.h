@@ -102,8 +102,6 @@ struct SolverOptions {
     std::uint64_t seed() const { return solve_.seed; }
     double until() const { return limits_.resolved().until; }  ///< Target of the relative error; 0 if not given.
     double time() const { return limits_.resolved().time; }    ///< [s]; infinite if not given.
-    /// Whether --time is the only limit.
-    bool limits_time_only() const { return limits_.time && !limits_.rays && !limits_.until; }
 
   private:
     void add_refinement(CLI::App& app);

@@ -109,7 +109,7 @@ class TimeLimit(RenderTest):
         self.assertNotIn("not reached", said)
 
     def test_a_long_time_changes_neither_rays_nor_picture(self):
-        picture = ("--size", "64x36", "--samples", "16", "--mesh-size", "0.5", "--method", "srr")
+        picture = ("--size", "64x36", "--samples", "16", "--mesh-size", "0.5", "--method", "srr", "--rays", "500k")
         self.interflect("render", "room.mgf", "-o", "a.exr", *picture, "--stats", "a.json")
         self.limited("b.exr", 1000, *picture, "--stats", "b.json")
         rays = [json.loads((self.folder / n).read_text().splitlines()[-1])["rays"] for n in ("a.json", "b.json")]
