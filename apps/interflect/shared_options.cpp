@@ -286,10 +286,11 @@ void LimitOptions::add_to(CLI::App& app) {
     group(add_parsed(app, "--rays", rays, parse_count,
                      "Most rays to trace in all, such as 20M (default 20M, unless --time or --until is given)")
               ->type_name("COUNT"));
-    group(app.add_option("--time", time,
-                         "Most seconds to solve, besides reading, cutting and writing; in render: for the whole command")
-              ->type_name("SECONDS")
-              ->check(number_between(1e-3, 1e9)));
+    group(
+        app.add_option("--time", time,
+                       "Most seconds to solve, besides reading, cutting and writing; in render: for the whole command")
+            ->type_name("SECONDS")
+            ->check(number_between(1e-3, 1e9)));
     group(add_parsed(app, "--until", until, parse_share,
                      "Stop at this estimated relative error, such as 2%; with a view: of what it shows")
               ->type_name("SHARE"));
