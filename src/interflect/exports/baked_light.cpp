@@ -15,8 +15,6 @@ namespace {
 /// would otherwise start in its plane.
 constexpr float inset = 0.05f;
 constexpr int gathered_directions = 64;
-/// To test interpolation.
-constexpr int samples_of_direct = 8;
 
 }  // namespace
 
@@ -47,9 +45,10 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, floa
     return values;
 }
 
-std::vector<Rgb> BakedLight::direct(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const {
+std::vector<Rgb> BakedLight::direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+                                    const Monitor& monitor) const {
     PathOptions options = path_options();
-    options.samples = std::min(options.samples, samples_of_direct);
+    options.samples = std::min(options.samples, max_samples);
     return direct_irradiance(*traced_, gauges(points, spacing), options, monitor);
 }
 

@@ -39,8 +39,9 @@ class BakedLight {
     /// @param spacing  Distance between the points; rays start a twentieth of it inside their patch [m].
     /// @return         [as H], per point. @throws Stopped
     std::vector<Rgb> irradiance(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const;
-    /// Direct light of hybrid shading, with fewer samples; not for BakeShading::smooth.
-    std::vector<Rgb> direct(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const;
+    /// Direct light of hybrid shading; not for BakeShading::smooth.
+    std::vector<Rgb> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+                            const Monitor& monitor) const;
     /// As by SmoothField.
     Rgb interpolated(const BakedPoint& point) const { return smooth_.at(point.patch, point.at); }
 

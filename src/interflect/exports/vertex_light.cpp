@@ -101,10 +101,8 @@ class Division {
 
     std::shared_ptr<const ElementForest> run(const Monitor& monitor) {
         std::vector<std::uint32_t> leaves = divide_long_edges();
-        for (double fraction = 0; !leaves.empty(); fraction = (1 + fraction) / 2) {
+        for (double fraction = 0; !leaves.empty(); fraction = (1 + fraction) / 2)
             leaves = divide_badly_interpolated(leaves, monitor_section(monitor, fraction, (1 + fraction) / 2));
-            known_.clear();
-        }
         forest_->put_in_order(forest_->patch_count());
         return forest_;
     }
@@ -155,7 +153,11 @@ class Division {
         std::vector<std::uint32_t> tested;
         for (const std::uint32_t e : leaves)
             if (edge(e) > options_.min_edge) tested.push_back(e);
-        find_direct_light(tested, monitor);
+        // Few samples find the leaves that may be interpolated badly, many tell light from noise.
+        constexpr int few = 8, many = 32;
+        find_direct_light(tested, few, monitor_section(monitor, 0, 0.5));
+        std::erase_if(tested, [&](std::uint32_t e) { return !(error_of(e) > options_.max_error); });
+        find_direct_light(tested, many, monitor_section(monitor, 0.5, 1));
         std::vector<std::pair<double, std::uint32_t>> worst;  // error times area
         for (const std::uint32_t e : tested)
             if (const double error = error_of(e); error > options_.max_error)
@@ -172,8 +174,9 @@ class Division {
         return children;
     }
 
-    void find_direct_light(const std::vector<std::uint32_t>& leaves, const Monitor& monitor) {
+    void find_direct_light(const std::vector<std::uint32_t>& leaves, int max_samples, const Monitor& monitor) {
         std::vector<BakedPoint> points;
+        known_.clear();
         for (const std::uint32_t e : leaves) {
             const Cell cell = forest_->cell(e);
             const std::uint32_t patch = forest_->patch(e);
@@ -185,7 +188,7 @@ class Division {
             for (const Parameters& corner : corners_of(is_triangle(e))) add(corner);
             for (const Middle& middle : middles_of(is_triangle(e))) add(middle.at);
         }
-        direct_ = light_.direct(points, options_.min_edge, monitor);
+        direct_ = light_.direct(points, options_.min_edge, max_samples, monitor);
     }
 
     /// Emission of textures counts as direct light.
@@ -259,7 +262,7 @@ VertexLight make_vertex_light(const Scene& scene, const Solution& solution, cons
     constexpr DirectSampling vertex_sampling{64, 1e-3};  // all samples wherever there is noise
     const BakedLight light(scene, solution, options.bake, vertex_sampling);
     const std::vector<bool> shown = shown_patches(scene, solution);
-    constexpr double share_of_division = 0.3;  // of the time; roughly
+    constexpr double share_of_division = 0.4;  // of the time; roughly
     Division division(scene, light, shown, mean_irradiance(solution, shown), options.vertices);
     const auto forest = division.run(monitor_section(options.monitor, 0, share_of_division));
     ElementVertices vertices(scene, *forest);
