@@ -4,9 +4,9 @@
 
 namespace interflect::detail {
 
-/// Output file that appears only when complete, by renaming a temporary file. Replaces the target of a symbolic link;
-/// copies into devices, pipes and standard output ('-'). A killed process leaves .interflect-HOST-PID-N.part.EXTENSION
-/// until the next PendingFile in that folder on that host.
+/// Output file that appears when complete, by renaming a temporary file. Replaces the target of a symbolic link; copies
+/// into devices, pipes and standard output ('-'). A killed process leaves .interflect-HOST-PID-N.part.EXTENSION until
+/// the next PendingFile in that folder on that host.
 class PendingFile {
   public:
     /// @throws InputError if `final_path` is a folder, its folder is missing, or it cannot be written.

@@ -11,8 +11,7 @@
 
 namespace interflect::detail {
 
-/// Array of zeros that never moves: threads can fill new entries while others read old ones. The system allocates pages
-/// on first access.
+/// Zeros that never move: threads can fill new entries while others read old ones. Pages are allocated on first access.
 template <class T>
 class StableArray {
     static_assert(std::is_trivially_copyable_v<T>);

@@ -43,7 +43,7 @@ class StateArchive {
         }
     }
 
-    /// For data stored in another form. Writes and returns `values`, or returns the values read.
+    /// Writes and returns `values`, or returns the values read.
     template <class T>
     std::vector<T> by_value(const std::string& name, std::vector<T> values) {
         if (!reads_) {

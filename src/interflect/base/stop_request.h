@@ -36,7 +36,7 @@ class StopRequest {
     double seconds_ = std::numeric_limits<double>::infinity();
 };
 
-/// Skips the remaining ranges once the run must stop. @throws Interrupted
+/// @throws Interrupted once the run must stop.
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const StopRequest& stop, const Body& body) {
     std::atomic<bool> is_over{false};

@@ -19,7 +19,7 @@ class LocalLights {
     std::size_t size() const { return luminaires_.size(); }
     const Luminaire& luminaire(std::size_t i) const { return luminaires_[i]; }
     V3f position(std::size_t i) const;
-    /// Returns a point just before the surface that contains the luminaire.
+    /// Returns a point before the surface that contains the luminaire.
     V3f before(std::size_t i) const;
     /// Returns rays in groups of equal power; those of measured light start in its opening.
     std::span<const Ray> rays(std::size_t i) const { return {rays_.data() + i * rays_per_light, rays_per_light}; }

@@ -13,7 +13,7 @@ struct OpenEdge {
     std::uint32_t patch = none;
 };
 
-/// Returns edges sorted by patch. Merges vertices at equal positions.
+/// Sorted by patch. Merges vertices at equal positions.
 std::vector<OpenEdge> open_edges(const Scene& scene);
 
 }  // namespace interflect::detail

@@ -6,8 +6,7 @@ namespace interflect::detail {
 
 /// Enclosed space, sampled with random lines from outside.
 struct Shell {
-    /// Nine of ten lines reach an inner side that hardly any ray leaves: true for rooms with a window, false with a
-    /// missing wall.
+    /// Nine of ten lines reach an inner side that few rays leave: true with a window, false with a missing wall.
     bool is_closed = false;
     /// Closed, with a view inside or, without views, 2 m wide in each direction.
     bool is_room = false;

@@ -18,11 +18,11 @@ class SightLines {
     bool is_clear(const V3f& a, const V3f& b) const;
 
     struct RayOutcomes {
-        int escaped = 0, hits = 0;  ///< Numbers of rays.
-        float distance_sum = 0;     ///< [m]
+        int escaped = 0, hits = 0;
+        float distance_sum = 0;  ///< [m]
     };
     static constexpr int rays_per_point = 32;
-    /// Traces rays from just before a surface until more than `max_escaped` escape.
+    /// Traces rays from a surface until more than `max_escaped` escape.
     RayOutcomes trace_from_surface(const V3f& x, const V3f& normal, std::uint64_t key, int max_escaped) const;
     /// Whether a quarter of all directions escape, as outside a closed scene.
     bool is_open(const V3f& x) const;

@@ -11,7 +11,7 @@ struct UpAxis {
     const char* evidence;  ///< "views": nearly certain; "light": a guess.
 };
 
-/// Returns the common up axis of the views, or opposite to most emitted light, since most lamps hang.
+/// Returns the views' common up axis, or opposite to most emitted light, since most lamps hang.
 std::optional<UpAxis> find_up_axis(const Scene& scene);
 
 /// Returns a probable up axis other than z by two of three criteria: light, objects on one floor, low extent. Null if

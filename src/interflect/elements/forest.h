@@ -62,7 +62,7 @@ class ElementForest {
     std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const {
         return leaf_below(root, Cell(), p, limit);
     }
-    /// The same from `e`, whose cell must contain `p`.
+    /// The same from `e`; its cell must contain `p`.
     std::uint32_t leaf_below(std::uint32_t e, Cell cell, Parameters p, std::uint32_t limit = none) const;
 
     /// Creates the children of `e` unless they exist. Thread-safe.
@@ -73,7 +73,7 @@ class ElementForest {
     /// @return  Old index of each element first + i.
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
-    /// Returns parents in order of division, for rebuild().
+    /// Returns the order of division, for rebuild().
     std::vector<std::uint32_t> subdivided() const;
     /// Divides `parents` in this order, in a forest of roots.
     /// @throws InputError if an element cannot be subdivided.
@@ -145,7 +145,7 @@ void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& v
     for (std::uint32_t e = first; e < forest.size(); ++e) values[e] = values[forest.parent(e)];
 }
 
-/// Adds each parent's value per area to its children, from the roots down.
+/// Adds each parent's value per area to its children.
 template <class T>
 void push(const ElementForest& forest, std::vector<T>& values) {
     forest.for_siblings_from_roots([&](std::uint32_t first) {

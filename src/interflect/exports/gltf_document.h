@@ -23,7 +23,7 @@ class GltfDocument {
     int add(const char* array, Json object);
     void use_extension(const char* name);
 
-    /// Return the index of the accessor.
+    /// Return accessor indices.
     int add_positions(std::span<const V3f> values);  ///< Adds bounds, which glTF requires.
     int add_attribute(std::span<const Rgb> values);
     int add_attribute(std::span<const V2f> values);

@@ -29,7 +29,7 @@ class Hdf5Handle {
     herr_t (*close_)(hid_t);
 };
 
-/// Excludes readers and writers of other threads, because HDF5 may not be thread-safe.
+/// Excludes other threads, because HDF5 may not be thread-safe.
 class Hdf5Lock {
   public:
     Hdf5Lock() : lock_(mutex()) {}

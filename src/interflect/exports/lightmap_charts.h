@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Patches in a plane, and their rectangle in a lightmap. Its border runs through the outermost texel centres.
+/// Patches in a plane. The border of their rectangle runs through the outermost texel centres.
 struct LightmapChart {
     FlatPatches patches;  ///< Coordinates along columns and rows from texel (0, 0) [m].
     Imath::V2d size;      ///< [m]

@@ -12,7 +12,7 @@ Texture opacity_of(const Scene& scene, const Material& material);
 /// Divides the reflectance texture by the opacity: black for opacity 0, white without texture.
 Texture opaque_reflectance(const Scene& scene, const Material& material, const Texture& opacity);
 
-/// Whether all texels are fully opaque or transparent, to 8 bits.
+/// Whether texels are fully opaque or transparent, to 8 bits.
 bool is_mask(const Texture& opacity);
 
 }  // namespace interflect::detail

@@ -7,8 +7,8 @@
 
 namespace interflect::detail {
 
-/// Excludes patches covered by coincident faces, dark sides of faces and encased_patches() from export. A face that is
-/// dark on both sides keeps its first. Uses undimmed light, so all states of a solution export the same patches.
+/// Excludes patches covered by coincident faces, dark sides of faces and encased_patches() from export. A face dark on
+/// both sides keeps its first. Uses undimmed light: all states of a solution export the same patches.
 std::vector<bool> shown_patches(const Scene& scene, const Solution& solution);
 
 }  // namespace interflect::detail

@@ -17,7 +17,7 @@ class GltfBuffers {
         std::size_t stride = 0;  ///< 0: packed.
     };
 
-    /// @param parts  Must outlive this object.
+    /// @param parts  Must outlive this.
     GltfBuffers(GltfAsset& asset, const GltfParts& parts);
 
     std::size_t view_count() const { return views_.size(); }

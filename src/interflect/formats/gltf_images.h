@@ -54,7 +54,7 @@ class GltfImages {
 
     /// Returns an index into Model::textures; whether a texel was clamped.
     std::pair<std::uint32_t, bool> texture(const GltfTexels& texels);
-    /// Call after all textures of a material, to keep their sizes equal.
+    /// After all textures of a material, to keep sizes equal.
     void limit_textures();
     const GltfImageMeans& means(std::uint32_t image);
 

@@ -24,7 +24,7 @@ class GltfValue {
     /// Prevents overflow of sums.
     static constexpr std::uint64_t largest_integer = std::uint64_t{1} << 40;
 
-    /// @param json  Must outlive this object; null: absent.
+    /// @param json  Must outlive this; null: absent.
     GltfValue(const nlohmann::json* json, std::string place) : json_(json), place_(std::move(place)) {}
 
     bool exists() const { return json_ != nullptr; }

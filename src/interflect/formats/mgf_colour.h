@@ -11,7 +11,7 @@ struct Chromaticity {
     double x = 1.0 / 3, y = 1.0 / 3;
 };
 
-/// Integrates a spectrum from 380 to 780 nm, linear between its values and 0 elsewhere.
+/// Integrates a spectrum from 380 to 780 nm, linear between values, else 0.
 /// @param first, last  Wavelengths [nm], ascending.
 /// @param values  At least two, at equal steps; may be negative.
 /// @throws std::invalid_argument also if the luminance or X + Y + Z is 0.

@@ -16,7 +16,7 @@
 
 namespace interflect::detail {
 
-/// Builds a Scene from MGF data in world coordinates. Throws std::invalid_argument for invalid requests.
+/// In world coordinates. Throws std::invalid_argument for invalid requests.
 class MgfSceneBuilder {
   public:
     MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options, const Imath::V3d& origin);

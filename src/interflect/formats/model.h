@@ -50,8 +50,7 @@ struct Model {
 };
 
 /// Converts a model to a scene with two-sided faces. Welds corners with equal positions, coordinates and normals.
-/// Merges two triangles into a planar, convex quadrilateral with linear coordinates. Omits faces without area, with a
-/// warning.
+/// Applies merge_triangle_pairs(). Omits faces without area, with a warning.
 ///
 /// Meshes with lightmap coordinates share their object's lightmap; other patches have NaN. Ignores the coordinates if
 /// instances with different transforms share them.

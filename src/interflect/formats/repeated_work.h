@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// Limits the words that arrays and includes repeat: a short file can request 10^14.
+/// Limits words repeated by arrays and includes: a short file can request 10^14.
 class RepeatedWork {
   public:
     static constexpr std::uint64_t words_per_include = 50, words_per_copy = 10;

@@ -36,8 +36,7 @@ class SceneFaces {
     void leave_out(const std::string& message, const Location& where);
 
     Imath::V3d suitable_origin() const { return origin_for(core_of(sample_.faces())); }
-    /// @throws InputError without faces, if rounding removed a large distant one, or for a size or brightness out of
-    /// range.
+    /// @throws InputError without faces, if rounding removed a large one, or for a size or brightness out of range.
     void require_usable() const;
 
   private:

@@ -18,8 +18,8 @@ std::vector<View> read_view_list(const std::filesystem::path& path);
 /// Omits `extent`. @param views  With unique names. @throws std::runtime_error
 void write_view_list(std::span<const View> views, const std::filesystem::path& path);
 
-/// Reads a Radiance view (rvu options), named after the file, with Radiance's defaults; later lines override earlier
-/// ones. Ignores -vh, which follows from the picture's shape.
+/// Reads a Radiance view (rvu options), named after the file, with Radiance's defaults; later lines override. Ignores
+/// -vh, which follows from the picture's shape.
 /// @throws InputError, also for projections other than -vtv, shift, lift or clipping planes.
 View read_radiance_view(const std::filesystem::path& path);
 

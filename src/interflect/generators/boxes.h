@@ -15,8 +15,7 @@ struct BoxesOptions {
 };
 
 /// Creates a closed, square room about the origin, 2.8 m high, with ceiling luminaires and a random box per 1.4 m^2 of
-/// floor, at least 4 mm apart. Views "room-0" and "overview". @throws InputError if the number of boxes is out of
-/// range.
+/// floor, at least 4 mm apart. Views "room-0" and "overview". @throws InputError for options out of range.
 Scene make_boxes(const BoxesOptions& options);
 
 }  // namespace interflect::detail

@@ -15,10 +15,10 @@ struct MazeOptions {
     std::uint64_t seed = 1;
 };
 
-/// Creates a maze to test importance: views see small parts, and most light is indirect. Rooms of 5 to 7 m form a
-/// nearly square grid about the origin, z up, each with a luminaire of about 8,000 lm. Nine furnished rooms match the
-/// scene in Prikryl et al. 2000 (23,182 patches). Views "overview" and, for the first 64 rooms, "room-0", ...
-/// @throws InputError if an option is out of range.
+/// Creates a maze to test importance: views see small parts, most light is indirect. Rooms of 5 to 7 m form a nearly
+/// square grid about the origin, z up, each with a luminaire of about 8,000 lm. Nine furnished rooms match the scene in
+/// Prikryl et al. 2000 (23,182 patches). Views "overview" and, for the first 64 rooms, "room-0", ...
+/// @throws InputError for options out of range.
 Scene make_maze(const MazeOptions& options);
 
 /// Returns the number for about `patches` patches; ignores options.rooms. @throws InputError above max_rooms.

@@ -16,7 +16,7 @@ struct OfficeOptions {
 };
 
 /// Creates equal rooms with rows of desks, a grid of luminaires and furniture along walls; otherwise as make_maze().
-/// @throws InputError if an option is out of range.
+/// @throws InputError for options out of range.
 Scene make_office(const OfficeOptions& options);
 
 }  // namespace interflect::detail

@@ -16,7 +16,7 @@ struct Boxed {
     std::uint32_t index = 0;
 };
 
-/// Arranges a bounding volume hierarchy in place: the middle element is the root, between its subtrees.
+/// Arranges a bounding volume hierarchy in place: the root is in the middle, between its subtrees.
 inline void arrange_box_tree(std::span<Boxed> elements) {
     if (elements.empty()) return;
     Imath::Box3f all, centres;  // centres are doubled

@@ -40,7 +40,7 @@ struct CutFacet {
     bool reached_limit = false;
 };
 
-/// Returns the maximum length of a sliver [m]. Quartering preserves aspect ratios, so long patches yield long elements.
+/// Returns the maximum length of a sliver [m]. Quartering preserves aspect ratios.
 double longest_sliver(const Facet& facet, double surface_area) {
     const double width = surface_area / facet.diameter;
     const bool is_small_part = surface_area > 4 * facet.area();

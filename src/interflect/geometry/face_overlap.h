@@ -20,8 +20,8 @@ inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pa
     return std::max(tolerance[pair.smaller], tolerance[pair.larger] / 8);
 }
 
-/// Finds pairs of faces whose smaller one reaches more than pair_tolerance() into the larger, within that distance of
-/// its plane. Skips one-sided faces with opposite normals, which intercept different rays. Sorted by larger face.
+/// Finds pairs whose smaller face reaches more than pair_tolerance() into the larger, within that distance of its
+/// plane. Skips one-sided faces with opposite normals, which intercept different rays. Sorted by larger face.
 /// @param tolerance  Per patch [m], > 0. @param ignored  Per patch.
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance);

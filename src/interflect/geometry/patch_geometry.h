@@ -39,7 +39,7 @@ class PatchGeometry {
     /// Inverts point() for x near the patch; clamps to it.
     Parameters parameters_of(const V3f& x) const;
 
-    /// Moves a point to at least `distance` [m] from the border, or less in narrow patches.
+    /// Moves a point to at least `distance` [m] from the border, less in narrow patches.
     Parameters inset(Parameters p, float distance) const;
 
     /// Returns |dx/du x dx/dv| [m^2]. Linear in u and v: a cell's area is its parameter area times the value at its

@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// Divides every patch into a grid, for methods without refinement. Triangles become n^2 triangles.
+/// Divides patches into grids, for methods without refinement. Triangles become n^2 triangles.
 /// @param largest_edge  Maximum edge of the pieces [m], > 0.
 /// @throws TooManyPatches above `max_patches`; InputError for an invalid edge or a scene with faults.
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_patches);

@@ -11,7 +11,7 @@ V2f texture_coordinate(const Scene& scene, const Patch& patch, Parameters p);
 
 VertexCoordinates coordinates_at(const Scene& scene, const Patch& patch, Parameters p);
 
-/// Returns the material's value times the texel; exitance in [lm/m^2 or W/m^2].
+/// Material's value times the texel; exitance in [lm/m^2 or W/m^2].
 Rgb reflectance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb exitance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb transmittance_at(const Scene& scene, const Patch& patch, Parameters p);

@@ -57,7 +57,7 @@ class PairFinder {
         return length >= squared_length(triangle, k + 1) && length >= squared_length(triangle, k + 2);
     }
 
-    /// Exporters write both halves in sequence, so most pairs need no search.
+    /// Exporters write halves in sequence: most pairs need no search.
     void pair_neighbours_in_order() {
         for (std::uint32_t t = 0; t + 1 < faces_.size(); ++t)
             for (std::uint32_t i = 0; i < 3 && is_single(t); ++i)

@@ -7,8 +7,8 @@
 
 namespace interflect::detail {
 
-/// Maps positions to violet, teal and yellow with about equal perceived steps, also in grey. Returns linear Rec. 709;
-/// NaN for NaN.
+/// Maps positions to violet, teal and yellow in about equal perceived steps, also in grey. Returns linear Rec. 709; NaN
+/// for NaN.
 /// @param position  Clamped to [0, 1].
 Rgb false_colour(float position);
 
@@ -32,7 +32,7 @@ ColourScale fit_scale(std::vector<float> values, Spacing spacing);
 /// Fits a linear scale from 0 to a round number that at most 2% of the positive, finite values exceed.
 ColourScale fit_round_scale(std::vector<float> values);
 
-/// Converts the first channel. 0 becomes black; pixels that are not finite stay unchanged.
+/// Converts the first channel. 0 becomes black; non-finite pixels stay unchanged.
 Image false_colours(const Image& values, const ColourScale& scale);
 
 }  // namespace interflect::detail

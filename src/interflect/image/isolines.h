@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 /// Anti-aliased; labels long lines, omits short ones, and ends lines at jumps.
 /// @param picture  In false colours.
-/// @param values   In the first channel; 0 replaces values that are not finite.
+/// @param values   In the first channel; 0 replaces non-finite values.
 /// @throws InputError if the sizes differ.
 Image with_isolines(const Image& picture, const Image& values, std::span<const float> levels, const ColourScale& scale);
 

@@ -17,7 +17,7 @@ Image with_legend(const Image& picture, const ColourScale& scale, const std::str
 /// [pixels]
 int legend_height(int width);
 
-/// Whether an unclipped legend takes at most half the picture. @throws InputError for an invalid title.
+/// Whether the whole legend takes at most half the picture. @throws InputError for an invalid title.
 bool legend_fits(int width, int height, const std::string& title);
 
 /// Returns at most `most` values, ascending: 1, 2, 5 times powers of ten, or multiples of one.

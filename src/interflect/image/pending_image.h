@@ -5,7 +5,7 @@
 
 namespace interflect::detail {
 
-/// Errors contain the final name.
+/// Errors name the final file.
 void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata = ImageMetadata(),
                  std::span<const ImageLayer> layers = {});
 

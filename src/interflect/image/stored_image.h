@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// sRGB-encoded pixels of a PNG or JPEG.
+/// sRGB-encoded pixels.
 struct StoredImage {
     static constexpr int channels = 4;  ///< RGBA; alpha is 1 by default.
 

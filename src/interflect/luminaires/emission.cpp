@@ -149,7 +149,7 @@ void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
     emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
-/// Emits from the bounding rectangle of the box along the light, enlarged for the tilted rays of a disc.
+/// From the bounding rectangle of the box along the light, enlarged for the rays of a disc.
 void Emission::add(const DirectionalLight& light) {
     const V3f direction = light.direction.normalized();
     const TangentFrame frame(direction);
@@ -285,8 +285,8 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-/// The ray misses the scene if its line misses the target `box` or crosses a later one, which samples it. Else moves
-/// the origin of a target's ray back to the scene's box.
+/// The ray misses the scene if its line misses the target `box` or crosses a later one. Else its origin moves back to
+/// the scene's box.
 Ray Emission::restrict_to_box(const Ray& ray, std::size_t box) const {
     const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };
     const auto own = boxes_.begin() + static_cast<std::ptrdiff_t>(box);

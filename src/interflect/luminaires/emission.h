@@ -20,7 +20,7 @@
 
 namespace interflect::detail {
 
-/// Part of a sky's radiance with one colour: colour * amount(radiance). All rays of an emitter then carry equal power.
+/// Part of a sky's radiance: colour * amount(radiance). Rays of an emitter then carry equal power.
 struct SkyComponent {
     Rgb colour;
     float (*amount)(const Rgb& radiance);
@@ -28,10 +28,9 @@ struct SkyComponent {
 
 bool line_crosses(const Imath::Box3f& box, const Ray& ray);
 
-/// Rays of luminaires. A point, spot or measured light is one emitter. Outside light (directional lights and skies) has
-/// emitters per box: the scene's, and targets of high importance inside it. A line of outside light is sampled from the
-/// last box that it crosses. Emitters have parts of equal power, by direction or, for outside light, by position.
-/// Immutable, thread-safe.
+/// A point, spot or measured light is one emitter. Outside light (directional lights and skies) has emitters per box:
+/// the scene's, and targets of high importance. A line of outside light is sampled from the last box that it crosses.
+/// Emitters have parts of equal power, by direction or, for outside light, by position. Immutable, thread-safe.
 class Emission {
   public:
     Emission() = default;  ///< No luminaires.
@@ -67,13 +66,13 @@ class Emission {
     std::vector<PartAlong> parts_along(const Ray& light, std::uint32_t sun) const;
 
     /// Generates rays of equal power from the part's samples, beginning with `first_sample`. Those of outside light
-    /// start on or outside the scene's box, and miss the scene if another box samples their line.
+    /// start on or outside the scene's box, and miss it if another box samples their line.
     /// @param key     Of the part's point sequence (fill_points).
     /// @param points  Working memory.
     void shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                std::span<Ray> rays) const;
 
-    /// Point source for the oracle, with about the irradiance of the part at the end of a ray.
+    /// For the oracle, with about the irradiance of the part at the end of a ray.
     struct Proxy {
         V3f position{0, 0, 0};  ///< [m]
         V3f normal{0, 0, 0};    ///< Emission is proportional to the cosine; zero: isotropic.

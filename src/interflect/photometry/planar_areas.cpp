@@ -41,7 +41,7 @@ std::string object_name(const Scene& scene, std::uint32_t patch) {
 
 bool is_number(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == text.npos; }
 
-/// Removes array suffixes: "floor.a0.a12" becomes "floor".
+/// "floor.a0.a12" becomes "floor".
 std::string_view without_copies(std::string_view name) {
     for (std::string_view rest = name;;) {
         const std::size_t dot = rest.rfind('.');

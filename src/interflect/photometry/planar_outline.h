@@ -23,7 +23,7 @@ struct PlanarOutline {
     std::vector<PlanarSegment> border() const;
 };
 
-/// Aligns the axes with the smallest enclosing rectangle: u near x, and v near z unless the plane is horizontal.
+/// Aligns axes with the smallest enclosing rectangle: u near x, v near z unless the plane is horizontal.
 PlanarOutline outline_of(const Scene& scene, const PlanarArea& area);
 
 double distance(const Imath::V2d& p, const PlanarSegment& s);

@@ -25,7 +25,7 @@ class CoincidentFaces {
     CoincidentFaces(const Scene& scene, float tolerance)
         : CoincidentFaces(scene, std::vector<float>(scene.patches.size(), tolerance)) {}
 
-    /// Whether a face with the same corners intercepts all its rays.
+    /// Whether another face with its corners intercepts all its rays.
     bool is_hidden(std::uint32_t face) const { return hidden_[face]; }
 
     /// Whether a face of higher priority covers a part; hits require intercepting_patch().

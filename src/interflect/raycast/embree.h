@@ -74,7 +74,7 @@ class EmbreeContext {
 };
 #endif
 
-/// One Embree geometry. The back of a face follows its front.
+/// The back of a face follows its front.
 struct Faces {
     std::vector<std::uint32_t> fronts;
     bool triangles = false, two_sided = false;

@@ -10,8 +10,8 @@
 
 namespace interflect::detail {
 
-/// Continues rays straight through thin glass and perforated faces (Material::transmittance). Immutable, thread-safe.
-/// Its arguments must outlive it.
+/// Continues rays through thin glass and perforated faces (Material::transmittance). Immutable, thread-safe. Arguments
+/// must outlive it.
 class Panes {
   public:
     Panes(const Scene& scene, const RayCaster& ray_caster);

@@ -31,7 +31,7 @@ struct PixelSamples {
     std::span<const Hit> hits;
 };
 
-/// Traces one camera ray per sample and offset. Calls `visit` once per pixel, from any thread, in any order.
+/// Traces one ray per sample and offset. Calls `visit` once per pixel, from any thread, in any order.
 /// @throws InputError for less than one sample or pixel.
 void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
                   std::span<const PixelOffset> offsets, const Monitor& monitor,

@@ -93,7 +93,7 @@ class VertexBuilder {
         const std::uint32_t a = corners[c], b = corners[(c + 1) % corner_count(corners)];
         return {std::min(a, b), std::max(a, b)};
     }
-    /// Edges of patches use their group: edges at a crease can have the same ends, but not the same midpoint.
+    /// Patch edges use their group: edges at a crease can have the same ends, but not the same midpoint.
     std::uint64_t edge_key(std::uint32_t e, std::uint32_t c) const {
         const auto key = [](std::uint64_t low, std::uint64_t high) { return high << 32 | low; };
         if (e < forest_.patch_count()) return key(surfaces_.edges.group[4 * e + c], surfaces_.edges.group[4 * e + c]);
@@ -142,7 +142,7 @@ class VertexBuilder {
         float size() const { return at[1] - at[0]; }
     };
 
-    /// Collects leaf edges that overlap [from, to] of the patch's edge. `e` covers [low, high] of it.
+    /// Collects edges that overlap [from, to] of the patch's edge. `e` covers [low, high].
     void collect_leaf_edges(std::uint32_t e, std::uint32_t c, float low, float high, float from, float to,
                             std::vector<LeafEdge>& found) const {
         if (high <= from || low >= to) return;

@@ -15,7 +15,7 @@
 
 namespace interflect::detail {
 
-/// Vertices shared by the elements at a point of one smooth surface.
+/// Shared by the elements at a point of one smooth surface.
 class ElementVertices {
   public:
     /// T-vertex inside an edge of a larger leaf; interpolated linearly.

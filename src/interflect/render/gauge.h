@@ -17,7 +17,7 @@ struct Gauge {
     float half_arc = 0;                    // [rad]
     float offset = 0;                      // of ray origins along the normal [m]
     std::uint32_t patch = none;            // below the gauge; `none` in space
-    V3f side_u{0, 0, 0}, side_v{0, 0, 0};  // parallelogram around `position` on the patch, from which rays start [m]
+    V3f side_u{0, 0, 0}, side_v{0, 0, 0};  // parallelogram of ray starts around `position` on the patch [m]
     float inset = 0;                       // least distance of ray starts from the patch's border [m]
 
     float spacing() const { return std::max(side_u.length(), side_v.length()); }

@@ -15,7 +15,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// A record's paths are traced in groups; the variance between groups estimates its error. 128 to 1,024 paths.
+/// Variance between groups estimates the error of a record. 128 to 1,024 paths.
 constexpr std::size_t paths_per_group = 16, min_groups = 8, max_groups = 64;
 /// Groups of a record: groups_per_deviation x sigma / E x reach / spacing, with the standard deviation sigma of a group
 /// and all irradiance E at the record, but at least min_share_of_mean of the mean E. This minimises the squared error
@@ -24,7 +24,7 @@ constexpr float groups_per_deviation = 7, min_share_of_mean = 0.25f;
 /// Reach of a record, relative to the harmonic mean length of its rays; limits in spacings of the points. With 0.35 and
 /// 512 paths, errors are 1.1 to 1.8 times as large.
 constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
-/// A point is covered if the weights of the records there, at most 1 each, have this sum.
+/// Sum of record weights, at most 1 each, that covers a point.
 constexpr float covering_weight = 1.5f;
 constexpr std::size_t points_of_first_round = 256;  // the total doubles with each round
 constexpr std::size_t points_per_task = 1024, records_per_task = 64, groups_per_task = 128;
@@ -74,7 +74,6 @@ void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> 
         std::vector<SurfacePoint> candidates;
         for (std::size_t i = begin; i < end; ++i) candidates.push_back(points[order[i]]);
         add_records(scene, uncovered_among(candidates), monitor.stop);
-        // Few points of later rounds become records.
         const double done = std::sqrt(static_cast<double>(end) / static_cast<double>(points.size()));
         if (monitor.on_progress) monitor.on_progress({rays_, done});
     }
@@ -116,7 +115,7 @@ void IndirectField::gather(const PathScene& scene, std::span<const std::uint32_t
         rays[begin / groups_per_task] = wavefront.counts().rays;
     });
     rays_ = std::accumulate(rays.begin(), rays.end(), rays_);
-    // Batches contain irradiance in pictures of irradiance, else radiance of a white surface.
+    // Irradiance in pictures of irradiance, else radiance of a white surface.
     const double per_path =
         (scene.options.quantity == PathQuantity::irradiance ? 1 : std::numbers::pi) / paths_per_group;
     for (const BatchOfPaths& batch : batches) {
@@ -231,7 +230,7 @@ LocalFit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch) 
 }
 
 std::optional<Rgb> IndirectField::at(const V3f& x, const V3f& n, std::uint32_t patch) const {
-    constexpr float min_weight = 0.1f;  // less: at the end of the reach of a single record
+    constexpr float min_weight = 0.1f;  // less: at the end of a single record's reach
     const LocalFit fit = fit_at(x, n, patch);
     if (!(fit.weight() > min_weight)) return std::nullopt;
     return fit.value();

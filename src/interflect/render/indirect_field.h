@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 struct PathScene;
 
-/// Point of a surface that needs indirect light.
+/// Needs indirect light.
 struct SurfacePoint {
     V3f position;  ///< Start of its rays, relative to the scene's origin [m].
     V3f normal;    ///< For shading, unit length.
@@ -25,9 +25,9 @@ struct SurfacePoint {
     float spacing = 0;  ///< Distance to the nearest such points: size of a pixel or texel [m].
 };
 
-/// Indirect irradiance of surfaces, interpolated between sparse records (irradiance caching, Ward et al. 1988), which
-/// average the noise of a solution over a hemisphere. Their reach is a share of the harmonic mean length of their rays,
-/// at least a few spacings, and ends at contacts. Values are local linear fits. Immutable, thread-safe.
+/// Indirect irradiance, interpolated between sparse records (irradiance caching, Ward et al. 1988), which average the
+/// noise of a solution. Their reach is a share of the harmonic mean length of their rays, at least a few spacings, and
+/// ends at contacts. Values are local linear fits. Immutable, thread-safe.
 class IndirectField {
   public:
     /// Makes records until all points are covered.
@@ -47,7 +47,7 @@ class IndirectField {
         float reach = 0;            // on its own patch, which no contact crosses [m]
         float reach_elsewhere = 0;  // at most the distance to the nearest contact [m]
         float reach_in_spacings = 0;
-        float irradiance = 0;       // luminance of all irradiance there, to which errors are relative [as H]
+        float irradiance = 0;       // luminance of all irradiance there, for relative errors [as H]
         float inverse_length = 0;   // sum of 1 / length over the first rays of its paths [1/m]
         PartStatistics gathered{};  // irradiance by groups of paths [as H]
 

@@ -14,8 +14,8 @@ namespace {
 /// by 2.6% in place of 1.8%.
 constexpr double bright_over_mean = 2;
 
-/// Returns the power that each element reflects above this limit, sum of channels [lm or W]. Inner elements have the
-/// sum of their leaves.
+/// Returns the power reflected above this limit, sum of channels [lm or W]. Inner elements have the sum of their
+/// leaves.
 std::vector<float> excess_power(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance) {
     const auto reflected_radiosity = [&](std::uint32_t e) {
         return channel_sum(scene.materials[scene.patches[forest.patch(e)].material].reflectance * irradiance[e]);

@@ -16,7 +16,7 @@ namespace interflect::detail {
 /// Thread-safe.
 class KnownLight {
   public:
-    /// @param irradiance  Per element; only leaves are used. Arguments must outlive this object.
+    /// @param irradiance  Per element; only leaves are used. Arguments must outlive this.
     KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
                std::span<const Rgb> irradiance);
 
@@ -30,7 +30,7 @@ class KnownLight {
     const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
     Rgb reflected_radiance(const Place& place) const;
 
-    /// Whether the leaf is small enough, at this squared distance [m^2], for its constant irradiance.
+    /// Whether the leaf is small at this squared distance [m^2].
     bool is_far(const Place& place, float distance2) const {
         constexpr float max_solid_angle = 0.25f;  // [sr]
         return forest_.area(place.leaf) <= max_solid_angle * distance2;
@@ -48,7 +48,7 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> excess_;  // reflected power beyond bright_over_mean, sum of channels [lm or W]
+    std::vector<float> excess_;  // sum of channels [lm or W]
     LightTree tree_;
 };
 

@@ -55,7 +55,7 @@ class LightTree {
         Floats x{}, y{}, z{};
         void set(std::size_t i, const V3f& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
     };
-    /// Up to eight lights or nodes, side by side for vector instructions; others have no power.
+    /// Up to eight lights or nodes; others have no power.
     struct alignas(64) Node {
         Vectors centre, half, axis;  // of bounding boxes [m] and cones
         Floats cone_cosine{}, cone_sine{};
@@ -80,7 +80,7 @@ class LightTree {
     static Choices importance_of_children(const Node& node, const V3f& x, const V3f& n);
 
     std::vector<Node> nodes_;
-    std::vector<std::uint32_t> place_;  // of each light: node times `width` plus its number there
+    std::vector<std::uint32_t> place_;  // of each light, as Node::place_in_parent
     std::size_t light_count_;
 };
 

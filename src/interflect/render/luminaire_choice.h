@@ -14,10 +14,10 @@ namespace interflect::detail {
 /// proposes candidates; directional lights always are. Thread-safe.
 class LuminaireChoice {
   public:
-    /// @param scene  Must outlive this object.
+    /// @param scene  Must outlive this.
     explicit LuminaireChoice(const Scene& scene);
 
-    /// Returns one luminaire's light at x on a surface with normal n, divided by its probability. Excludes skies.
+    /// Returns one luminaire's light at x, divided by its probability. Excludes skies.
     Illumination choose(const V3f& x, const V3f& n, const LightSample& sample) const;
 
   private:

@@ -25,7 +25,7 @@ constexpr std::uint32_t gathered_shadow_rays = 4;
 /// For hybrid shading: error of filtered pixels in office-graz, 16 samples: one ray 8.8%, two 6.5%, four 5.5% in 1.1
 /// and 1.4 times the time of one.
 constexpr std::uint32_t hybrid_shadow_rays = 4;
-/// In hybrid shading, one of this many paths also samples emitters and skies by its direction, best near emitters.
+/// In hybrid shading, one of this many paths also samples lights by its direction, best near emitters.
 constexpr std::uint32_t paths_per_direction = 4;
 
 /// Uniform in the gauge's parallelogram, moved to its patch.
@@ -334,7 +334,6 @@ bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Pat
     if (!s_.known->is_far(place, distance2)) return false;
     const float light_density = density_towards(place, start_of(ray, path), path.normal, ray.direction, distance2);
     const float weight = balance(path.normal.dot(ray.direction) / pi, light_density);
-    // Reflected once more than the place's own emission.
     add(path.index, vertex_, path.throughput * s_.known->reflected_radiance(place) * weight);
     return true;
 }

@@ -84,7 +84,7 @@ struct FirstHit {
 
 /// Sums over one batch of a pixel's paths.
 struct BatchOfPaths {
-    std::uint32_t pixel = 0, batch = 0;  // together the key of a sequence of points
+    std::uint32_t pixel = 0, batch = 0;  // key of the points
     std::uint32_t first_point = 0;
     bool done = false;
     RgbD emitted{0, 0, 0};
@@ -119,7 +119,7 @@ class PathWavefront {
         std::uint32_t index;         // in light_
         V3f normal;                  // of the surface that the ray left
         std::uint32_t patch = none;  // that surface
-        float travelled = 0;         // from that surface or the camera to the ray's origin [m]
+        float travelled = 0;         // from there or the camera to the ray's origin [m]
         bool sets_first_hit = true;  // seen through clear panes and pure mirrors only
         std::uint32_t place = none;  // in seen_: ends at the next vertex
     };
@@ -139,7 +139,7 @@ class PathWavefront {
         std::uint32_t next_half = 0;
         Rgb result() const;
     };
-    /// Surface point of a pixel, lit once for all paths to the patch.
+    /// Lit once for all paths of a pixel to the patch.
     struct SeenPlace {
         std::uint32_t batch = none, patch = none, index = 0;  // index: in light_
         V3f normal{0, 0, 0};
@@ -151,8 +151,8 @@ class PathWavefront {
     struct Connection {
         std::uint32_t patch, index;
         Rgb radiance;
-        float distance;              // [m]
-        std::uint32_t bounces;       // reflections of its light
+        float distance;  // [m]
+        std::uint32_t bounces;
         std::uint32_t place = none;  // in seen_; then `radiance` only estimates the visible share of exact light
         std::uint32_t half = 0;      // of that estimate
         ExactLight SeenPlace::*kind = nullptr;
@@ -165,7 +165,7 @@ class PathWavefront {
     /// In pictures of irradiance, the first surface is white, opaque and does not emit.
     bool shows_irradiance() const;
     static V3f start_of(const Ray& ray, const Path& path);
-    /// Adds paths behind panes and in mirrors seen by the camera.
+    /// Adds paths behind panes and in mirrors.
     void split_paths();
     void add_path(const Ray& ray, const Path& path, const Rgb& share, const Rgb& reflectance);
     Rgb reflectance_of_hit(const Ray& ray, const Hit& hit) const;

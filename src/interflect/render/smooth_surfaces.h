@@ -28,9 +28,9 @@ struct SmoothSurfaces {
 /// Returns unit normals towards the lit sides.
 std::vector<V3f> patch_normals(const Scene& scene);
 
-/// Joins patches of equal material and orientation across shared edges without a crease: equal scene normals or,
-/// without them, patch normals within SmoothingOptions::crease_angle. Pieces of a cut surface (Patch::surface) also
-/// join across seams. Contacts (Scene::contacts) and other T-junctions are borders.
+/// Joins patches of equal material and orientation across shared edges: equal scene normals or, without them, patch
+/// normals within SmoothingOptions::crease_angle. Pieces of a cut surface (Patch::surface) also join across seams.
+/// Contacts (Scene::contacts) and other T-junctions are borders.
 SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options = {});
 
 }  // namespace interflect::detail

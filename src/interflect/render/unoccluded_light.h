@@ -11,13 +11,13 @@
 namespace interflect::detail {
 
 /// Exact irradiance without occluders; shadow rays then estimate only its visible share. Immutable, thread-safe. Cost:
-/// linear in the number of sources, hence only for few.
+/// linear in the sources, hence only for few.
 class UnoccludedLight {
   public:
-    /// Arguments must outlive this object.
+    /// Arguments must outlive this.
     UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry);
 
-    /// Whether all emitting patches, or all luminaires but skies, are few and have a closed form.
+    /// Whether all emitting patches (luminaires but skies) are few and have a closed form.
     bool has_patches() const { return has_patches_; }
     bool has_luminaires() const { return has_luminaires_; }
 

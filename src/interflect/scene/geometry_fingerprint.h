@@ -11,7 +11,7 @@ namespace interflect::detail {
 std::uint64_t geometry_fingerprint(const Scene& scene);
 
 /// @throws InputError if `scene` has another fingerprint.
-/// @param what  Object with this fingerprint, for the message.
+/// @param what  For the message.
 void require_made_for(const Scene& scene, std::uint64_t fingerprint, const char* what);
 
 }  // namespace interflect::detail

@@ -44,7 +44,6 @@ inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<
 
 /// Returns the maximum of reflectance + specular reflectance + transmittance; an upper bound if textures differ in
 /// size.
-/// @param largest  largest_texels() of `textures`.
 Rgb largest_sum(const Material& material, const std::vector<Texture>& textures, const std::vector<Rgb>& largest);
 
 /// Returns the largest channel of textured exitances and luminaire ratings; 0 without sources. Requires valid texture

@@ -25,7 +25,7 @@ void start_time_limit(SolverState& state) {
     state.stop.limit_time(state.start_of_this_call, state.options.limits.time - state.earlier_seconds);
 }
 
-/// An interruption restores the state before the step, but deterministic methods keep finished links.
+/// An interruption restores the state; deterministic methods keep finished links.
 /// @throws Interrupted
 template <class Step>
 void run_or_restore(Run& run, const Step& step) {
@@ -51,7 +51,7 @@ void prepare(Run& run) {
     start_time_limit(state);
 }
 
-/// Extends the limits of a completed run if more rays are requested. @param requested_rays  Since the run began.
+/// Extends a completed run if more rays are requested. @param requested_rays  Since the run began.
 /// @return  0 rays if the run is over.
 IterationPlan plan_or_extend(Run& run, std::int64_t requested_rays) {
     SolverState& state = run.state;

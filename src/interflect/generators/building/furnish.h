@@ -10,7 +10,7 @@
 
 namespace interflect::detail::building {
 
-/// Adds furniture to a room as objects "room-0.table-1" and so on.
+/// Adds furniture as objects "room-0.table-1" and so on.
 class Furnisher {
   public:
     Furnisher(Scene& scene, const Palette& palette, std::uint32_t room, RandomSequence& random)

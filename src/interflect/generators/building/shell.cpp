@@ -70,7 +70,6 @@ class RoomShell {
         std::array<std::uint32_t, 4> corners{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
         const auto side = static_cast<Side>(axis + (high ? 2 : 0));
         if (axis < 2 && is_opening(side, cell)) {
-            // Frames start along the wall.
             frames_[side] = along_x(side) ? DoorFrame{corners[0], corners[3], corners[2], corners[1]} : corners;
             return;
         }

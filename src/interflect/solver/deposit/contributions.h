@@ -16,8 +16,8 @@ namespace interflect::detail {
 using Contribution = std::array<std::int64_t, 5>;
 inline constexpr std::size_t power_terms = 4, importance_term = 4;
 
-/// Integer sums of contributions by element, independent of order. Threads bin contributions by region of the forest
-/// and flush full bins under its lock.
+/// Integer sums by element, independent of order. Threads bin contributions by region of the forest and flush full bins
+/// under its lock.
 class ContributionSums {
   public:
     /// Address space [bytes].
@@ -46,7 +46,7 @@ class ContributionSums {
     void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
         for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
     }
-    /// Frees collected memory. Small forests keep it: clearing new pages is slower than the additions.
+    /// Small forests keep their memory: clearing new pages is slower than the additions.
     void release(std::size_t begin, std::size_t end) {
         if (elements_ <= max_kept) return;
         sums_.release(begin, end);

@@ -84,7 +84,7 @@ void Descent::begin(std::uint32_t payload, std::uint32_t source_in_task, const R
 }
 
 /// Divides rejected pairs at the larger end (Eq. 14, 15, Prikryl et al. 2000). An accepted pair fixes the receiver of
-/// power; a ray with importance for leaves continues to its leaf.
+/// power; rays with importance for leaves continue to their leaf.
 void Descent::advance() {
     Lanes selected, kept;
     for (const std::uint32_t i : active()) look_up_receiver(i);

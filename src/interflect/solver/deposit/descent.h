@@ -31,8 +31,7 @@ struct Escaped {
     }
 };
 
-/// Descent of rays from patches to the receivers of their payloads; one object per thread. Many rays descend together,
-/// to vectorise and hide memory latency.
+/// One object per thread. Many rays descend together, to vectorise and hide memory latency.
 class Descent {
     using Terms = ContributionSums::ScatterBuffer::Terms;
 

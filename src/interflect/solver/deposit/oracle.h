@@ -20,7 +20,7 @@ struct ElementProxy {
 };
 
 /// Estimates an upper bound of the form factor from receiver to shooter: f = A_j / (pi d^2 + A_j) for a disk, times
-/// both cosines. Cosines are at least 2 f, because parts of close elements face each other more directly.
+/// both cosines. Cosines are at least 2 f: parts of close elements face each other more directly.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
     // Branch-free, to vectorise.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };

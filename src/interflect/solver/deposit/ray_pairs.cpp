@@ -23,7 +23,7 @@ void RayPairs::choose_next(bool needs_leaf, std::uint32_t old_size) {
     const float *from_area = shooter_area.data(), *to_area = area.data();
     const std::uint32_t old = needs_leaf ? old_size : 0;  // importance ignores newer elements
     for (std::size_t i = 0; i < lanes; ++i) {
-        // Integers, not bool: all vectors have lanes of the same size.
+        // Integers, not bool, for lanes of equal size.
         const std::uint32_t child = children[i], rejected = settled[i] ? 0 : 1;
         const std::uint32_t to_leaf = (receiver[i] < old ? 1 : 0) & (child < old ? 1 : 0);
         const std::uint32_t shooter_is_larger = from_area[i] > to_area[i] ? 1 : 0;

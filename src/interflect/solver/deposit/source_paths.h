@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Ancestors of the leaves that shot the rays in flight, as shooters of pairs.
+/// Ancestors of the leaves that shot the rays in flight.
 class SourcePaths {
   public:
     /// Range of shooters, root first.
@@ -40,7 +40,7 @@ class SourcePaths {
         return (shooter > receiver) & (number < lowest);
     }
 
-    /// Selects the largest shooter not larger than the receiver, or the lowest. Larger ones give the same power.
+    /// Selects the largest shooter not larger than the receiver, or the lowest.
     void choose_shooter(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
         while (number < pairs.lowest_shooter[i] && sources_[number].area > pairs.area[i]) ++number;
@@ -73,7 +73,7 @@ class SourcePaths {
     std::vector<Shooter> sources_;
 };
 
-/// Returns the first child, if any; creates it if the forest may grow.
+/// Returns the first child, if any.
 inline std::uint32_t find_or_create_children(ElementForest& forest, std::uint32_t element, bool may_grow) {
     const std::uint32_t child = forest.first_child(element);
     return child == none && may_grow ? forest.subdivide(element) : child;

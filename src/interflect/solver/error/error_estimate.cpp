@@ -49,7 +49,7 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
     });
 }
 
-/// Squared error of constant leaves: extrapolates their differences from parents to finer levels.
+/// Extrapolates differences from parents to finer levels.
 double error_within_leaves(const RiskCheck& check) {
     if (!(check.weight > 0)) return 0;
     const bool is_known = check.signal > 0 && check.signal_of_parents > 0;
@@ -63,8 +63,7 @@ double error_within_leaves(const RiskCheck& check) {
     return sum / check.weight;
 }
 
-/// Squared error of the differences from parents: noise + bias as corrected by RiskCheck, or as measured if the bias is
-/// strongly negative (docs/method.md, Errors).
+/// Noise + bias as corrected by RiskCheck, or as measured if the bias is strongly negative (docs/method.md, Errors).
 double squared_error_of_differences(const RiskCheck& check, double noise_of_differences, double bias) {
     const double expected = noise_of_differences + bias;
     const bool is_reliable = bias > -noise_of_differences / 2;

@@ -8,11 +8,10 @@ namespace interflect::detail {
 
 /// Domain of the error: pictures of the views, or all surfaces.
 enum class ErrorMeasure { pictures, surfaces };
-/// Returns pictures if a view shows a surface, else surfaces.
+/// Returns pictures if a view shows a surface.
 ErrorMeasure default_measure(const SolverState& state);
 
-/// Weight of the squared luminance error, per area. Pictures: view importance times squared luminance of rho. Surfaces:
-/// 1.
+/// Weight per area. Pictures: view importance times squared luminance of rho. Surfaces: 1.
 double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_t element);
 
 /// Weighted mean luminance: reflected light (pictures) or irradiance (surfaces).

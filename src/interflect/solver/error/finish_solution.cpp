@@ -64,7 +64,7 @@ void finish_solution(SolverState& state) {
             return difference;
         };
         const std::array<Rgb, 4> difference = differences(solution.irradiance);
-        Rgb factor(1);  // If a child would become negative, scale all four differences equally.
+        Rgb factor(1);  // if a child would be negative, scales all four differences
         for (int c = 0; c < 3; ++c) {
             float lowest = 0;
             for (const Rgb& d : difference) lowest = std::min(lowest, d[c]);

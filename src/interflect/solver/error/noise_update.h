@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Updates the noise model and RiskCheck with an iteration before its merge.
+/// Updates noise model and RiskCheck. Call before the merge.
 void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays);
 
 }  // namespace interflect::detail

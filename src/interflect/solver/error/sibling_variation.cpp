@@ -45,7 +45,7 @@ SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first
         variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
     }
     SiblingVariation variation{spread / area, variance / area};
-    // With few rays, shrinkage leaves more noise than plausible signal. The parent's siblings bound the signal.
+    // With few rays, shrinkage leaves more noise than signal. The parent's siblings bound the signal.
     const std::uint32_t parent = forest.parent(first);
     if (uses_shrinkage(state) && state.history[first] < under_sampled * state.history[parent])
         variation.assumed = parent < forest.patch_count()
@@ -59,7 +59,7 @@ AddedError added_error(const SolverState& state, std::uint32_t first, const Sibl
     if (!variation.is_known()) return {};  // the siblings equal their parent
     if (!uses_shrinkage(state)) return {variation.noise, 0};
     const float kept = variation.shrinkage(), noise = kept * kept * variation.noise;
-    // Largest variance of four non-negative numbers; bounds the effect of rays with a large weight.
+    // Largest variance of four non-negative numbers; bounds rays with a large weight.
     const float mean = luminance(state.solution.irradiance[state.forest->parent(first)]), most = 3 * mean * mean;
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }

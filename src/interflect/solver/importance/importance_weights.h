@@ -18,13 +18,13 @@ ImportanceUse importance_use(const Solution& so_far);
 Importance importance_of(const Solution& so_far);
 std::vector<float> total_importance(const Solution& so_far);
 
-/// Importance found by the rays of a luminaire part (Emission).
+/// By the rays of a luminaire part (Emission).
 struct PartImportance {
     double found = 0;  ///< Sum over its rays [1/m^2]
     double rays = 0;
 };
 
-/// Importance for sampling rays of power; empty if the method does not use it.
+/// For sampling rays of power; empty if not used.
 struct ImportanceWeights {
     std::vector<float> elements;
     std::vector<float> nearby;               ///< By patch; may be empty.

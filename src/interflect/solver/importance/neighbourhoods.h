@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// Binary tree of patches, split along the longest axis of their centres. Its nodes are neighbourhoods.
+/// Binary tree of patches, split along the longest axis of their centres.
 class Neighbourhoods {
   public:
     Neighbourhoods() = default;

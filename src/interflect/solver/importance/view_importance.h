@@ -14,7 +14,7 @@
 
 namespace interflect::detail {
 
-/// Hit points of camera rays, stratified over the pictures and reassigned when the mesh changes.
+/// Hit points of camera rays, stratified over the pictures.
 class ViewImportance {
   public:
     ViewImportance(std::span<const WeightedView> views, std::uint64_t seed)

@@ -9,8 +9,7 @@
 
 namespace interflect::detail {
 
-/// Steps of a family of methods, called by iterate_until(). After Interrupted, discard() restores the
-/// method and IterationStart the state.
+/// Called by iterate_until(). After Interrupted, discard() restores the method and IterationStart the state.
 class IterationMethod {
   public:
     virtual ~IterationMethod() = default;
@@ -20,12 +19,12 @@ class IterationMethod {
     virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
     /// Returns 0 rays if the run is over.
     virtual IterationPlan plan(SolverState& state);
-    /// Traces and merges rays that carry importance alone (Eq. 7, 8). @throws Interrupted
+    /// With rays that carry importance alone (Eq. 7, 8). @throws Interrupted
     virtual void update_importance(SolverState&, IterationPlan&) {}
     /// @param plan  Receives the number of rays. @throws Interrupted
     virtual Estimate trace(SolverState& state, IterationPlan& plan) = 0;
     virtual void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) = 0;
-    /// Refines the mesh between iterations; Eq. 14 and 15 refine it during trace().
+    /// Between iterations; Eq. 14 and 15 refine during trace().
     virtual void refine(SolverState&) {}
     virtual void discard() {}
     virtual void finish(SolverState& state) const;

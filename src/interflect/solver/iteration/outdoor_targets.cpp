@@ -137,7 +137,7 @@ double centred_weight(const std::vector<WeightedLine>& lines, const Imath::Box3f
     return sum;
 }
 
-/// Returns the half of a box, along its long axes, with the largest centred weight.
+/// Returns the half, along the long axes, with the largest centred weight.
 Imath::Box3f best_half(const std::vector<WeightedLine>& lines, const Imath::Box3f& box) {
     const V3f size = box.size();
     const float widest = std::max({size.x, size.y, size.z});
@@ -177,7 +177,6 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     std::vector<Imath::Box3f> targets;
     for (int chain = 0; chain < max_chains && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
          ++chain) {
-        // Start from the last target that most lines cross.
         Imath::Box3f box = scene_box;
         std::vector<WeightedLine> inside = rest;
         for (const Imath::Box3f& target : targets) {
@@ -208,8 +207,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// Returns light along lines over the square root of their source's total, to raise the dimmer sky, which alone locates
-/// windows along a sun's parallel lines.
+/// Returns light along lines over the square root of their source's total: only the dimmer sky locates windows along a
+/// sun's parallel lines.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -225,7 +224,7 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
     return weights;
 }
 
-/// Returns light per power; a mean line in each box keeps all parts above zero.
+/// Light per power; a mean line in each box keeps all parts above zero.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     constexpr double rays_of_lines = 8;  // prior weight
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);

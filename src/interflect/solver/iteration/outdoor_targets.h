@@ -10,11 +10,10 @@
 
 namespace interflect::detail {
 
-/// Line along which outdoor light would reach a surface.
 struct OutdoorLine {
     Ray light;          ///< From the surface point, in the direction of the light.
     std::uint32_t sun;  ///< Index of the sun; `none` for skies.
-    double importance;  ///< Importance-weighted power received per PartAlong::brightness.
+    double importance;  ///< Weighted power received per PartAlong::brightness.
 };
 
 /// Finds nested boxes in which weighted lines converge, such as windows.

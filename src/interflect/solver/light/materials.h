@@ -42,7 +42,7 @@ class Materials {
         return channel_sum(surface(patch, element).reflectance) / 3;
     }
     bool has_textures() const { return !elements_.empty(); }
-    /// Adds new elements, which have the mean of their patch until then.
+    /// New elements have the mean of their patch until then.
     void grow(const ElementForest& forest) { elements_.grow(forest); }
 
   private:
@@ -55,7 +55,6 @@ class Materials {
     std::vector<Material> own_materials_;
 };
 
-/// Emission lost to coincident faces.
 struct CoveredEmission {
     std::int64_t wholly = 0, partly = 0;
     RgbD power{0, 0, 0};  ///< [lm or W]

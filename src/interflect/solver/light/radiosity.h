@@ -48,7 +48,7 @@ class Radiosity {
     bool emits_ = false;
 };
 
-/// Returns the power of an element [lm or W]; with textures, the sum over the leaves.
+/// [lm or W]; with textures, the sum over the leaves.
 inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::uint32_t e) {
     const std::uint32_t first_child = light.has_textures() ? forest.first_child(e) : none;
     if (first_child == none) return RgbD(light.of(forest, e)) * static_cast<double>(forest.area(e));
@@ -57,7 +57,7 @@ inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::u
     return sum;
 }
 
-/// Returns the power of all patches [lm or W], summed in fixed order.
+/// [lm or W], summed in fixed order.
 inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) {
     return parallel_sum(forest.patch_count(), elements_per_task, RgbD(0), [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);

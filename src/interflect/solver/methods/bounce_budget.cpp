@@ -7,7 +7,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Random walks replace the remaining bounces if the next one would get fewer rays.
+/// Random walks replace the remaining bounces below this number of rays.
 constexpr double fewest_rays_of_bounce = 2;
 /// The same below this share of a pass: each bounce takes time for every element.
 constexpr double min_share_left = 0.05;
@@ -33,7 +33,7 @@ BounceRays BounceBudget::next(double unshot) {
     last_unshot_ = unshot;
     // Unshot power from here on: as in the previous pass, or a geometric series.
     const double geometric = unshot / (1 - decay_), planned = is_measured_ ? previous_total_ - unshot_sum_ : geometric;
-    // Later bounces keep a tenth, for light that the previous pass did not find.
+    // Later bounces keep a tenth, for light missed by the previous pass.
     const double to_come = is_measured_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;
     const double share = std::min(left * unshot / to_come, static_cast<double>(rays_) * unshot / previous_total_);
     const double to_walk = std::max(planned, geometric);

@@ -9,7 +9,7 @@ struct BounceRays {
     std::int64_t expected = 0;  ///< Including later rays of random walks.
 };
 
-/// Distributes the rays of a pass over its bounces.
+/// Distributes a pass over its bounces.
 class BounceBudget {
   public:
     BounceBudget() = default;
@@ -19,7 +19,7 @@ class BounceBudget {
     /// @param unshot  Relative to the first bounce.
     BounceRays next(double unshot);
     bool has_planned_last_bounce() const { return is_last_ || left_ == 0; }
-    /// Sum over the bounces, relative to the first; the rest is a geometric series.
+    /// Sum over bounces, relative to the first; the rest is a geometric series.
     double total_unshot() const { return unshot_sum_ + last_unshot_ * decay_ / (1 - decay_); }
 
   private:

@@ -43,7 +43,7 @@ Estimate zero_estimate(const SolverState& state) {
     return zero;
 }
 
-/// May move `received.variance`; the next bounce reflects the irradiance.
+/// May move `received.variance`.
 void add(Estimate& sum, Received& received) {
     sum.escaped_power += received.escaped_power;
     accumulate(sum.groups, received.groups);
@@ -120,7 +120,7 @@ Estimate Passes::trace(SolverState& state, IterationPlan& plan) {
 void Passes::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
     state.schedule.count_other_rays(plan.rays_for_new_views);
     scale_history(state, plan.history_factor);
-    needs_importance_ = false;  // not before: an interrupted iteration starts over
+    needs_importance_ = false;  // an interrupted iteration starts over
     view_change_.clear();
     if (estimate.irradiance.empty()) return;
     estimate_noise(state, estimate, plan.rays);
@@ -174,11 +174,10 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
 /// @return  False if no unshot light or rays are left.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     Solution& solution = state.solution;
-    // Only the first bounce, with the most rays, transports importance.
+    // The first bounce, with the most rays, transports importance.
     const bool carries_importance = pass.emits && importance_use(solution) == ImportanceUse::full &&
                                     !state.options.experimental.separate_iterations;
     const Radiosity light(state.materials, pass.unshot, pass.emits);
-    // The number of rays follows from the planned power.
     PowerPlan bounce =
         plan_power(state.materials, state.emission, solution, light, pass.weights, carries_importance, /*rays=*/0);
     solution.non_finite += bounce.non_finite_leaves;

@@ -13,18 +13,18 @@ namespace interflect::detail {
 /// on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
-    /// Estimates importance, then makes the initial mesh by two small passes (Eq. 14, 15), which are not averaged.
+    /// Estimates importance and makes the initial mesh by two passes (Eq. 14, 15), not averaged.
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
     void refine(SolverState& state) override;
-    /// Keeps the averaged light; ViewChange adapts its history in the next iteration.
+    /// Keeps the light; ViewChange adapts its history in the next iteration.
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override;
 
-    /// Starts another IterationMethod with prepare() and one pass.
+    /// Starts another method with prepare() and one pass.
     void make_first_estimate(SolverState& state);
 
   protected:

@@ -27,7 +27,7 @@ std::vector<float> patch_importance(const SolverState& state) {
     return values;
 }
 
-/// Returns the ratio of new to old variance per ray, weighted by importance. Payloads are proportional to power over q.
+/// Returns new over old variance per ray, weighted by importance. Payloads are proportional to power over q.
 /// @param importance  By patch.
 float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
                   const std::vector<float>& new_q) {

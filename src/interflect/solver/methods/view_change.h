@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Sampling and importance before the views changed. Converts history to rays of the new views with the same noise.
+/// Converts history to rays of the new views with the same noise.
 class ViewChange {
   public:
     bool empty() const { return old_q_.empty(); }

@@ -70,7 +70,7 @@ class NoiseModel {
         const int n = rays_per_contribution > 1 ? std::ilogb(rays_per_contribution) : 0;
         return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
-    /// Differences of siblings from their mean have three quarters of the variance.
+    /// Differences from the siblings' mean have three quarters of the variance.
     static float share_of_own(const ElementForest& forest, std::uint32_t e) {
         return e < forest.patch_count() ? 1.0f : 0.75f;
     }

@@ -9,8 +9,7 @@ namespace interflect::detail {
 /// Levels below the leaves to which variation is extrapolated.
 inline constexpr std::size_t finer_levels = 6;
 
-/// Products of the mean and an independent iteration, summed over siblings: on average, squared errors and differences
-/// without noise.
+/// Products of the mean and an independent iteration: on average, squared errors and differences without noise.
 struct RiskCheck {
     double weight = 0;             ///< 0: no data.
     double expected = 0;           ///< Squared errors after shrinkage by SiblingVariation::risk().

@@ -16,7 +16,7 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area);
 /// without a view, all emitted power.
 double reference_power(const Solution& so_far);
 
-/// Returns psi_max of Eq. 15 [1/m^2]: not the maximum, but the area-weighted mean over visible patches.
+/// Returns psi_max of Eq. 15 [1/m^2]: the area-weighted mean over visible patches.
 double reference_importance(const Solution& so_far, const std::vector<float>& psi);
 
 }  // namespace interflect::detail

@@ -5,8 +5,8 @@
 
 namespace interflect::detail {
 
-/// Splits leaves in which irradiance is expected to vary by more than the children's noise, except for negligible
-/// errors or minimum size (docs/method.md, A run).
+/// Splits leaves whose irradiance should vary by more than the children's noise, except for negligible errors or
+/// minimum size (docs/method.md, A run).
 void refine_by_variance(SolverState& state);
 
 /// Marks leaves that reflect where they receive (StartPoints), if refine_by_variance() makes the mesh.

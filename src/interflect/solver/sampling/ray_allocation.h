@@ -18,8 +18,8 @@ class RayAllocation {
 
     double q_sum() const { return q_sum_; }  ///< 0: no rays.
 
-    /// Calls body(s, first, from, to) for the sources of rays [begin, end). `first` is the first ray of s; [from, to)
-    /// are its rays in the range.
+    /// Calls body(s, first, from, to) for sources of rays [begin, end). `first` is the first ray of s; [from, to) are
+    /// in the range.
     template <class Body>
     void for_each_source(std::int64_t begin, std::int64_t end, const Body& body) const {
         const auto after =
@@ -36,8 +36,8 @@ class RayAllocation {
 
     std::size_t block_count() const { return blocks_.size(); }
     static std::size_t block_of(std::size_t source) { return source / block_sources; }
-    /// Calls body(s, first, next) for the sources of a block, with rays [first, next), until it returns false. Returns
-    /// the last result.
+    /// Calls body(s, first, next) for a block's sources, with rays [first, next), until it returns false. Returns the
+    /// last result.
     template <class Body>
     bool for_each_in_block(std::size_t block, const Body& body) const {
         const std::size_t begin = block * block_sources, end = std::min(q_.size(), begin + block_sources);

@@ -16,13 +16,13 @@
 
 namespace interflect::detail {
 
-/// Random numbers of a run. Each leaf's sequence continues through all iterations.
+/// Each leaf's sequence continues through all iterations.
 struct SampleStreams {
     SampleStreams(PointSet set, std::uint64_t run_seed) : points(set), seed(run_seed) {}
 
     PointSet points;
     std::uint64_t seed;
-    std::vector<std::uint64_t> used;  ///< Points consumed.
+    std::vector<std::uint64_t> used;
     std::vector<std::uint64_t> used_by_parts;
     std::uint64_t allocations = 0;
 };

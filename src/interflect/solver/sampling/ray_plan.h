@@ -13,7 +13,6 @@
 
 namespace interflect::detail {
 
-/// Rays of a step: sampling distribution and payload.
 struct RayPlan {
     /// >= 0 by element (0 for inner ones), then by part of `emission`. All 0: no rays.
     std::vector<float> q;
@@ -44,7 +43,7 @@ struct PowerPlan {
 PowerPlan plan_power(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);
 
-/// Plans rays that carry importance alone (Eq. 8). Refers to `importance`.
+/// For importance alone (Eq. 8). Refers to `importance`.
 RayPlan plan_importance(const Materials& materials, const Solution& so_far, const Importance& importance,
                         std::int64_t rays);
 

@@ -17,15 +17,14 @@ struct StartPoint {
     StartPoint(std::uint32_t of_leaf, float of_power, const Parameters& point);
 };
 
-/// Origins of reflected light, at which leaves start rays in proportion to received power. Uniform reflection from a
-/// partly lit leaf is biased.
+/// Origins of reflected light, in proportion to received power. Uniform reflection from a partly lit leaf is biased.
 class StartPoints {
   public:
     StartPoints() = default;
     /// Accepts any order. Cost: O(n log n) on all threads.
     explicit StartPoints(std::vector<StartPoint> points);
 
-    /// Returns the points of a leaf; empty: uniform origins. Cost: O(log n).
+    /// Empty: uniform origins. Cost: O(log n).
     std::span<const StartPoint> of(std::uint32_t leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 

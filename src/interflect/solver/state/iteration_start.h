@@ -8,8 +8,7 @@
 
 namespace interflect::detail {
 
-/// Copies of data that an iteration changes. After restore(), a repeated iteration has the bits of an uninterrupted
-/// run.
+/// After restore(), a repeated iteration has the bits of an uninterrupted run.
 class IterationStart {
   public:
     explicit IterationStart(const SolverState& state);

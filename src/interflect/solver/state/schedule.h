@@ -29,7 +29,7 @@ class Schedule {
     std::int64_t start_rays() const;
     /// Records these passes; `averaged_rays` are in the first mean.
     void record_start(std::int64_t averaged_rays, std::int64_t other_rays);
-    /// Plans an iteration that ends within the time limit. @param seconds  Since the run began.
+    /// Respects the time limit. @param seconds  Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
     void done(const IterationPlan& plan);

@@ -13,8 +13,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Adds one or two seconds of new elements, because a step may create more than it keeps; at most half the free address
-/// space.
+/// Includes one or two seconds of new elements, since a step may create more than it keeps; at most half the free
+/// address space.
 std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
     const std::size_t groups = std::min(scene.light_groups.size() + 1, max_light_groups);

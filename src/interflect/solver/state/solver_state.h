@@ -30,7 +30,7 @@ namespace interflect::detail {
 /// 20 halvings in each chain reach from 10 km to 1 cm.
 inline constexpr int max_chains = 4, max_targets = 80;
 
-/// State of a run that persists between iterations.
+/// Persists between iterations.
 struct SolverState {
     /// @param scene, caster  Must outlive this.
     SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& o);
@@ -104,7 +104,7 @@ float pixel_area(const SolverState& state, std::uint32_t element);
 /// Initialises new elements (index >= first) from their parents.
 void grow_with_forest(SolverState& state, std::uint32_t first);
 
-/// Adds camera rays in proportion to the averaged rays.
+/// In proportion to the averaged rays.
 void refine_view_importance(SolverState& state);
 
 }  // namespace interflect::detail

@@ -51,8 +51,8 @@ std::vector<PartImportance> found_by_parts(const RayPlan& plan, const RayAllocat
     return parts;
 }
 
-/// Averages received importance and the importance found by a leaf's rays, weighted by effective numbers of rays.
-/// Unbiased, because the weights are independent of the estimates.
+/// Averages received and found importance, weighted by effective numbers of rays. Unbiased, because the weights are
+/// independent of the estimates.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const FoundImportance& found, const PayloadTotals& payload, std::size_t elements,
            std::vector<float>& received) {

@@ -32,8 +32,8 @@ struct Received {
     std::int64_t escaped_rays = 0;
 };
 
-/// Converts contributions to received values and zeroes them. Sorts new elements and drops those beyond
-/// the oracle's limit, whose parents receive the contributions. Reuses buffers of the step.
+/// Converts contributions to received values and zeroes them. Sorts new elements; drops those beyond the oracle's
+/// limit, whose parents receive the contributions. Reuses buffers of the step.
 /// @param importance  Found by the rays, or null.
 Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_size, const RayAllocation& allocation,
                  const PayloadTotals& payload, const ContributionUnits& units, const FoundImportance* importance,
@@ -41,7 +41,7 @@ Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_s
 
 Received nothing_received(const TransportStep& step, std::size_t elements);
 
-/// Computes the variance of area-weighted means of independent elements.
+/// Variance of area-weighted means of independent elements.
 inline void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
     forest.for_siblings_from_leaves([&](std::uint32_t first) {
         double sum = 0, area = 0;  // squared areas exceed the range of a float

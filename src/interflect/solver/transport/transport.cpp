@@ -28,16 +28,16 @@ std::uint64_t walk_key(const SampleStreams& streams) {
     return mix(mix(streams.seed, walk_stream), streams.allocations);
 }
 
-/// Rays per task: enough to amortise its cost, few enough for the second-level cache.
+/// Enough to amortise the cost of a task, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
-/// Hits between the prefetch of a patch and its deposit. Their deposits hide the memory latency.
+/// Hits between prefetch and deposit of a patch, to hide the memory latency.
 constexpr std::size_t prefetch_distance = 32;
 
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
     constexpr std::size_t blocks_per_task = 16;
     streams.used.resize(std::max(streams.used.size(), elements), 0);
     streams.used_by_parts.resize(std::max(streams.used_by_parts.size(), parts), 0);
-    // A source belongs to one block: no two threads share a counter.
+    // A source belongs to one block, hence to one thread.
     parallel_for_ranges(allocation.block_count(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block)
             allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
@@ -49,8 +49,8 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     ++streams.allocations;
 }
 
-/// Returns an upper bound of the deposits of a particle: the expected number, at most 1 / (1 - rho), times a margin for
-/// chance and panes. The expected sum then has 2^49 of the 2^61 units of FixedPoint.
+/// Returns an upper bound: the expected number, at most 1 / (1 - rho), times a margin for chance and panes. The
+/// expected sum then has 2^49 of the 2^61 units of FixedPoint.
 double max_deposits_per_particle(const Scene& scene) {
     constexpr double margin = 0x1p12;
     double rho = 0;
@@ -167,7 +167,7 @@ void walk(const TransportStep& step, const StepData& data, const Walks& walks, s
     walks.follow(first_ray, walkers, buffers.descent);
 }
 
-/// Concatenates the points of all threads; StartPoints sorts them.
+/// StartPoints sorts them.
 StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
     std::vector<StartPoint> all;
     for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
@@ -217,8 +217,8 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     received.start_points = start_points_of(start_points);
     received.escaped_rays = escaped.rays;
     received.escaped_power = data.contribution_units.power.to_colour(escaped.power);
-    // Boxes of outdoor light overlap: a line through several is sampled from one; rays of the others miss the scene.
-    // Their mean power, that of the targets, would count twice.
+    // Boxes of outdoor light overlap: a line is sampled from one; rays of the others miss the scene. The power of
+    // targets would count twice.
     if (step.emission) {
         received.shot_power -= step.emission->repeated_power();
         received.escaped_power -= step.emission->repeated_power();

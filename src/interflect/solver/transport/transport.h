@@ -26,7 +26,7 @@ namespace interflect::detail {
 /// Cost: O(N (log(patches) + levels)).
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams, ContributionSums& sums, const StopRequest& stop);
-/// Uses its own sums, without a stop request.
+/// With its own sums; not stoppable.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);
 

@@ -32,8 +32,8 @@ struct Walkers {
     PointBlock points;
 };
 
-/// Random walks that complete a pass (TransportStep::completes_by_walks). Survival includes the transmittance of
-/// crossed panes: otherwise rays with several deposits would multiply the particles.
+/// Walks that complete a pass (TransportStep::completes_by_walks). Survival includes the transmittance of crossed
+/// panes: otherwise rays with several deposits would multiply the particles.
 class Walks {
   public:
     /// @param elements  Size of the forest before the step; newer elements receive through their ancestors.

@@ -31,17 +31,17 @@ struct Exchange {
     float area = 0;
     /// Area times the range of form factors from its points [m^2].
     float spread_over_a = 0, spread_over_b = 0;
-    /// Transmitted share of `area`, a mean over lines of sight.
+    /// Mean over lines of sight.
     Rgb transmittance{0, 0, 0};
     /// Range of the transmittance over lines of sight.
     float variation = 0;
 };
 
-/// Points per side of the smaller element, each with one line of sight.
+/// Points per side of the smaller element.
 enum class Effort { quick = 2, thorough = 4 };
 
-/// Thread-safe. Integrates Lambert's form factor to the larger element over the smaller by Gaussian quadrature. A line
-/// of sight is free if rays from each end first hit the other, apart from panes.
+/// Thread-safe. Integrates Lambert's form factor to the larger element over the smaller (Gaussian quadrature). A line
+/// of sight is free if rays from both ends first hit the other, apart from panes.
 class ExchangeEstimator {
   public:
     ExchangeEstimator(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t seed)
@@ -50,7 +50,7 @@ class ExchangeEstimator {
     /// Whether each extends above the other's plane by more than rounding.
     bool face_each_other(const ElementPair& pair) const;
 
-    /// @param rays  Incremented by the traced rays.
+    /// @param rays  Incremented.
     Exchange estimate(const ElementPair& pair, Effort effort, std::int64_t& rays) const;
 
   private:

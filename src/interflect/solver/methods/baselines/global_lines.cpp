@@ -24,8 +24,7 @@ namespace {
 
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
-/// Average deposits per line at which a patch's sums overflow. Normally one; more through panes and backs of one-sided
-/// faces.
+/// Average deposits per line at which a patch's sums overflow. Panes and one-sided faces cause more than one.
 constexpr double lines_headroom = 0x1p8;
 
 struct LineDomain {
@@ -47,7 +46,7 @@ struct LineDomain {
     }
 };
 
-/// Patch that faces a line, and the patch seen backwards, if any.
+/// Patch that faces a line, and the patch behind, if any.
 struct LineSegment {
     std::uint32_t front, back;
     bool is_mutual;  ///< Whether `back` also sees `front`: false through the back of a one-sided face.
@@ -57,7 +56,7 @@ struct LineSegment {
 struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, reversed_lines;
-    /// Distance within which a patch coincides with the last one [m]; initially infinite.
+    /// Distance within which patches coincide [m]; initially infinite.
     std::vector<float> slack;
     std::vector<std::uint32_t> crossed;
     std::vector<Hit> hits, reversed_hits;
@@ -81,8 +80,8 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
     }
 }
 
-/// Advances lines to the next patch that faces them, and traces back. Drops lines that escape, or hit the same patch
-/// again by rounding.
+/// Advances lines to the next patch that faces them, and traces back. Drops lines that escape or hit the same patch by
+/// rounding.
 void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
     constexpr float offsets_apart = 4;  // of coincident patches; see RayCaster::ray_offset()
     bundle.segments.clear();
@@ -143,7 +142,7 @@ class LineSums {
         add_concurrently(started_[segment.back], 1);
         carry(segment.back, segment.front, Rgb(1));
     }
-    /// Deposits light in one direction, because a pane may be one-sided.
+    /// One direction, because a pane may be one-sided.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
         carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
     }
@@ -158,7 +157,7 @@ class LineSums {
             r.variance.push_back(static_cast<float>(square_.to_number(squares_[i]) / (area * area)));
             r.escaped_power += lost;
             r.shot_power += arrived + lost;
-            if (channel_sum(radiosity_[i]) > 0) r.escaped_rays += escaped_rays_[i];  // excludes rays of dark walls
+            if (channel_sum(radiosity_[i]) > 0) r.escaped_rays += escaped_rays_[i];  // without dark walls
         }
         return r;
     }

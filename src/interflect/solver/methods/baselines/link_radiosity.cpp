@@ -177,7 +177,7 @@ RgbD LinkedElements::gather_light() {
         irradiance = Rgb(received[e]);
         const RgbD power = received[e] * static_cast<double>(forest_.area(e));
         if (e < forest_.patch_count()) escaped -= power;
-        // A pane and the surface behind it both receive transmitted light.
+        // A pane and the surface behind both receive transmitted light.
         if (forest_.is_leaf(e)) escaped += RgbD(state_.materials.surface(forest_.patch(e), e).transmittance) * power;
     }
     light_change_ = change.value();
@@ -225,7 +225,7 @@ double error_bound(const Exchange& exchange, float spread) {
 
 }  // namespace
 
-/// Each end has an error bound as receiver, with the other's radiosity, and one as source, with the range of its own.
+/// Each end has an error bound as receiver, with the other's radiosity, and as source, with the range of its own.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const Solution& solution = state_.solution;
     const std::vector<Rgb> b = radiosity(state_.materials, forest_, solution.irradiance);

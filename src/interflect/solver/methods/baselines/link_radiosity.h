@@ -32,21 +32,21 @@ struct LinkCandidate {
 struct RefinementCandidate;
 
 /// Hierarchical radiosity (Hanrahan et al. 1991) for Eq. 1, Prikryl et al. 2000; deterministic. A sweep gathers one
-/// bounce over the links, with push-pull. Only visibility is sampled.
+/// bounce. Only visibility is sampled.
 ///
 /// Four links to the children of one end replace a link if its error bound exceeds epsilon times reference_power(). The
 /// bound is rho_i B_j A_i times the variation of F_ij over an element, including partial occlusion. With importance, it
 /// is weighted by psi_i / psi_max (Eq. 15; Smits et al. 1992).
 ///
-/// The run ends when light has settled and no link needs refinement. It stays within limits.rays (except for the first
-/// links), max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
+/// The run ends when light and links have settled. It stays within limits.rays (except for the first links),
+/// max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
 /// escaped_power is the error of the form factors. Cost: O(patches^2 + links).
 class LinkedElements : public IterationMethod {
   public:
     /// The state must outlive this.
     explicit LinkedElements(SolverState& state, std::size_t link_limit = max_links);
 
-    /// Links all patches that face each other. @throws InputError for too many links.
+    /// @throws InputError for too many links.
     void prepare(SolverState& state) override;
     bool is_fulfilled(const SolverState& state) const override;
     IterationPlan plan(SolverState& state) override;

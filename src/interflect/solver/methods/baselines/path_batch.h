@@ -25,7 +25,7 @@ namespace interflect::detail {
 inline constexpr std::size_t paths_per_task = 4096;
 /// Maximum copies of a particle at a hit.
 inline constexpr double max_copies = 8;
-/// Received over expected power at which sums overflow; leaves 2^45 units for the expected power.
+/// Received over expected power at overflow; leaves 2^45 units for the expected power.
 inline constexpr double sum_headroom = 0x1p16;
 enum class WalkPurpose : std::uint64_t {
     light = 1,
@@ -192,8 +192,8 @@ class PathBatch {
         add_concurrently(sums_.escaped_rays, escaped_rays);
     }
 
-    /// Russian roulette and splitting: reflected power continues as n copies on average. Below the limit of n, a copy
-    /// has the power of a particle emitted there.
+    /// Russian roulette and splitting into n copies on average. Below the limit of n, a copy has the power of a
+    /// particle emitted there.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;

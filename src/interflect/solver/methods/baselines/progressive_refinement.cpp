@@ -24,7 +24,7 @@ constexpr std::int64_t fewest_rays_of_step = 16;
 /// Initial ShotBudget::expected.
 constexpr double assumed_shots = 2;
 
-/// Rays of a series of steps. Weights are relative to the initial amount.
+/// Weights are relative to the initial amount.
 struct ShotBudget {
     std::int64_t left;
     double expected;  ///< Sum of the weights of all steps.
@@ -123,7 +123,7 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     else
         choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
-    // Unweighted: unimportant power may reach important patches later.
+    // Unimportant power may reach important patches later.
     const bool is_last = power < negligible_rest * series.first_power || series.budget.is_last(weight, unshot);
     if (is_last) chosen = step.q, weight = unshot * series.budget.expected;
     step.q = chosen;

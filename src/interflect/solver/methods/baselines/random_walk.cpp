@@ -76,7 +76,7 @@ std::vector<float> leading_importance(const Solution& so_far) {
     return so_far.options.experimental.total_importance ? total_importance(so_far) : so_far.indirect_importance;
 }
 
-/// Returns beta + (1 - beta) psi, with psi relative to its mean over emitted power.
+/// Returns beta + (1 - beta) psi, psi relative to its mean over emitted power.
 std::vector<float> particle_density(const Solution& so_far, const std::vector<Rgb>& emitted) {
     std::vector<float> density = leading_importance(so_far);
     double power = 0, important = 0;

@@ -20,7 +20,7 @@ struct PathSeries {
 /// With importance (Pattanaik and Mudur 1993, 1995), walks from the cameras estimate psi with the share alpha of the
 /// rays. Particles then split where psi rises and end more often where it falls. Unbiased while beta > 0.
 ///
-/// Paths are complete, so ray counts deviate by about 1% from the plan.
+/// Complete paths make ray counts deviate by about 1% from the plan.
 class RandomWalks : public IterationMethod {
   public:
     explicit RandomWalks(const SolverState& state);

@@ -34,8 +34,8 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/total", total_);
 }
 
-/// Replaces the shares in plan.q by the rays that sources lack of `all` rays. If a leaf has shot more than its share,
-/// others of its patch shoot less.
+/// Replaces plan.q by the rays that sources lack of `all`. If a leaf has shot more than its share, others of its patch
+/// shoot less.
 void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const {
     struct Balance {
         double lacks = 0, lacking = 0;  // rays, with and without the surplus of other leaves

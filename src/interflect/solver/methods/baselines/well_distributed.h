@@ -12,7 +12,7 @@ namespace interflect::detail {
 
 /// Well-distributed ray set that keeps every ray (Neumann, Neumann and Bekaert 1997; with refinement, Bekaert et al.
 /// 1998). Leaf i has shot n_i = N P_i / sum P rays of payload sum P / N. When P or N changes, an iteration shoots the
-/// missing rays, and old hits count with the new payload and their old colour. A leaf beyond its share pauses.
+/// missing rays; old hits count with the new payload and old colour. A leaf beyond its share pauses.
 class WellDistributedRays : public IterationMethod {
   public:
     explicit WellDistributedRays(const SolverState& state);
