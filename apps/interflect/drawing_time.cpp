@@ -14,9 +14,9 @@ using Clock = std::chrono::steady_clock;
 
 const Clock::time_point process_start = Clock::now();
 
-/// Reduction of width and height, and exponent of the time as a function of the number of pixels. Records of hybrid
-/// shading are sparser than pixels: 256 times as many pixels took 62 to 82 times as long in three offices and a maze.
-/// Smooth shading prepares elements: 16 times as many pixels took 5 times as long.
+/// Reduction of width and height, and exponent of the time as a function of the number of pixels. Measured: hybrid
+/// shading of 256 times the pixels takes 62 to 82 times the time in three offices and a maze, since records are sparser
+/// than pixels; smooth shading of 16 times the pixels takes 5 times the time, since it also prepares elements.
 struct Growth {
     int reduction;
     double exponent;

@@ -13,7 +13,7 @@ double seconds_of_process();
 
 /// Predicted duration of drawing a picture [s].
 struct DrawingTime {
-    double least = 0;      ///< Of paths: two batches per pixel.
+    double least = 0;      ///< For two batches of paths per pixel.
     double useful = 0;     ///< More samples of paths reduce the noise.
     double finishing = 0;  ///< Filtering noise and writing.
 

@@ -20,15 +20,15 @@ namespace interflect {
 
 /// Source of the irradiance of texels and vertices.
 enum class BakeShading {
-    smooth,  ///< Interpolated between the elements, as by Shading::smooth. Vertices are those of the elements.
+    smooth,  ///< Interpolated between the elements, as by Shading::smooth; in vertices of the elements.
     hybrid,  ///< Direct light of each texel, averaged over it; indirect light interpolated, as by render_hybrid().
     gather,  ///< Gathered at each texel, as by measure_irradiance().
 };
 
 struct BakeOptions {
     BakeShading shading = BakeShading::hybrid;
-    /// Points per texel or vertex, at which direct light is sampled; or gathered directions. >= 2. Default: 16 per
-    /// texel, 64 per vertex (there are fewer, and each lights a larger surface), 64 directions.
+    /// Points per texel or vertex where direct light is sampled, or gathered directions; >= 2. Default: 16 per texel;
+    /// 64 per vertex, because a vertex affects a larger surface; 64 directions.
     std::optional<int> samples;
     std::uint64_t seed = 1;
 };

@@ -1,4 +1,4 @@
-// Light in vertices: triangles follow direct light; the values are those of hybrid shading.
+// Light in vertices: triangles follow direct light, and vertices have hybrid shading.
 
 #include "interflect/exports/vertex_light.h"
 

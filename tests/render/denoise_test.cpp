@@ -124,7 +124,7 @@ Image filtered_part(Image image, const PictureLayers& layers) {
 constexpr std::array<int, 2> block_sizes{5, 9};
 using Ratios = std::array<double, block_sizes.size()>;
 
-/// Returns the root mean square error of filtered pictures over that of unfiltered ones, for each size of blocks.
+/// Returns the ratio of root mean square errors after and before filtering, for each size of blocks.
 Ratios error_ratios(Tracer tracer, const Place& place, const Solution& solution, const RayCaster& ray_caster) {
     constexpr int few = 8, many = 96;
     constexpr std::uint64_t pictures = 4;
@@ -148,7 +148,8 @@ Ratios error_ratios(Tracer tracer, const Place& place, const Solution& solution,
 /// The ratio of one set had a standard deviation of 0.01 to 0.10; the mean over the scenes 0.89 to 1.02, with a
 /// standard deviation of 0.014. Correct code fails with a probability of about 1e-3 after a change of its random
 /// numbers. Four times the variance gives means of 1.17 to 1.29. The filter before this test gave 1.00, 1.08, 1.21
-/// and 1.30: it spread the variance at edges of objects over flat surfaces, and overestimated that of hybrid shading.
+/// and 1.30: it spread the variance at edges of objects over flat surfaces, and overestimated the variance of hybrid
+/// shading.
 TEST(Denoise, DoesNotIncreaseTheErrorOfBlocks) {
     constexpr double largest_mean = 1.05, largest = 1.4;
     const std::vector<Place> all = places();

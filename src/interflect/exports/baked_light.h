@@ -23,7 +23,7 @@ struct BakedPoint {
     std::array<Parameters, 2> sides{};
 };
 
-/// Of direct light in hybrid shading.
+/// Sampling of direct light in hybrid shading.
 struct DirectSampling {
     int samples;       ///< Without BakeOptions::samples.
     double max_noise;  ///< Estimated relative error below which a quarter of the samples suffices.
@@ -57,8 +57,9 @@ class BakedLight {
     ElementVertices vertices_;
     SmoothField smooth_;
     KnownIrradiance known_;
-    std::optional<RayCaster> ray_caster_;  // not for smooth shading
-    std::optional<TracedScene> traced_;    // likewise
+    // Not for smooth shading.
+    std::optional<RayCaster> ray_caster_;
+    std::optional<TracedScene> traced_;
 };
 
 }  // namespace interflect::detail

@@ -35,7 +35,7 @@ struct LitPolygons {
 
 /// Omits leaves without area.
 LitPolygons lit_polygons(const Scene& scene, const VertexLight& light);
-/// Of the solution's own elements.
+/// Polygons of the solution's elements.
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution);
 
 /// Returns radiance times 2^exposure, within_display_range(), as 8-bit sRGB. @param radiosity  [lm/m^2 or W/m^2]

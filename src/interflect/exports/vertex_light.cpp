@@ -31,7 +31,7 @@ struct Middle {
     std::size_t a, b;
     Parameters at;
 };
-/// Of edges and of both diagonals, since either may divide a square.
+/// Middles of edges and of both diagonals, since either may divide a square.
 constexpr std::array<Middle, 6> square_middles{{{0, 1, {0.5f, 0}},
                                                 {1, 2, {1, 0.5f}},
                                                 {2, 3, {0.5f, 1}},
@@ -126,9 +126,9 @@ class Division {
     bool is_triangle(std::uint32_t e) const { return forest_->geometry(forest_->patch(e)).is_triangle(); }
     float edge(std::uint32_t e) const { return edges_[forest_->patch(e)] * std::abs(forest_->cell(e).size); }
 
-    /// Returns the first child; none if triangles or elements are used up.
+    /// Returns the first child, or `none` at the limit of triangles or elements.
     std::uint32_t divide(std::uint32_t e, double max_triangles) {
-        // With those of fans in neighbours, measured in furnished rooms.
+        // Includes fans of neighbours; measured in furnished rooms.
         const double added = is_triangle(e) ? 6 : 9.5;
         if (triangles_ + added > max_triangles) return none;
         const std::uint32_t child = forest_->subdivide(e);
@@ -246,7 +246,7 @@ class VertexPoints {
     }
 
     const std::vector<BakedPoint>& points() const { return points_; }
-    /// Returns `none` for a vertex of patches that are not shown.
+    /// Returns `none` for hidden patches.
     std::uint32_t number(std::uint32_t vertex) const { return numbers_[vertex]; }
 
   private:
@@ -259,7 +259,7 @@ class VertexPoints {
 VertexLight make_vertex_light(const Scene& scene, const Solution& solution, const ExportOptions& options) {
     if (options.bake.shading == BakeShading::smooth)
         return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance)};
-    constexpr DirectSampling vertex_sampling{64, 1e-3};  // all samples wherever there is noise
+    constexpr DirectSampling vertex_sampling{64, 1e-3};  // any noise requires all samples
     const BakedLight light(scene, solution, options.bake, vertex_sampling);
     const std::vector<bool> shown = shown_patches(scene, solution);
     constexpr double share_of_division = 0.4;  // of the time; roughly

@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 struct VertexLight {
     std::shared_ptr<const ElementForest> forest;
-    ElementMesh mesh;  ///< Of `forest`.
+    ElementMesh mesh;  ///< Triangulates `forest`.
 };
 
 /// Light at the vertices of elements: the solution's for BakeShading::smooth; otherwise elements of its own, divided by
