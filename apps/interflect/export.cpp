@@ -169,6 +169,9 @@ void check_format_options(const ExportArguments& arguments, const CLI::App& comm
     constexpr std::array<std::string_view, 3> of_sampling = {"--samples", "--seed", vertices_group};
     if (arguments.bake.shading == BakeShading::smooth)
         refuse_options(command, of_sampling, "it has no effect with --shading smooth");
+    constexpr std::array<std::string_view, 1> of_effort = {"--quality"};
+    if (arguments.bake.shading == BakeShading::smooth && !arguments.has_lightmap)
+        refuse_options(command, of_effort, "it has no effect on vertices with --shading smooth");
 }
 
 void set_bake(ExportOptions& options, const ExportArguments& arguments, const CLI::App& command) {
@@ -222,7 +225,7 @@ void add_bake(CLI::App& command, ExportArguments& arguments) {
         ->default_str("hybrid");
     group(add_choice<std::size_t>(command, "--quality", arguments.quality, {{"low", 0}, {"medium", 1}, {"high", 2}},
                                   "low: 10 texels a metre or 50,000 triangles, few samples; medium: 20, 200,000; high: "
-                                  "40, 800,000, many samples. Each takes about three times as long as the one before"))
+                                  "40, 800,000, many samples, in three to four times the time of medium"))
         ->default_str("medium");
     group(command.add_option(
               "--samples", arguments.bake.samples,

@@ -192,6 +192,16 @@ class Export(CommandTest):
         self.assertIn("the object's lightmap layout", self.interflect(*export).stderr)
         self.assertNotIn("the object's lightmap layout", self.interflect(*export, "--own-charts").stderr)
 
+    def test_quality_sets_what_is_not_given(self):
+        def image(*options):
+            self.export("--lightmap", "--shading", "smooth", *options)
+            return self.bytes("out.lightmap-0.exr")
+
+        self.solve()
+        for quality, texels in ("low", "10"), ("medium", "20"), ("high", "40"):
+            self.assertEqual(image("--quality", quality), image("--texels-per-metre", texels))
+        self.assertEqual(image("--quality", "high", "--texels-per-metre", "5"), image("--texels-per-metre", "5"))
+
     def test_refusals(self):
         self.solve()
         before = self.files()
@@ -204,6 +214,10 @@ class Export(CommandTest):
             (("scene.h5", "-o", "room.glb", "--lightmap", "--lightmap-max-size", "65"), WRONG_USAGE, "multiple of 4"),
             (("scene.h5", "-o", "room.glb", "--lightmap", "--texels-per-metre", "0"), WRONG_USAGE, "--texels-per-metre"),
             (("scene.h5", "-o", "room.glb", "--up", "0,0,0"), WRONG_USAGE, "up"),
+            (("scene.h5", "-o", "room.glb", "--lightmap", "--max-triangles", "9"), WRONG_USAGE, "--max-triangles"),
+            (("scene.h5", "-o", "room.vtu", "--max-triangles", "9"), WRONG_USAGE, "--max-triangles"),
+            (("scene.h5", "-o", "room.glb", "--shading", "smooth", "--min-edge", "1"), WRONG_USAGE, "--min-edge"),
+            (("scene.h5", "-o", "room.glb", "--shading", "smooth", "--quality", "low"), WRONG_USAGE, "--quality"),
         ]:
             with self.subTest(arguments):
                 self.assertIn(message, self.interflect("export", *arguments, exit_code=code).stderr)
