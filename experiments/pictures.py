@@ -30,7 +30,6 @@ SCENES = {  # name: file, view, paths per pixel of each reference, its shading
     "nine rooms": ("maze:9:furniture", "--view room-4", 128, PATHS),
     "sun-window": (None, None, 256, GATHERED_FROM_40M),  # few paths find the sunlit spot
 }
-DRAWN_AS_EXPORTED = ("scenes/office.mgf",)  # its first view is the one drawn
 PROCESSORS = 2
 SMOOTH, HYBRID, GATHERED = ("--shading smooth", "--shading hybrid --no-mirrors --denoise", "--shading gather --no-mirrors --denoise")
 WORKS = {  # series: options, rays to solve with (0 for path tracing) and samples
@@ -74,8 +73,10 @@ class Scene:
 
 
 def draw_with_cycles(command: program.Program, scene: Scene, samples: int, folder: Path) -> Path:
+    # The first view of an exported scene is drawn; a solution begins with that of its solve.
+    program.run(command, f"solve {scene.file} {scene.view} --no-contact-cuts --rays 1k -o {folder}/scene.h5".split())
     options = f"{SIZE} --pixel-samples {samples} -o {folder}/scene.py"
-    program.run(command, f"export {scene.file} {options}".split())
+    program.run(command, f"export {folder}/scene.h5 {options}".split())
     script = ["blender", "--background", "--python-exit-code", "1", "--python", f"{folder}/scene.py"]
     before = processor_seconds()
     subprocess.run([*script, "--", f"{folder}/cycles.exr"], capture_output=True, check=True)
@@ -93,8 +94,7 @@ def measure() -> None:
             for rays, samples in works:
                 if (name, series, samples, rays) in done:
                     continue
-                # Exported scenes are drawn from their first view.
-                if series == "Cycles" and not (shutil.which("blender") and SCENES[name][0] in DRAWN_AS_EXPORTED):
+                if series == "Cycles" and not shutil.which("blender"):
                     continue
                 scene = scene or Scene(command, name)
                 print(f"{name}: {series}, {samples} samples, {rays} rays", file=sys.stderr, flush=True)
