@@ -109,7 +109,7 @@ TEST(LampBacks, Housing) {
 /// Its back looks into a dark plenum.
 TEST(LampBacks, InAFalseCeiling) {
     Scene scene = room();
-    const V3f x(4, 0, 0), y(0, 5, 0);
+    const V3f y(0, 5, 0);
     constexpr float low = 2.7f;
     add_rectangle(scene, {0, 0, low}, V3f(1, 0, 0), y, 0, 1, 1, true);
     add_rectangle(scene, {1.6f, 0, low}, V3f(2.4f, 0, 0), y, 0, 1, 1, true);
