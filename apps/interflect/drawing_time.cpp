@@ -27,6 +27,13 @@ constexpr double writing = 0.5e-6;  // [s] per pixel: exposure, tone mapping and
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+template <class Work>
+double seconds_of(const Work& work) {
+    const auto start = Clock::now();
+    work();
+    return seconds_since(start);
+}
+
 /// Reduces a picture's size. Returns the ratio of the numbers of pixels.
 double reduce(int& width, int& height, int reduction) {
     const double pixels = static_cast<double>(width) * height;
@@ -42,16 +49,20 @@ double seconds_of_process() { return seconds_since(process_start); }
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const Tracer& tracer, const PathOptions& options, bool filters) {
     constexpr double shortest = 1e-9;  // [s]; ends after two batches per pixel
+    PathOptions one = options;
+    one.time = shortest;
+    one.width = one.height = 1;
+    const double preparation = seconds_of([&] { tracer(scene, solution, ray_caster, view, one, {{}, &stop_flag()}); });
     PathOptions small = options;
     small.time = shortest;
     const Growth& growth = tracer == static_cast<Tracer>(render_hybrid) ? of_hybrid : of_gathering;
     const double ratio = reduce(small.width, small.height, growth.reduction);
-    const auto start = Clock::now();
-    const PathTracing traced = tracer(scene, solution, ray_caster, view, small, {{}, &stop_flag()});
-    const double drawing = seconds_since(start);
-    if (filters) denoise(traced.layers);
-    const double filtering = seconds_since(start) - drawing;
-    const double least = drawing * std::pow(ratio, growth.exponent);
+    PathTracing traced;
+    const double drawing = seconds_of([&] {
+        traced = tracer(scene, solution, ray_caster, view, small, {{}, &stop_flag()});
+    });
+    const double filtering = filters ? seconds_of([&] { denoise(traced.layers); }) : 0;
+    const double least = preparation + std::max(0.0, drawing - preparation) * std::pow(ratio, growth.exponent);
     return {least, 2 * least, ratio * filtering + writing * options.width * options.height};
 }
 
@@ -59,16 +70,14 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
                                      const View& view, const RenderOptions& options) {
     RenderOptions small = options;
     const double ratio = reduce(small.width, small.height, of_elements.reduction);
-    const auto start = Clock::now();
-    render(scene, solution, ray_caster, view, small, {{}, &stop_flag()});
-    const double least = std::pow(ratio, of_elements.exponent) * seconds_since(start);
+    const double drawing = seconds_of([&] { render(scene, solution, ray_caster, view, small, {{}, &stop_flag()}); });
+    const double least = std::pow(ratio, of_elements.exponent) * drawing;
     return {least, least, writing * options.width * options.height};
 }
 
 double reserved_for(const DrawingTime& predicted, double left) {
-    constexpr double largest_share = 0.8;
     const double half = std::clamp(left / 2, predicted.least, predicted.useful);
-    return std::min(largest_share * left, half + predicted.finishing);
+    return std::min(largest_drawing_share * left, half + predicted.finishing);
 }
 
 }  // namespace interflect::command

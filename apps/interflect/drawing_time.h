@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "apps/interflect/parse.h"
 #include "apps/interflect/run_path_tracer.h"
 #include "interflect/render.h"
@@ -27,6 +25,9 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
                                   const View& view, const Tracer& tracer, const PathOptions& options, bool filters);
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                      const View& view, const RenderOptions& options);
+
+/// Drawing takes at most this share of the time that is left.
+constexpr double largest_drawing_share = 0.8;
 
 /// Returns the part of `left` [s] that solving leaves to drawing: half of it, within the limits of the prediction.
 double reserved_for(const DrawingTime& predicted, double left);

@@ -34,6 +34,16 @@ using namespace detail;
 
 namespace {
 
+/// Effort of a bake; other options take precedence.
+struct Quality {
+    float texels_per_metre;
+    int samples_of_texel;
+    int max_triangles;
+    int samples;  // of a vertex; gathered directions
+};
+constexpr Quality low_quality{10, 4, 50'000, 16}, medium_quality{20, 16, 200'000, 64},
+    high_quality{40, 64, 800'000, 256};
+
 struct ExportArguments {
     SceneOptions scene;
     std::filesystem::path output;
@@ -44,22 +54,12 @@ struct ExportArguments {
     ProbeOptions probes;
     bool has_lightmap = false;
     BakeOptions bake;
-    std::size_t quality = 1;  // in `qualities`
+    std::optional<Quality> quality;
     LightmapOptions lightmap;
     VertexOptions vertices;
     DimmingOptions dimming;
     int threads = 0;
 };
-
-/// Effort of a bake; other options take precedence.
-struct Quality {
-    const char* name;
-    float texels_per_metre;
-    int samples_of_texel;
-    int max_triangles, samples_of_vertex;
-};
-constexpr std::array qualities{Quality{"low", 10, 4, 50'000, 16}, Quality{"medium", 20, 16, 200'000, 64},
-                               Quality{"high", 40, 64, 800'000, 256}};
 
 constexpr const char* lightmap_group = "Lightmaps";
 constexpr const char* bake_group = "Light of texels and vertices";
@@ -179,10 +179,12 @@ void set_bake(ExportOptions& options, const ExportArguments& arguments, const CL
     options.bake = arguments.bake;
     options.vertices = arguments.vertices;
     if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
-    if (!is_given("--quality")) return;
-    const Quality& quality = qualities[arguments.quality];
-    if (!is_given("--samples") && arguments.bake.shading == BakeShading::hybrid)
-        options.bake.samples = arguments.has_lightmap ? quality.samples_of_texel : quality.samples_of_vertex;
+    if (!is_given("--max-edge"))
+        options.vertices.max_edge = std::max(options.vertices.max_edge, options.vertices.min_edge);
+    if (!arguments.quality) return;
+    const Quality& quality = *arguments.quality;
+    const bool is_of_texels = arguments.has_lightmap && arguments.bake.shading == BakeShading::hybrid;
+    if (!is_given("--samples")) options.bake.samples = is_of_texels ? quality.samples_of_texel : quality.samples;
     if (!is_given("--max-triangles")) options.vertices.max_triangles = quality.max_triangles;
     if (options.lightmap && !is_given("--texels-per-metre"))
         options.lightmap->texels_per_metre = quality.texels_per_metre;
@@ -223,9 +225,10 @@ void add_bake(CLI::App& command, ExportArguments& arguments) {
               "smooth: interpolated between the elements; hybrid: direct light of each texel or vertex, indirect light "
               "interpolated; gather: each texel or vertex finds its own light"))
         ->default_str("hybrid");
-    group(add_choice<std::size_t>(command, "--quality", arguments.quality, {{"low", 0}, {"medium", 1}, {"high", 2}},
-                                  "low: 10 texels a metre or 50,000 triangles, few samples; medium: 20, 200,000; high: "
-                                  "40, 800,000, many samples, in three to four times the time of medium"))
+    group(add_choice<Quality>(command, "--quality", arguments.quality,
+                              {{"low", low_quality}, {"medium", medium_quality}, {"high", high_quality}},
+                              "low: 10 texels a metre or 50,000 triangles, few samples; medium: 20, 200,000; high: "
+                              "40, 800,000, many samples, in three to four times the time of medium"))
         ->default_str("medium");
     group(command.add_option(
               "--samples", arguments.bake.samples,
@@ -247,6 +250,9 @@ void add_vertices(CLI::App& command, ExportArguments& arguments) {
         ->type_name("FRACTION")
         ->check(number_between(1e-3, 10));
     of_vertices(command.add_option("--min-edge", vertices.min_edge, "Shorter edges are not divided [m]"))
+        ->type_name("METRES")
+        ->check(number_between(1e-6, 1e15));
+    of_vertices(command.add_option("--max-edge", vertices.max_edge, "Longer edges are divided, the longest first [m]"))
         ->type_name("METRES")
         ->check(number_between(1e-6, 1e15));
 }

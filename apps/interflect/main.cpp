@@ -32,7 +32,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
 constexpr const char* footer =
     "`interflect SUBCOMMAND --help` lists the options of each.\n"
     "Lengths are in metres, powers in lumens. Results go to stdout, messages to stderr.\n"
-    "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 bad input, 130 interrupted, keeping what there is.";
+    "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 bad input, 130 interrupted, keeping what is usable.";
 
 int run(int argc, char** argv) {
     using namespace interflect::command;

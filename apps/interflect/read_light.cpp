@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <system_error>
+
 #include "apps/interflect/long_work.h"
 
 namespace interflect::command {
 
 SolvedScene read_light_of(const std::filesystem::path& solution) {
+    std::error_code unknown;
+    if (std::filesystem::is_regular_file(solution, unknown) && !is_solution_file(solution))
+        throw InputError(solution, 0, "not a solution file: expected one that `interflect solve` has written (.h5)");
     const LongWork work(fmt::format("reading {}", solution.string()));
     return read_solution(solution);
 }

@@ -262,13 +262,12 @@ bool needs_paths(const RenderArguments& options) { return options.path.layers ||
 /// Predicts the time of drawing. Changes to smooth shading with few samples if the time is too short.
 DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                          RenderArguments& options) {
-    constexpr double largest_share = 0.8;
     constexpr int few_samples = 4;
     if (traces_paths(options.shading)) {
         const DrawingTime paths = predict_time_of_paths(scene, solution, ray_caster, view, tracer_of(options),
                                                         path_options(options), options.path.denoise);
         const double left = options.seconds_left();
-        if (paths.total() <= largest_share * left) return paths;
+        if (paths.total() <= largest_drawing_share * left) return paths;
         const std::string needed = fmt::format("per-pixel shading takes about {}, but --time leaves {}",
                                                duration(paths.total()), duration(std::max(0.0, left)));
         if (needs_paths(options)) {

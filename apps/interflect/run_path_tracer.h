@@ -12,7 +12,7 @@ namespace interflect::command {
 
 inline constexpr const char* path_group = "Gathering and path tracing";
 
-/// Options of `render --shading gather` and `path` only.
+/// Options of `render` for shading by paths.
 struct PathTracerArguments {
     int max_samples = PathOptions().max_samples;
     std::filesystem::path error_image;  ///< Empty: no image.

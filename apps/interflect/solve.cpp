@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
@@ -85,6 +86,8 @@ void add_solve(CLI::App& app, int& exit_code) {
         scene = options->mesh.divide(std::move(scene), options->scene.read, solve_options.method.refines);
         options->groups.set_groups(scene);
         // Requested views come first: `render` draws the first view of a solution.
+        std::erase_if(scene.views,
+                      [&](const View& view) { return std::find(views.begin(), views.end(), view) != views.end(); });
         scene.views.insert(scene.views.begin(), views.begin(), views.end());
         StatsFile stats(options->solver.threads, options->solver.stats);
         const RayCaster ray_caster = make_ray_caster(scene);

@@ -21,8 +21,8 @@ namespace interflect {
 /// Source of the irradiance of texels and vertices.
 enum class BakeShading {
     smooth,  ///< Interpolated between the elements, as by Shading::smooth; in vertices of the elements.
-    hybrid,  ///< Direct light of each texel, averaged over it; indirect light interpolated, as by render_hybrid().
-    gather,  ///< Gathered at each texel, as by measure_irradiance().
+    hybrid,  ///< Direct light of each texel or vertex, averaged around it; indirect light as by render_hybrid().
+    gather,  ///< Gathered at each texel or vertex, as by measure_irradiance().
 };
 
 struct BakeOptions {
@@ -71,7 +71,7 @@ struct ExportOptions {
     std::optional<LightmapOptions> lightmap;  ///< nullopt: the light is stored in vertices.
     VertexOptions vertices;                   ///< For light in vertices.
     ProbeOptions probes;                      ///< For formats that store probes instead of surfaces.
-    Monitor monitor;                          ///< Monitors gathering and probes.
+    Monitor monitor;                          ///< Monitors the light of texels, vertices and probes.
     Warnings* warnings = nullptr;             ///< Receives features that could not be exported unchanged; may be null.
 };
 
@@ -102,8 +102,8 @@ const ExportFormat& require_export_format(const std::filesystem::path& path);
 /// @return  The files that were written.
 /// @throws InputError for an unknown extension, options out of range or unsupported by the format, lightmaps of light
 ///         groups for a solution without groups, lightmaps beyond LightmapOptions::max_bytes, a path that cannot be
-///         written, and a solution of another scene; Stopped if ExportOptions::monitor ends it before each texel has
-///         some light, or each probe all of it; std::runtime_error if writing fails.
+///         written, and a solution of another scene; Stopped if ExportOptions::monitor ends it before each texel and
+///         vertex has some light, or each probe all of it; std::runtime_error if writing fails.
 std::vector<std::filesystem::path> export_solution(const std::filesystem::path& path, const Scene& scene,
                                                    const Solution& solution, const ExportOptions& options = {});
 

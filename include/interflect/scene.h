@@ -141,6 +141,8 @@ struct View {
     /// Above 0: orthographic, height of the picture [m]; `fov` is ignored. Rays start on the plane through the eye,
     /// which cuts the scene: plans and sections. Do not solve with such a view.
     float extent = 0;
+
+    bool operator==(const View&) const = default;
 };
 
 /// Scene in metres and linear Rec. 709; immutable once loaded. The patches of a two-sided face are adjacent, the side

@@ -29,7 +29,7 @@ BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeO
       known_{*solution.forest, solution.irradiance, true} {
     if (options.shading == BakeShading::smooth) return;
     ray_caster_.emplace(scene);
-    traced_.emplace(scene, *ray_caster_, &known_);
+    if (options.shading == BakeShading::hybrid || sampling.is_tested) traced_.emplace(scene, *ray_caster_, &known_);
 }
 
 std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, float spacing,
@@ -45,8 +45,8 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, floa
     return values;
 }
 
-std::vector<Rgb> BakedLight::direct(std::span<const BakedPoint> points, float spacing, int max_samples,
-                                    const Monitor& monitor) const {
+std::vector<GaugeLight> BakedLight::direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+                                           const Monitor& monitor) const {
     PathOptions options = path_options();
     options.samples = std::min(options.samples, max_samples);
     return direct_irradiance(*traced_, gauges(points, spacing), options, monitor);
@@ -56,7 +56,6 @@ PathOptions BakedLight::path_options() const {
     PathOptions path;
     path.samples =
         options_.samples.value_or(options_.shading == BakeShading::gather ? gathered_directions : sampling_.samples);
-    path.max_samples = std::max(path.max_samples, path.samples);
     if (options_.shading == BakeShading::hybrid) path.until = sampling_.max_noise;
     path.seed = options_.seed;
     path.quantity = PathQuantity::irradiance;

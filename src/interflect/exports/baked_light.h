@@ -27,6 +27,7 @@ struct BakedPoint {
 struct DirectSampling {
     int samples;       ///< Without BakeOptions::samples.
     double max_noise;  ///< Estimated relative error below which a quarter of the samples suffices.
+    bool is_tested;    ///< BakedLight::direct() is called.
 };
 
 /// Irradiance of points by the chosen shading.
@@ -39,9 +40,9 @@ class BakedLight {
     /// @param spacing  Distance between the points; rays start a twentieth of it inside their patch [m].
     /// @return         [as H], per point. @throws Stopped
     std::vector<Rgb> irradiance(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const;
-    /// Direct light of hybrid shading; not for BakeShading::smooth.
-    std::vector<Rgb> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
-                            const Monitor& monitor) const;
+    /// Direct light of hybrid shading, if DirectSampling::is_tested; not for BakeShading::smooth.
+    std::vector<GaugeLight> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+                                   const Monitor& monitor) const;
     /// As by SmoothField.
     Rgb interpolated(const BakedPoint& point) const { return smooth_.at(point.patch, point.at); }
 
@@ -57,8 +58,7 @@ class BakedLight {
     ElementVertices vertices_;
     SmoothField smooth_;
     KnownIrradiance known_;
-    // Not for smooth shading.
-    std::optional<RayCaster> ray_caster_;
+    std::optional<RayCaster> ray_caster_;  // not for smooth shading
     std::optional<TracedScene> traced_;
 };
 

@@ -12,10 +12,6 @@ namespace interflect::detail {
 
 namespace {
 
-using CellCorners = std::array<Parameters, 4>;
-constexpr CellCorners square_corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-constexpr CellCorners triangle_corners{{{0, 0}, {1, 0}, {0, 1}, {0, 0}}};
-
 struct PositionHash {
     std::size_t operator()(const V3f& p) const {
         std::uint64_t hash = 0;
@@ -78,9 +74,9 @@ void ElementMesh::number_points() {
         if (!forest_.is_leaf(e)) continue;
         const PatchGeometry& geometry = forest_.geometry(forest_.patch(e));
         const Cell cell = forest_.cell(e);
-        const bool triangle = geometry.is_triangle();
-        for (std::size_t c = 0; c < (triangle ? 3u : 4u); ++c) {
-            const auto [s, t] = (triangle ? triangle_corners : square_corners)[c];
+        const std::span<const Parameters> corners = corners_of(geometry.is_triangle());
+        for (std::size_t c = 0; c < corners.size(); ++c) {
+            const auto [s, t] = corners[c];
             const V3f position = geometry.point(cell.at(s, t));
             const auto [entry, is_new] = numbers.try_emplace(position, static_cast<std::uint32_t>(points_.size()));
             if (is_new) points_.push_back(position);
@@ -132,12 +128,12 @@ void ElementMesh::add_points_on_edge(const MeshCorner& a, const MeshCorner& b, s
 }
 
 std::vector<MeshCorner> ElementMesh::outline(std::uint32_t leaf) const {
-    const bool triangle = forest_.geometry(forest_.patch(leaf)).is_triangle();
+    const std::span<const Parameters> cell_corners = corners_of(forest_.geometry(forest_.patch(leaf)).is_triangle());
     const Cell cell = forest_.cell(leaf);
-    const std::size_t count = triangle ? 3 : 4;
+    const std::size_t count = cell_corners.size();
     std::array<MeshCorner, 4> corners;
     for (std::size_t c = 0; c < count; ++c) {
-        const auto [s, t] = (triangle ? triangle_corners : square_corners)[c];
+        const auto [s, t] = cell_corners[c];
         corners[c] = {corners_[leaf][c], cell.at(s, t), values_[vertices_.corners(leaf)[c]]};
     }
     std::vector<MeshCorner> outline;

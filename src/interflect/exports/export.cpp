@@ -83,6 +83,7 @@ const ExportFormat& require_export_format(const fs::path& path) {
         if (extension == format.extension) return format;
         known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", format.extension, format.name);
     }
+    for (const char* of_scene : scene_export_extensions) known += fmt::format(", {}", of_scene);
     throw InputError(path, 0, "expected one of the extensions " + known);
 }
 

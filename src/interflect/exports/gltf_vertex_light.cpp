@@ -8,7 +8,6 @@
 #include "interflect/exports/display_range.h"
 #include "interflect/exports/gltf_scene.h"
 #include "interflect/exports/opacity.h"
-#include "interflect/exports/shown_patches.h"
 #include "interflect/exports/vertex_light.h"
 #include "interflect/exports/welded_vertices.h"
 #include "interflect/geometry/texture_mapping.h"
@@ -93,13 +92,13 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Scene& sc
 /// Keys: object and material.
 using LitPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, LitPrimitive>;
 
-LitPrimitives primitives_of(const Scene& scene, VertexLight& light, const std::vector<bool>& shown, float exposure) {
+LitPrimitives primitives_of(const Scene& scene, VertexLight& light, float exposure) {
     const ElementForest& forest = *light.forest;
     const VertexColours colours(scene, exposure);
     LitPrimitives primitives;
     std::vector<MeshTriangle> triangles;
     for (const std::uint32_t leaf : forest.leaves()) {
-        if (!shown[forest.patch(leaf)]) continue;
+        if (!light.shown[forest.patch(leaf)]) continue;
         triangles.clear();
         light.mesh.triangulate(leaf, triangles);
         const Patch& patch = scene.patches[forest.patch(leaf)];
@@ -115,7 +114,7 @@ LitPrimitives primitives_of(const Scene& scene, VertexLight& light, const std::v
 void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution& solution,
                       const ExportOptions& options) {
     VertexLight light = make_vertex_light(scene, solution, options);
-    const LitPrimitives primitives = primitives_of(scene, light, shown_patches(scene, solution), options.exposure);
+    const LitPrimitives primitives = primitives_of(scene, light, options.exposure);
     GltfTextures textures(document, scene);
     std::map<std::uint32_t, int> materials;
     GltfPrimitives written;

@@ -26,7 +26,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr DirectSampling texel_sampling{16, hybrid_target};
+constexpr DirectSampling texel_sampling{16, hybrid_target, /*is_tested=*/false};
 
 struct TexelPlace : BakedPoint {
     bool is_inside = false;
@@ -108,10 +108,8 @@ V3f nearest_on_segment(const V3f& a, const V3f& b, const V3f& x) {
 }
 
 Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const V3f& x) {
-    const std::array<Parameters, 4> corners = geometry.is_triangle()
-                                                  ? std::array<Parameters, 4>{{{0, 0}, {1, 0}, {0, 1}, {0, 1}}}
-                                                  : std::array<Parameters, 4>{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-    const std::size_t count = geometry.is_triangle() ? 3 : 4;
+    const std::span<const Parameters> corners = corners_of(geometry.is_triangle());
+    const std::size_t count = corners.size();
     V3f nearest = x;
     float least2 = std::numeric_limits<float>::max();
     bool is_inside = true;

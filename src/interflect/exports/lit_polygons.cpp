@@ -29,7 +29,7 @@ struct VertexHash {
 }  // namespace
 
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution) {
-    return lit_polygons(scene, {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance)});
+    return lit_polygons(scene, {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance), {}});
 }
 
 LitPolygons lit_polygons(const Scene& scene, const VertexLight& light) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <queue>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -17,14 +18,6 @@
 namespace interflect::detail {
 
 namespace {
-
-/// Corners of an element in its cell, in the order of ElementVertices::corners().
-constexpr std::array<Parameters, 4> square_corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-constexpr std::array<Parameters, 3> triangle_corners{{{0, 0}, {1, 0}, {0, 1}}};
-
-std::span<const Parameters> corners_of(bool is_triangle) {
-    return is_triangle ? std::span<const Parameters>(triangle_corners) : std::span<const Parameters>(square_corners);
-}
 
 /// Middle of two corners, where interpolation is tested.
 struct Middle {
@@ -136,14 +129,23 @@ class Division {
         return child;
     }
 
-    /// Returns the leaves of shown patches.
+    /// Divides the longest edges first. Returns the leaves of shown patches.
     std::vector<std::uint32_t> divide_long_edges() {
         const double half_of_all = options_.max_triangles / 2.0;
-        std::vector<std::uint32_t> leaves;
-        for (std::uint32_t e = 0; e < forest_->size(); ++e) {
-            if (!shown_[forest_->patch(e)]) continue;
-            if (!(edge(e) > options_.max_edge) || divide(e, half_of_all) == none) leaves.push_back(e);
+        std::priority_queue<std::pair<float, std::uint32_t>> longest;
+        const auto add = [&](std::uint32_t e) {
+            if (edge(e) > options_.max_edge) longest.emplace(edge(e), e);
+        };
+        for (std::uint32_t p = 0; p < forest_->patch_count(); ++p)
+            if (shown_[p]) add(p);
+        while (!longest.empty()) {
+            const std::uint32_t child = divide(longest.top().second, half_of_all);
+            if (child == none) break;
+            longest.pop();
+            for (std::uint32_t k = 0; k < 4; ++k) add(child + k);
         }
+        std::vector<std::uint32_t> leaves = forest_->leaves();
+        std::erase_if(leaves, [&](std::uint32_t e) { return !shown_[forest_->patch(e)]; });
         return leaves;
     }
 
@@ -153,14 +155,15 @@ class Division {
         std::vector<std::uint32_t> tested;
         for (const std::uint32_t e : leaves)
             if (edge(e) > options_.min_edge) tested.push_back(e);
-        // Few samples find the leaves that may be interpolated badly, many tell light from noise.
-        constexpr int few = 8, many = 32;
+        // Few samples find the leaves that may be interpolated badly, many distinguish light from noise.
+        constexpr int few = 16, many = 64;
+        constexpr double deviations = 2;
         find_direct_light(tested, few, monitor_section(monitor, 0, 0.5));
-        std::erase_if(tested, [&](std::uint32_t e) { return !(error_of(e) > options_.max_error); });
+        std::erase_if(tested, [&](std::uint32_t e) { return !(error_of(e, deviations) > options_.max_error); });
         find_direct_light(tested, many, monitor_section(monitor, 0.5, 1));
         std::vector<std::pair<double, std::uint32_t>> worst;  // error times area
         for (const std::uint32_t e : tested)
-            if (const double error = error_of(e); error > options_.max_error)
+            if (const double error = error_of(e, deviations); error > options_.max_error)
                 worst.emplace_back(error * forest_->area(e), e);
         std::sort(worst.begin(), worst.end(), [](const auto& a, const auto& b) {
             return a.first > b.first || (a.first == b.first && a.second < b.second);
@@ -192,23 +195,29 @@ class Division {
     }
 
     /// Emission of textures counts as direct light.
-    Rgb direct_at(std::uint32_t e, Parameters local) const {
+    GaugeLight direct_at(std::uint32_t e, Parameters local) const {
         const std::uint32_t patch = forest_->patch(e);
         const Parameters at = forest_->cell(e).at(local.u, local.v);
-        return direct_[known_.at({patch, at})] + exitance_at(scene_, scene_.patches[patch], at);
+        GaugeLight light = direct_[known_.at({patch, at})];
+        light.irradiance += exitance_at(scene_, scene_.patches[patch], at);
+        return light;
     }
 
-    /// Largest error of interpolation, relative to the irradiance there or the mean.
-    double error_of(std::uint32_t e) const {
+    /// Largest error of interpolation beyond the given number of standard deviations, relative to the irradiance there
+    /// or the mean.
+    double error_of(std::uint32_t e, double deviations) const {
         double largest = 0;
-        for (const auto& [a, b, at] : middles_of(is_triangle(e))) {
-            const std::span<const Parameters> corners = corners_of(is_triangle(e));
-            const Rgb interpolated = 0.5f * (direct_at(e, corners[a]) + direct_at(e, corners[b]));
-            const Rgb direct = direct_at(e, at);
+        const std::span<const Parameters> corners = corners_of(is_triangle(e));
+        for (const auto& [first, second, at] : middles_of(is_triangle(e))) {
+            const GaugeLight a = direct_at(e, corners[first]), b = direct_at(e, corners[second]),
+                             middle = direct_at(e, at);
+            const Rgb error = middle.irradiance - 0.5f * (a.irradiance + b.irradiance);
+            const double size = (std::abs(error.x) + std::abs(error.y) + std::abs(error.z)) / 3.0;
+            const double noise = std::sqrt(middle.squared_error + 0.25 * (a.squared_error + b.squared_error));
             const double all =
                 mean_channel(light_.interpolated({forest_->patch(e), forest_->cell(e).at(at.u, at.v), {}}));
-            const double scale = std::max({all, mean_channel(direct), mean_});
-            if (scale > 0) largest = std::max(largest, std::abs(mean_channel(direct - interpolated)) / scale);
+            const double scale = std::max({all, mean_channel(middle.irradiance), mean_});
+            if (scale > 0) largest = std::max(largest, (size - deviations * noise) / scale);
         }
         return largest;
     }
@@ -222,7 +231,7 @@ class Division {
     std::vector<float> edges_;                             // longest of each patch [m]
     double triangles_ = 0;                                 // about
     std::unordered_map<Key, std::size_t, KeyHash> known_;  // in direct_
-    std::vector<Rgb> direct_;
+    std::vector<GaugeLight> direct_;
 };
 
 /// One point per vertex, on its first shown patch.
@@ -257,11 +266,11 @@ class VertexPoints {
 }  // namespace
 
 VertexLight make_vertex_light(const Scene& scene, const Solution& solution, const ExportOptions& options) {
+    std::vector<bool> shown = shown_patches(scene, solution);
     if (options.bake.shading == BakeShading::smooth)
-        return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance)};
-    constexpr DirectSampling vertex_sampling{64, 1e-3};  // any noise requires all samples
+        return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance), std::move(shown)};
+    constexpr DirectSampling vertex_sampling{64, 1e-3, /*is_tested=*/true};
     const BakedLight light(scene, solution, options.bake, vertex_sampling);
-    const std::vector<bool> shown = shown_patches(scene, solution);
     constexpr double share_of_division = 0.4;  // of the time; roughly
     Division division(scene, light, shown, mean_irradiance(solution, shown), options.vertices);
     const auto forest = division.run(monitor_section(options.monitor, 0, share_of_division));
@@ -274,7 +283,7 @@ VertexLight make_vertex_light(const Scene& scene, const Solution& solution, cons
         return i == none ? std::nullopt : std::optional(irradiance[i]);
     };
     std::vector<Rgb> values = joined_at_vertices(*forest, vertices, at_corner);
-    return {forest, ElementMesh(scene, *forest, std::move(vertices), std::move(values))};
+    return {forest, ElementMesh(scene, *forest, std::move(vertices), std::move(values)), std::move(shown)};
 }
 
 }  // namespace interflect::detail

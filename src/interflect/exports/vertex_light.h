@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "interflect/elements/forest.h"
 #include "interflect/export.h"
@@ -10,7 +11,8 @@ namespace interflect::detail {
 
 struct VertexLight {
     std::shared_ptr<const ElementForest> forest;
-    ElementMesh mesh;  ///< Triangulates `forest`.
+    ElementMesh mesh;         ///< Triangulates `forest`.
+    std::vector<bool> shown;  ///< See shown_patches().
 };
 
 /// Light at the vertices of elements: the solution's for BakeShading::smooth; otherwise elements of its own, divided by

@@ -31,7 +31,7 @@ struct PieceShape {
     double longest_sliver = std::numeric_limits<double>::infinity();
 };
 
-/// Divides long quadrilaterals into at most 16 parts, slivers into 64: elements inherit the shape of patches.
+/// Divides long quadrilaterals into at most 16 parts, slivers into at most 64: elements inherit the shape of patches.
 void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, std::vector<PlanarPolygon>& patches);
 
 }  // namespace interflect::detail

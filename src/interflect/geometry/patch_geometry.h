@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "interflect/scene.h"
 #include "interflect/scene/patch_area.h"
@@ -13,6 +14,13 @@ namespace interflect::detail {
 struct Parameters {
     float u = 0, v = 0;
 };
+
+/// Corners of the domain, in the order of the vertices.
+inline constexpr std::array<Parameters, 4> square_corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+inline constexpr std::array<Parameters, 3> triangle_corners{{{0, 0}, {1, 0}, {0, 1}}};
+inline std::span<const Parameters> corners_of(bool is_triangle) {
+    return is_triangle ? std::span<const Parameters>(triangle_corners) : std::span<const Parameters>(square_corners);
+}
 
 class PatchGeometry {
   public:

@@ -14,8 +14,9 @@ enum class PolygonResult {
     self_crossing,  ///< Opposite areas of the outline cancel; not added.
 };
 
-/// Adds triangles and convex planar quadrilaterals (planarity.h) as one patch; triangulates others. Merges consecutive
-/// vertices at one position. Omits patches below smallest_face_area, and degenerate triangles.
+/// Adds triangles and convex planar quadrilaterals (planarity.h) as one patch; triangulates others. Keeps the
+/// vertex order; merges consecutive vertices at one position. Omits patches below smallest_face_area, and degenerate
+/// triangles.
 /// @param loops      Outline, counter-clockwise from the front, then holes in any direction (even-odd rule). Doubled
 ///     edges may join outline and hole. Crossings become new vertices with interpolated attributes.
 /// @param two_sided  Adds a back after each front, in reverse order from the same vertex.

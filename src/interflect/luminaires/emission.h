@@ -72,7 +72,7 @@ class Emission {
     void shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                std::span<Ray> rays) const;
 
-    /// For the oracle, with about the irradiance of the part at the end of a ray.
+    /// Point source that stands for a part in the oracle, with about its irradiance at the end of a ray.
     struct Proxy {
         V3f position{0, 0, 0};  ///< [m]
         V3f normal{0, 0, 0};    ///< Emission is proportional to the cosine; zero: isotropic.
@@ -137,8 +137,8 @@ class Emission {
     RgbD power_of_boxes(std::size_t begin, std::size_t end) const;
     Ray restrict_to_box(const Ray& ray, std::size_t box) const;
 
-    std::vector<Imath::Box3f> boxes_;
-    std::vector<std::size_t> suns_;  // emitters for box 0
+    std::vector<Imath::Box3f> boxes_;  // the scene's, then targets
+    std::vector<std::size_t> suns_;    // emitters for box 0
     std::vector<std::vector<std::size_t>> emitters_of_boxes_;
     std::vector<Emitter> emitters_;
     std::map<const PhotometricWeb*, std::shared_ptr<const WebSampler>> samplers_;

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Difference of luminances averaged over square blocks.
+/// Difference of luminances averaged over square blocks, to reduce noise.
 struct BlockDifference {
     int block = 1;  ///< [pixels]; ignores incomplete blocks.
     /// sqrt(mean of ((A - B) / (B + 0.01 m))^2) of block means A, B; m is the reference's mean.

@@ -79,6 +79,18 @@ float shape_weight(const PictureLayers& layers, std::size_t i, std::size_t k, fl
            exp_minus(height * height / (footprint * footprint + 1e-12f));
 }
 
+/// Calls visit(k, weight) for each pixel k at most `radius` from (x, y) in both directions, with shape_weight().
+template <class Visit>
+void visit_surface(const PictureLayers& layers, int x, int y, int radius, const Visit& visit) {
+    const int width = layers.albedo.width, height = layers.albedo.height;
+    const std::size_t i = pixel_at(x, y, width);
+    for (int v = std::max(0, y - radius); v <= std::min(height - 1, y + radius); ++v)
+        for (int u = std::max(0, x - radius); u <= std::min(width - 1, x + radius); ++u) {
+            const std::size_t k = pixel_at(u, v, width);
+            visit(k, shape_weight(layers, i, k, distance_of(u - x, v - y)));
+        }
+}
+
 /// Averages over neighbours on the same surface. The variance is large at edges of objects, and must not spread.
 std::vector<float> surface_mean(const PictureLayers& layers, const std::vector<float>& values) {
     const int width = layers.albedo.width, height = layers.albedo.height;
@@ -86,16 +98,12 @@ std::vector<float> surface_mean(const PictureLayers& layers, const std::vector<f
     parallel_for_ranges(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
         for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
             for (int x = 0; x < width; ++x) {
-                const std::size_t i = pixel_at(x, y, width);
                 float sum = 0, weight = 0;
-                for (int v = std::max(0, y - variance_radius); v <= std::min(height - 1, y + variance_radius); ++v)
-                    for (int u = std::max(0, x - variance_radius); u <= std::min(width - 1, x + variance_radius); ++u) {
-                        const std::size_t k = pixel_at(u, v, width);
-                        const float w = shape_weight(layers, i, k, distance_of(u - x, v - y));
-                        sum += w * values[k];
-                        weight += w;
-                    }
-                means[i] = weight > 0 ? sum / weight : 0;
+                visit_surface(layers, x, y, variance_radius, [&](std::size_t k, float w) {
+                    sum += w * values[k];
+                    weight += w;
+                });
+                means[pixel_at(x, y, width)] = weight > 0 ? sum / weight : 0;
             }
     });
     return means;
@@ -237,18 +245,13 @@ NoisyLight noisy_light(const PictureLayers& layers, const std::array<Fields, 2>&
 
 /// Mean of unfiltered minus filtered light around (x, y), reduced by a share of its noise (James-Stein).
 Rgb removed_around(const PictureLayers& layers, const NoisyLight& noisy, const Image& filtered, int x, int y) {
-    const int width = filtered.width, height = filtered.height;
-    const std::size_t i = pixel_at(x, y, width);
     Rgb removed(0);
     float weight = 0, noise = 0;
-    for (int v = std::max(0, y - mean_radius); v <= std::min(height - 1, y + mean_radius); ++v)
-        for (int u = std::max(0, x - mean_radius); u <= std::min(width - 1, x + mean_radius); ++u) {
-            const std::size_t k = pixel_at(u, v, width);
-            const float w = shape_weight(layers, i, k, distance_of(u - x, v - y));
-            removed += w * (noisy.irradiance.pixels[k] - filtered.pixels[k]);
-            noise += returned_noise * w * w * noisy.variance[k];
-            weight += w;
-        }
+    visit_surface(layers, x, y, mean_radius, [&](std::size_t k, float w) {
+        removed += w * (noisy.irradiance.pixels[k] - filtered.pixels[k]);
+        noise += returned_noise * w * w * noisy.variance[k];
+        weight += w;
+    });
     const float mean = channel_sum(removed) / 3, square = mean * mean;
     return square > noise ? removed * ((1 - noise / square) / weight) : Rgb(0);
 }

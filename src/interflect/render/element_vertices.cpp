@@ -172,12 +172,10 @@ class VertexBuilder {
             const std::uint32_t patch = seam.edge[k] / 4, corner = seam.edge[k] % 4;
             collect_leaf_edges(patch, corner, 0, 1, seam.from[k], seam.to[k], sides[k].leaves);
             const PatchGeometry& geometry = forest_.geometry(patch);
-            constexpr std::array<Parameters, 4> square{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-            constexpr std::array<Parameters, 3> triangle{{{0, 0}, {1, 0}, {0, 1}}};
-            const auto point = [&](std::uint32_t c) {
-                return geometry.point(geometry.is_triangle() ? triangle[c] : square[c]);
-            };
-            sides[k].length = (point((corner + 1) % (geometry.is_triangle() ? 3 : 4)) - point(corner)).length();
+            const std::span<const Parameters> corners = corners_of(geometry.is_triangle());
+            const V3f start = geometry.point(corners[corner]),
+                      end = geometry.point(corners[(corner + 1) % corners.size()]);
+            sides[k].length = (end - start).length();
         }
         return sides;
     }
@@ -299,13 +297,17 @@ std::vector<Rgb> joined_at_vertices(
     const auto mean = [&](std::uint32_t v) { return weight[v] > 0 ? Rgb(sum[v] / weight[v]) : Rgb(0, 0, 0); };
     std::vector<Rgb> means(vertices.count());
     for (std::uint32_t v = 0; v < means.size(); ++v) means[v] = mean(v);
+    const auto is_known = [&](const std::array<std::uint32_t, 2>& ends) {
+        return weight[ends[0]] > 0 && weight[ends[1]] > 0;
+    };
     for (const auto& [vertex, ends, fraction, angle] : vertices.couplings()) {
+        if (!(weight[vertex] > 0 && is_known(ends))) continue;
         sum[vertex] += RgbD(means[ends[0]] * (1 - fraction) + means[ends[1]] * fraction) * angle;
         weight[vertex] += angle;
     }
     for (const auto& coupling : vertices.couplings()) means[coupling.vertex] = mean(coupling.vertex);
     for (const auto& [vertex, ends, fraction] : vertices.hanging())
-        means[vertex] = means[ends[0]] * (1 - fraction) + means[ends[1]] * fraction;
+        if (is_known(ends)) means[vertex] = means[ends[0]] * (1 - fraction) + means[ends[1]] * fraction;
     return means;
 }
 

@@ -57,8 +57,10 @@ class PathPicture {
         };
         const bool has_target = options_.until > 0, is_hybrid = s_.indirect_field != nullptr;
         const double target = has_target || !is_hybrid ? options_.until : hybrid_target;
-        const std::uint32_t usual = batches_of(options_.samples);
-        const std::uint32_t least = is_hybrid || is_limited(options_) ? std::min(usual, starting_batches) : usual;
+        const bool starts_small = is_hybrid || is_limited(options_);
+        const std::uint32_t usual =
+            starts_small ? std::max(batches_of(options_.samples), starting_batches) : batches_of(options_.samples);
+        const std::uint32_t least = starts_small ? starting_batches : usual;
         const std::uint32_t most = has_target ? batches_of(std::max(options_.max_samples, options_.samples)) : usual;
         std::vector<std::uint32_t> wanted(pixels_.size(), least);
         foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());

@@ -98,8 +98,7 @@ std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic
 namespace {
 
 /// Traces the gauges `first`, ... Returns the number of rays.
-std::int64_t trace_gauges(const PathScene& paths, std::size_t first, std::span<Rgb> irradiance) {
-    constexpr std::size_t first_batches = 2;
+std::int64_t trace_gauges(const PathScene& paths, std::size_t first, std::span<GaugeLight> irradiance) {
     const auto size = static_cast<std::uint32_t>(paths.batch_size);
     std::vector<PartStatistics> light(irradiance.size());
     std::vector<BatchOfPaths> batches;
@@ -115,22 +114,25 @@ std::int64_t trace_gauges(const PathScene& paths, std::size_t first, std::span<R
             batches.push_back(
                 {.pixel = static_cast<std::uint32_t>(first + i), .first_point = static_cast<std::uint32_t>(k) * size});
     };
+    const double target = paths.options.until > 0 ? paths.options.until : hybrid_target;
+    const std::size_t all_batches = static_cast<std::size_t>(paths.options.samples) / size;
+    // Two batches agree about light that neither finds: only exact light may end early.
+    const std::size_t first_batches = paths.directions_find_light() ? all_batches : 2;
     for (std::size_t i = 0; i < irradiance.size(); ++i) add_batches(i, 0, first_batches);
     trace();
     batches.clear();
-    const double target = paths.options.until > 0 ? paths.options.until : hybrid_target;
-    const std::size_t all_batches = static_cast<std::size_t>(paths.options.samples) / size;
     for (std::size_t i = 0; i < irradiance.size(); ++i)
         if (std::sqrt(light[i].squared_error()) > target * mean_channel(light[i].mean))
             add_batches(i, first_batches, all_batches);
     trace();
-    for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i] = Rgb(light[i].mean);
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+        irradiance[i] = {Rgb(light[i].mean), static_cast<float>(light[i].squared_error())};
     return rays;
 }
 
-std::vector<Rgb> trace_all_gauges(const PathScene& paths, const Monitor& monitor) {
+std::vector<GaugeLight> trace_all_gauges(const PathScene& paths, const Monitor& monitor) {
     const std::size_t gauges = paths.start->gauges.size();
-    std::vector<Rgb> irradiance(gauges);
+    std::vector<GaugeLight> irradiance(gauges);
     constexpr std::size_t per_tile = 256;
     constexpr std::size_t tiles_per_report = 256;
     std::int64_t rays = 0;
@@ -168,11 +170,15 @@ std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gau
     constexpr double share_of_records = 0.6;  // of the time; roughly
     const IndirectField field(paths, first_points(paths, monitor.stop), monitor_section(monitor, 0, share_of_records));
     paths.indirect_field = &field;
-    return trace_all_gauges(paths, monitor_section(monitor, share_of_records, 1, field.rays()));
+    std::vector<Rgb> irradiance;
+    irradiance.reserve(gauges.size());
+    for (const GaugeLight& light : trace_all_gauges(paths, monitor_section(monitor, share_of_records, 1, field.rays())))
+        irradiance.push_back(light.irradiance);
+    return irradiance;
 }
 
-std::vector<Rgb> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
-                                   const Monitor& monitor) {
+std::vector<GaugeLight> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
+                                          const PathOptions& options, const Monitor& monitor) {
     const PathStart start = start_at(gauges);
     PathScene paths = scene.paths(start, options, TracedScene::batch_size(options.samples, batches_of_gauge));
     paths.is_direct_only = true;

@@ -57,14 +57,19 @@ constexpr double hybrid_target = 0.06;
 /// @param stop  If set, some points are missing; may be null.
 std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop);
 
-/// Irradiance of gauges by hybrid shading, with up to options.samples paths for each whose estimated relative error
-/// exceeds options.until or, without it, hybrid_target.
+/// Irradiance of gauges by hybrid shading, with options.samples paths for each. Without skies and extended sources that
+/// only chance finds, a quarter of them if the estimated relative error is below options.until or, without it,
+/// hybrid_target.
 /// @param scene  With interpolated KnownIrradiance.
 /// @return       [as H], per gauge; the same bits for any number of threads. @throws Stopped
 std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
                                    const Monitor& monitor);
-/// Its direct part.
-std::vector<Rgb> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
-                                   const Monitor& monitor);
+struct GaugeLight {
+    Rgb irradiance;
+    float squared_error = 0;  ///< Estimated, of the mean of the channels.
+};
+/// The direct part.
+std::vector<GaugeLight> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
+                                          const PathOptions& options, const Monitor& monitor);
 
 }  // namespace interflect::detail

@@ -62,7 +62,7 @@ class PayloadHistogram {
     PayloadHistogram& operator+=(const PayloadHistogram& other);
 
     double largest_over_mean() const;  ///< 1 without power.
-    /// Returns the power that a share of the rays exceeds; accurate to 19%.
+    /// Returns the power that a share of the rays exceeds, relative to the mean; accurate to 19%.
     double quantile_over_mean(double share) const;
 
     void archive(StateArchive& archive) {
