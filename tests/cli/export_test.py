@@ -202,6 +202,25 @@ class Export(CommandTest):
             self.assertEqual(image("--quality", quality), image("--texels-per-metre", texels))
         self.assertEqual(image("--quality", "high", "--texels-per-metre", "5"), image("--texels-per-metre", "5"))
 
+    def test_quality_sets_samples_and_triangles(self):
+        def mesh(*options):
+            self.export("--max-edge", "0.5", *options)
+            return self.bytes("out.gltf")
+
+        self.solve()
+        for shading in "hybrid", "gather":
+            low = mesh("--quality", "low", "--shading", shading)
+            self.assertEqual(low, mesh("--samples", "16", "--max-triangles", "50000", "--shading", shading))
+            self.assertNotEqual(low, mesh("--quality", "low", "--samples", "8", "--shading", shading))
+            self.assertNotEqual(low, mesh("--quality", "low", "--max-triangles", "60", "--shading", shading))
+
+    def test_min_edge_may_exceed_the_usual_max_edge(self):
+        self.solve()
+        self.export("--min-edge", "1")
+        coarse = len(self.bytes("out.gltf"))
+        self.export("--min-edge", "0.1")
+        self.assertGreater(len(self.bytes("out.gltf")), coarse)
+
     def test_refusals(self):
         self.solve()
         before = self.files()

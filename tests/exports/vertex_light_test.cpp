@@ -131,6 +131,28 @@ TEST(VertexLight, TakesDirectLightFromTheLampAndNotFromTheSolution) {
             ASSERT_NEAR(corner.irradiance.x, exact_irradiance(light.mesh.points()[corner.point]), 0.5);
 }
 
+// In a furnace all surfaces have the irradiance M / (1 - rho). Half of it is direct light.
+TEST(VertexLight, IsEvenInAFurnace) {
+    constexpr float exact = 100;
+    const Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0.5f), Rgb(exact / 2)}});
+    const Solution solution = lightmap_testing::uniform(scene, exact);
+    for (const BakeShading shading : {BakeShading::hybrid, BakeShading::gather}) {
+        ExportOptions options;
+        options.bake.shading = shading;
+        options.vertices.max_edge = 0.5f;
+        VertexLight light = make_vertex_light(scene, solution, options);
+        double sum = 0, squares = 0, count = 0;
+        for (const MeshTriangle& triangle : triangles_of(light))
+            for (const MeshCorner& corner : triangle) {
+                const double error = static_cast<double>(corner.irradiance.x / exact - 1);
+                sum += error, squares += error * error, ++count;
+            }
+        EXPECT_GT(count, 500);
+        EXPECT_NEAR(sum / count, 0, 2e-3) << static_cast<int>(shading);
+        EXPECT_LT(std::sqrt(squares / count), 0.05) << static_cast<int>(shading);  // most in the corners
+    }
+}
+
 TEST(VertexLight, HasTheSameBitsForAnyNumberOfThreads) {
     const Scene scene = lit_floor(false);
     const Solution solution = lightmap_testing::uniform(scene, 10);

@@ -83,7 +83,8 @@ std::vector<SurfacePoint> IndirectField::uncovered_among(std::span<const Surface
     std::vector<std::uint8_t> is_covered(points.size(), 0);
     parallel_for_ranges(points.size(), points_per_task, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
-            is_covered[i] = fit_at(points[i].position, points[i].normal, points[i].patch).weight() >= covering_weight;
+            is_covered[i] =
+                fit_at(points[i].position, points[i].normal, points[i].patch).values.weight() >= covering_weight;
     });
     std::vector<SurfacePoint> uncovered;
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -184,13 +185,9 @@ void IndirectField::refine_noisy_records(const PathScene& scene, const std::atom
 
 float IndirectField::pooled_variance(const Record& record) const {
     double squares = 0, degrees_of_freedom = 0;
-    visit_box_tree(
-        std::span<const Boxed>(tree_), [&](const Imath::Box3f& box) { return box.intersects(record.position); },
-        [&](std::uint32_t i) {
-            const Record& r = records_[i];
-            if (!(r.relative_distance2(record.position, record.normal, record.patch) < 1)) return;
-            squares += r.gathered.squares, degrees_of_freedom += r.gathered.batches - 1.0;
-        });
+    visit_near(record.position, record.normal, record.patch, [&](std::uint32_t i, float) {
+        squares += records_[i].gathered.squares, degrees_of_freedom += records_[i].gathered.batches - 1.0;
+    });
     return static_cast<float>(squares / degrees_of_freedom);
 }
 
@@ -214,26 +211,24 @@ float IndirectField::Record::relative_distance2(const V3f& x, const V3f& n, std:
     return (d.length2() + height * height) / (max_distance * max_distance) + (1 - cosine) / (1 - min_cosine);
 }
 
-LocalFit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const {
+IndirectField::Fit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const {
     const TangentFrame frame(n);
-    LocalFit fit;
-    visit_box_tree(
-        std::span<const Boxed>(tree_), [&](const Imath::Box3f& box) { return box.intersects(x); },
-        [&](std::uint32_t i) {
-            const Record& r = records_[i];
-            const float distance2 = r.relative_distance2(x, n, patch);
-            if (!(distance2 < 1)) return;
-            const V3f d = r.position - x;
-            fit.add((1 - distance2) * (1 - distance2), d.dot(frame.s), d.dot(frame.t), Rgb(r.gathered.mean));
-        });
+    Fit fit;
+    float least = 1;
+    visit_near(x, n, patch, [&](std::uint32_t i, float distance2) {
+        const Record& r = records_[i];
+        const V3f d = r.position - x;
+        fit.values.add((1 - distance2) * (1 - distance2), d.dot(frame.s), d.dot(frame.t), Rgb(r.gathered.mean));
+        if (distance2 < least) least = distance2, fit.nearest = i;
+    });
     return fit;
 }
 
-std::optional<Rgb> IndirectField::at(const V3f& x, const V3f& n, std::uint32_t patch) const {
+std::optional<IndirectField::Light> IndirectField::at(const V3f& x, const V3f& n, std::uint32_t patch) const {
     constexpr float min_weight = 0.1f;  // less: at the end of a single record's reach
-    const LocalFit fit = fit_at(x, n, patch);
-    if (!(fit.weight() > min_weight)) return std::nullopt;
-    return fit.value();
+    const Fit fit = fit_at(x, n, patch);
+    if (!(fit.values.weight() > min_weight)) return std::nullopt;
+    return Light{fit.values.value(), fit.nearest};
 }
 
 }  // namespace interflect::detail

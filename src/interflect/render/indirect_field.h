@@ -35,8 +35,27 @@ class IndirectField {
     /// If stopped, ends within milliseconds, with fewer records.
     IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor);
 
-    /// Returns the irradiance [as H]; nullopt without a record in reach.
-    std::optional<Rgb> at(const V3f& x, const V3f& n, std::uint32_t patch) const;
+    struct Light {
+        Rgb irradiance;        ///< [as H]
+        std::uint32_t record;  ///< The nearest.
+    };
+    /// Returns nullopt without a record in reach.
+    std::optional<Light> at(const V3f& x, const V3f& n, std::uint32_t patch) const;
+
+    std::size_t size() const { return records_.size(); }
+    SurfacePoint place(std::size_t record) const {
+        return {records_[record].position, records_[record].normal, records_[record].patch};
+    }
+    /// Calls visit(record, squared distance relative to its reach) for records in whose reach a point is.
+    template <class Visit>
+    void visit_near(const V3f& x, const V3f& n, std::uint32_t patch, const Visit& visit) const {
+        visit_box_tree(
+            std::span<const Boxed>(tree_), [&](const Imath::Box3f& box) { return box.intersects(x); },
+            [&](std::uint32_t i) {
+                const float distance2 = records_[i].relative_distance2(x, n, patch);
+                if (distance2 < 1) visit(i, distance2);
+            });
+    }
 
     std::int64_t rays() const { return rays_; }
 
@@ -55,7 +74,11 @@ class IndirectField {
         float relative_distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const;
     };
 
-    LocalFit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
+    struct Fit {
+        LocalFit values;
+        std::uint32_t nearest = none;  // record
+    };
+    Fit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
     void cover(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor);
     std::vector<SurfacePoint> uncovered_among(std::span<const SurfacePoint> points) const;
     void gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,

@@ -266,9 +266,11 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     const IndirectField field(path_scene, first_points(path_scene, monitor.stop),
                               monitor_section(monitor, 0, share_of_records));
     path_scene.indirect_field = &field;
-    PathTracing result =
-        draw(path_scene, options, monitor_section(monitor, share_of_records, 1, field.rays()), time_left);
-    result.rays += field.rays();
+    const SkyGuide guide(path_scene, field, monitor.stop);
+    path_scene.sky_guide = &guide;
+    const std::int64_t rays = field.rays() + guide.rays();
+    PathTracing result = draw(path_scene, options, monitor_section(monitor, share_of_records, 1, rays), time_left);
+    result.rays += rays;
     return result;
 }
 

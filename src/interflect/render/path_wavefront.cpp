@@ -217,7 +217,7 @@ bool PathWavefront::leave(Ray& ray, Path& path, const V3f& middle) {
         if (samples_emitters) connect_to_patch(ray.origin, path, sample);
         // Reflected paths hit no luminaires but skies.
         if (!s_.scene.luminaires.empty()) connect_to_luminaire(ray.origin, path, sample);
-        if (samples_emitters && s_.skies.can_sample()) connect_to_sky(ray.origin, path, index);
+        if (samples_emitters) connect_to_sky(ray.origin, path, index);
     }
     if (s_.known && path.place == none) connect_to_known_light(ray.origin, path);
 
@@ -244,7 +244,12 @@ std::uint32_t PathWavefront::seen_place(const V3f& x, const Path& path) {
         i = seen_.size() + 1;
         SeenPlace& place = seen_.emplace_back();
         place.batch = batch, place.patch = path.patch, place.index = path.index, place.normal = path.normal;
-        place.indirect = s_.is_direct_only ? Rgb(0) : s_.indirect_field->at(x, path.normal, path.patch);
+        if (s_.is_direct_only) {
+            place.indirect = Rgb(0);
+        } else if (const auto found = s_.indirect_field->at(x, path.normal, path.patch)) {
+            place.indirect = found->irradiance;
+            if (s_.sky_guide && s_.sky_guide->sees_sky(found->record)) place.guide = found->record;
+        }
         if (s_.unoccluded.has_patches()) place.patches.exact = s_.unoccluded.by_patches(x, path.normal, path.patch);
         if (s_.unoccluded.has_luminaires()) place.luminaires.exact = s_.unoccluded.by_luminaires(x, path.normal);
     }
@@ -288,14 +293,29 @@ void PathWavefront::estimate_visible_share(Connection& connection, const Path& p
 
 void PathWavefront::add_sky(const Ray& ray, const Path& path) {
     if (vertex_ == 1) return add(path.index, 0, path.throughput * s_.skies.seen(ray.direction));
-    Rgb radiance = s_.skies.uniform_radiance();  // no shadow rays sample it
-    if (s_.skies.can_sample()) {                 // otherwise sampled_radiance() is 0
-        const auto count = static_cast<float>(shadow_rays_at(vertex_ - 1));
-        const float weight =
-            direction_weight(direction_density(path, ray.direction), count * s_.skies.density(ray.direction));
-        radiance += s_.skies.sampled_radiance(ray.direction) * weight;
-    }
+    Rgb radiance = sky_of_shadow_rays(path, ray.direction);
+    if (channel_sum(radiance) > 0)
+        radiance *=
+            direction_weight(direction_density(path, ray.direction), sky_density(path, vertex_ - 1, ray.direction));
+    if (guide_of(path) == none) radiance += s_.skies.uniform_radiance();
     add(path.index, vertex_ - 1, path.throughput * radiance);
+}
+
+std::uint32_t PathWavefront::guide_of(const Path& path) const {
+    return path.place == none ? none : seen_[path.place].guide;
+}
+
+Rgb PathWavefront::sky_of_shadow_rays(const Path& path, const V3f& direction) const {
+    return guide_of(path) == none ? s_.skies.sampled_radiance(direction) : s_.skies.radiance(direction);
+}
+
+float PathWavefront::sky_density(const Path& path, std::uint32_t vertex, const V3f& direction) const {
+    const auto count = static_cast<float>(shadow_rays_at(vertex));
+    const float of_sky = s_.skies.can_sample() ? s_.skies.density(direction) : 0;
+    const std::uint32_t guide = guide_of(path);
+    if (guide == none) return count * of_sky;
+    const float of_guide = s_.sky_guide->density(guide, path.normal, direction);
+    return s_.skies.can_sample() ? count * (of_sky + of_guide) / 2 : count * of_guide;
 }
 
 void PathWavefront::add_emission(const Hit& hit, const Ray& ray, const Path& path, const Rgb& exitance) {
@@ -416,16 +436,22 @@ void PathWavefront::connect_to_luminaire(const V3f& x, const Path& path, const L
 }
 
 void PathWavefront::connect_to_sky(const V3f& x, const Path& path, std::uint32_t index) {
-    const SkySample numbers = sky_sample(sequence(path).key, vertex_, index);
-    const Skies::Sample sample = s_.skies.sample(numbers.sky, numbers.u, numbers.v);
-    const float cosine = path.normal.dot(sample.direction);
-    const float sky_density = static_cast<float>(shadow_rays_at(vertex_)) * sample.density;
-    if (!(cosine > 0 && sky_density > 0)) return;
+    const std::uint32_t guide = guide_of(path);
+    if (!s_.skies.can_sample() && guide == none) return;
+    const bool takes_turns = guide != none && s_.skies.can_sample();
+    const bool is_guided = guide != none && (!takes_turns || index % 2 == 0);
+    const std::uint64_t key = sequence(path).key;
+    const SkySample numbers = sky_sample(is_guided ? mix(key, 1) : key, vertex_, takes_turns ? index / 2 : index);
+    const V3f direction = is_guided ? s_.sky_guide->sample(guide, path.normal, numbers.sky, numbers.u, numbers.v)
+                                    : s_.skies.sample(numbers.sky, numbers.u, numbers.v).direction;
+    const float cosine = path.normal.dot(direction);
+    const float density = sky_density(path, vertex_, direction);
+    if (!(cosine > 0 && density > 0)) return;
     const float weight = s_.options.emitter_sampling == EmitterSampling::lights
                              ? 1
-                             : balance(sky_density, direction_density(path, sample.direction));
-    const Rgb radiance = s_.skies.sampled_radiance(sample.direction) * (cosine / pi / sky_density * weight);
-    shadow_rays_.push_back({x, sample.direction});
+                             : balance(density, direction_density(path, direction));
+    const Rgb radiance = sky_of_shadow_rays(path, direction) * (cosine / pi / density * weight);
+    shadow_rays_.push_back({x, direction});
     constexpr float infinitely_far = std::numeric_limits<float>::infinity();
     connections_.push_back({none, path.index, path.throughput * radiance, infinitely_far, vertex_});
 }

@@ -20,6 +20,7 @@
 #include "interflect/render/light_tree.h"
 #include "interflect/render/luminaire_choice.h"
 #include "interflect/render/path_samples.h"
+#include "interflect/render/sky_guide.h"
 #include "interflect/render/smooth_normals.h"
 #include "interflect/render/unoccluded_light.h"
 #include "interflect/scene.h"
@@ -50,6 +51,7 @@ struct PathScene {
     const KnownLight* known = nullptr;              // ends paths; null: only Russian roulette does
     const SmoothNormals* smooth_normals = nullptr;  // of visible surfaces; null: flat patches
     const IndirectField* indirect_field = nullptr;  // replaces reflected paths at the first vertex
+    const SkyGuide* sky_guide = nullptr;            // of its records; samples the sky at the first vertex
     bool is_indirect_only = false;                  // omits light that is reflected once
     bool is_direct_only = false;                    // at the first vertex, of hybrid shading
     bool finds_points = false;                      // paths end at the first vertex
@@ -145,6 +147,7 @@ class PathWavefront {
         V3f normal{0, 0, 0};
         Rgb throughput{0, 0, 0};      // sum over the paths
         std::optional<Rgb> indirect;  // irradiance
+        std::uint32_t guide = none;   // record of PathScene::sky_guide that sees the sky
         ExactLight patches, luminaires;
     };
     /// Contribution of a shadow ray that hits `patch` or, for `none`, is free up to `distance`.
@@ -192,6 +195,12 @@ class PathWavefront {
     /// @param path  Its throughput includes the reflectance at x; also below.
     void connect_to_patch(const V3f& x, const Path& path, const LightSample& sample);
     void connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample);
+    /// Returns SeenPlace::guide; none at later vertices.
+    std::uint32_t guide_of(const Path& path) const;
+    /// Returns the radiance that they sample: without a guide not that of uniform skies.
+    Rgb sky_of_shadow_rays(const Path& path, const V3f& direction) const;
+    /// Returns the density of all shadow rays of a path to the sky [1/sr].
+    float sky_density(const Path& path, std::uint32_t vertex, const V3f& direction) const;
     /// @param index  Ray in its batch at this vertex.
     void connect_to_sky(const V3f& x, const Path& path, std::uint32_t index);
     void trace_shadow_rays();

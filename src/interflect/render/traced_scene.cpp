@@ -170,9 +170,12 @@ std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gau
     constexpr double share_of_records = 0.6;  // of the time; roughly
     const IndirectField field(paths, first_points(paths, monitor.stop), monitor_section(monitor, 0, share_of_records));
     paths.indirect_field = &field;
+    const SkyGuide guide(paths, field, monitor.stop);
+    paths.sky_guide = &guide;
     std::vector<Rgb> irradiance;
     irradiance.reserve(gauges.size());
-    for (const GaugeLight& light : trace_all_gauges(paths, monitor_section(monitor, share_of_records, 1, field.rays())))
+    for (const GaugeLight& light :
+         trace_all_gauges(paths, monitor_section(monitor, share_of_records, 1, field.rays() + guide.rays())))
         irradiance.push_back(light.irradiance);
     return irradiance;
 }
