@@ -121,7 +121,7 @@ Image filtered_part(Image image, const PictureLayers& layers) {
     return image;
 }
 
-constexpr std::array<int, 2> block_sizes{5, 9};
+constexpr std::array<int, 3> block_sizes{1, 5, 9};
 using Ratios = std::array<double, block_sizes.size()>;
 
 /// Returns the ratio of root mean square errors after and before filtering, for each size of blocks.
@@ -152,6 +152,7 @@ Ratios error_ratios(Tracer tracer, const Place& place, const Solution& solution,
 /// shading.
 TEST(Denoise, DoesNotIncreaseTheErrorOfBlocks) {
     constexpr double largest_mean = 1.05, largest = 1.4;
+    constexpr std::array<double, 2> largest_mean_of_pixels{0.7, 0.97};  // 0.61 and 0.92; without a filter 1
     const std::vector<Place> all = places();
     std::array<Ratios, 2> squares{};
     constexpr std::array<Tracer, 2> tracers{gather, render_hybrid};
@@ -170,7 +171,8 @@ TEST(Denoise, DoesNotIncreaseTheErrorOfBlocks) {
     for (std::size_t t = 0; t < tracers.size(); ++t)
         for (std::size_t k = 0; k < block_sizes.size(); ++k) {
             const double mean = std::sqrt(squares[t][k] / static_cast<double>(all.size()));
-            EXPECT_LT(mean, largest_mean) << "tracer " << t << ", blocks of " << block_sizes[k];
+            EXPECT_LT(mean, block_sizes[k] == 1 ? largest_mean_of_pixels[t] : largest_mean)
+                << "tracer " << t << ", blocks of " << block_sizes[k];
         }
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "interflect/core.h"
@@ -14,15 +15,17 @@ namespace interflect::detail {
 struct PathScene;
 
 /// Directions towards the visible sky around the records of an IndirectField, for sampling: chance rarely finds a small
-/// window (path guiding, Vorba et al. 2014). Each record has a density over cells of equal projected solid angle,
-/// learned from rays of the records nearby. Immutable, thread-safe.
+/// window (path guiding, Vorba et al. 2014). Records in reach of the same record share a density over cells of equal
+/// projected solid angle, learned from their rays. Immutable, thread-safe.
 class SkyGuide {
   public:
     /// Empty without skies. If stopped, ends within milliseconds, with fewer densities.
     SkyGuide(const PathScene& scene, const IndirectField& field, const std::atomic<bool>* stop);
 
     /// Whether some ray from around a record has reached the sky.
-    bool sees_sky(std::uint32_t record) const { return record < rows_.size() && rows_[record] != none; }
+    bool sees_sky(std::uint32_t record) const {
+        return record < groups_.size() && densities_[groups_[record]].back() > 0;
+    }
     /// @param record  That sees the sky; also below. @param n  Normal at the place. Numbers in [0, 1).
     V3f sample(std::uint32_t record, const V3f& n, double cell, float u, float v) const;
     /// Returns the density of sample() [1/sr].
@@ -33,17 +36,30 @@ class SkyGuide {
   private:
     static constexpr std::size_t side = 16, cells = side * side;
     using Cells = std::array<float, cells>;
-    using Cumulative = std::array<std::uint16_t, cells>;  // the last is max_cumulative
+    using Cumulative = std::array<std::uint16_t, cells>;  // the last is max_cumulative, or 0 if nothing sees the sky
     static constexpr std::uint16_t max_cumulative = 0xFFFF;
 
-    /// Adds squared luminances of the sky that a ray through each cell reaches. Returns the number of rays.
-    static std::int64_t add_visible_sky(const PathScene& scene, const SurfacePoint& place, std::uint64_t key,
-                                        Cells& squares);
-    /// Densities follow the root mean square of the light in a cell (least variance), and extend to its neighbours.
-    static Cumulative cumulative_of(const Cells& squares);
+    /// Rays that some places have sent to the sky.
+    struct Search {
+        const PathScene& scene;
+        std::span<const SurfacePoint> places;
+        std::uint64_t key;
+        Cells rays{}, squares{};  // number of rays, and sum of squared luminances that they found
+        std::int64_t traced = 0;  // includes those behind panes
 
-    std::vector<std::uint32_t> rows_;  // in densities_, by record
-    std::vector<Cumulative> densities_;
+        void by_chance();
+        void guided_by(const Cumulative& density);
+        void trace(std::span<const std::uint8_t, cells> cells_of_rays);
+        /// Root mean square of the light in each cell: densities in proportion to it have the least variance.
+        Cells light() const;
+    };
+    static Search search(const PathScene& scene, std::span<const SurfacePoint> places, std::uint64_t key);
+    /// Extends a density to neighbouring cells.
+    static Cumulative density_of(const Cells& light);
+    static std::size_t cell_at(const Cumulative& density, double x);
+
+    std::vector<std::uint32_t> groups_;  // by record
+    std::vector<Cumulative> densities_;  // by group
     std::int64_t rays_ = 0;
 };
 
