@@ -257,8 +257,6 @@ void write_preview(const Scene& scene, const Solution& solution, const RayCaster
     spdlog::info("{}: picture so far; a better one will replace it", options.output.string());
 }
 
-bool needs_paths(const RenderArguments& options) { return options.path.layers || !options.path.error_image.empty(); }
-
 /// Predicts the time of drawing. Changes to smooth shading with few samples if the time is too short.
 DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                          RenderArguments& options) {
@@ -270,7 +268,7 @@ DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const Ray
         if (paths.total() <= largest_drawing_share * left) return paths;
         const std::string needed = fmt::format("per-pixel shading takes about {}, but --time leaves {}",
                                                duration(paths.total()), duration(std::max(0.0, left)));
-        if (needs_paths(options)) {
+        if (options.path.needs_paths()) {
             spdlog::warn("{}: the picture will be late", needed);
             return paths;
         }
@@ -331,14 +329,16 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     if (traces_paths(options.shading) && !planned && !is_stop_requested()) plan_or_preview(solved.solution);
 
     // A signal that ended the solver would end gathering before its first ray.
-    const bool gathers = traces_paths(options.shading) && (needs_paths(options) || !is_stop_requested());
+    const bool gathers = traces_paths(options.shading) && (options.path.needs_paths() || !is_stop_requested());
     const double time = is_limited && planned ? std::max(shortest_time, options.seconds_left() - planned->finishing)
                                               : PathOptions().time;
     Picture picture;
     if (gathers) picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options, time);
-    const bool is_drawn = gathers && (needs_paths(options) || picture.traced.paths > 0);
-    if (traces_paths(options.shading) && !is_drawn)
-        spdlog::warn("stopped before the first pixel: the light is drawn as by --shading smooth");
+    const bool is_drawn = gathers && (options.path.needs_paths() || has_every_pixel(picture.traced));
+    if (traces_paths(options.shading) && !is_drawn) {
+        spdlog::warn("stopped before each pixel had enough light: the picture is drawn as by --shading smooth");
+        options.render.samples = std::min(options.render.samples, RenderOptions().samples);
+    }
     if (!is_drawn)
         picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
                                              : draw_light(solved, ray_caster, view, options);

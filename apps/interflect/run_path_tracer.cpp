@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "apps/interflect/long_work.h"
@@ -80,6 +81,8 @@ void PathTracerArguments::check_samples(const CLI::App& app, int samples) {
                          fmt::format("expected no less than --samples, {}, found {}", samples, most.as<int>()));
 }
 
+bool has_every_pixel(const PathTracing& traced) { return std::isfinite(traced.relative_error); }
+
 std::vector<ImageLayer> layers_of(const PathTracing& traced) {
     const PictureLayers& l = traced.layers;
     const auto of_image = [](const std::string& name, const char* channels, const Image& image) {
@@ -121,6 +124,7 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
         traced = solution ? tracer(scene, *solution, ray_caster, view, options, monitor)
                           : trace_paths(scene, ray_caster, view, options, monitor);
     });
+    if (solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
         spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());
     if (arguments.denoise && traced.paths > 0) {
@@ -128,6 +132,7 @@ PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const 
         traced.image = denoise(traced.layers);
     }
     const bool gathers = solution && tracer == static_cast<Tracer>(gather);
+    if (traced.interrupted) spdlog::warn("stopped early: the picture has more noise than asked for");
     log_outcome(gathers ? "final gathering" : solution ? "hybrid shading" : "path tracing", traced, seconds);
     if (error_image) {
         const char* unit = options.quantity == PathQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";

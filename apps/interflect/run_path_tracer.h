@@ -26,7 +26,11 @@ struct PathTracerArguments {
     /// @throws UsageError for fewer than two --samples, whose variance gives the error, and for --max-samples below
     /// that or without --until.
     static void check_samples(const CLI::App& app, int samples);
+    bool needs_paths() const { return layers || !error_image.empty(); }
 };
+
+/// Whether each pixel has two batches of paths.
+bool has_every_pixel(const PathTracing& traced);
 
 /// Returns the layers of an OpenEXR file; refers to `traced`.
 std::vector<ImageLayer> layers_of(const PathTracing& traced);
@@ -39,7 +43,8 @@ using Tracer = PathTracing (*)(const Scene&, const Solution&, const RayCaster&, 
                                const Monitor&);
 
 /// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
-/// with a partial result. @param solution  Null for path tracing. @param tracer  Draws a solution.
+/// with a partial result, which is neither filtered nor reported if smooth shading can replace it. @param solution Null
+/// for path tracing. @param tracer  Draws a solution.
 PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const Tracer& tracer,
                             const RayCaster& ray_caster, const View& view, PathOptions options,
                             const PathTracerArguments& arguments);

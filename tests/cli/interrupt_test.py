@@ -151,6 +151,20 @@ class Interrupt(CommandTest):
             self.assertIn("ended by a signal, without a result", rest)
             self.assertEqual(self.files(), ["room.h5", "room.mgf"])
 
+    # Seen to be half black, and two thirds as bright where half of the samples were missing.
+    def test_a_picture_without_all_pixels_is_drawn_otherwise(self):
+        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
+        picture = ("render", "room.h5", *VIEW, "--size", "800x600", "--samples")
+        process = self.start(*picture, "4096", "-o", "out.exr", "--no-denoise")
+        for _ in range(2):  # during the first samples
+            self.wait_for_progress(process)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=SOON)[1]
+        self.assertEqual(process.returncode, INTERRUPTED, said)
+        self.assertIn("stopped before each pixel had enough light: the picture is drawn as by --shading smooth", said)
+        self.interflect(*picture, "16", "-o", "smooth.exr", "--shading", "smooth")
+        self.assertAlmostEqual(self.json("compare", "out.exr", "smooth.exr")["ratio_of_means"], 1, delta=0.01)
+
     def test_a_request_to_terminate_is_heeded_alike(self):
         self.interrupt_after_first_progress(
             "solve", "room.mgf", "-o", "out.h5", *ENDLESS, *SHORT_ITERATIONS, by=signal.SIGTERM

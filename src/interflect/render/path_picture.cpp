@@ -115,8 +115,10 @@ class PathPicture {
         layers.reflected = light_of([](const PixelStatistics& p) { return std::tie(p.direct, p.indirect); });
         for (std::size_t h = 0; h < layers.halves.size(); ++h) {
             SampledLight& half = layers.halves[h];
-            half =
-                light_of([h](const PixelStatistics& p) { return std::tie(p.direct_halves[h], p.indirect_halves[h]); });
+            half = light_of([h](const PixelStatistics& p) {
+                return p.batches > h ? std::tie(p.direct_halves[h], p.indirect_halves[h])
+                                     : std::tie(p.direct, p.indirect);
+            });
             for (std::size_t i = 0; i < pixels_.size(); ++i) {
                 if (pixels_[i].direct_halves[h].batches > 1) continue;
                 half.direct_variance[i] = 2 * layers.reflected.direct_variance[i];
