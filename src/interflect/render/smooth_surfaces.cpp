@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 #include "interflect/geometry/bounds.h"
 #include "interflect/geometry/box_tree.h"
@@ -272,6 +273,7 @@ class ContactTree {
 
 /// Relative; ignores gaps between consecutive walls.
 constexpr double min_seam_share = 1e-3;
+constexpr std::size_t edges_per_task = 256;
 
 class SeamFinder {
   public:
@@ -284,22 +286,28 @@ class SeamFinder {
           tree_(edges_.size(), [&](std::uint32_t i) { return std::pair(start(edges_[i]), end(edges_[i])); }) {}
 
     std::vector<SmoothSurfaces::Seam> seams(const auto& smooth) const {
-        std::vector<SmoothSurfaces::Seam> found;
-        for (std::uint32_t i = 0; i < edges_.size(); ++i) {
-            if (!is_piece(edges_[i])) continue;
-            std::vector<std::uint32_t> others;
-            tree_.visit(box_around(start(edges_[i]), end(edges_[i]), tolerance_), [&](std::uint32_t j) {
-                if (is_piece(edges_[j]) && j <= i) return;  // found from the other side
-                if (edges_[i].patch() != edges_[j].patch() && smooth(edges_[i].patch(), edges_[j].patch()))
-                    others.push_back(j);
-            });
-            std::sort(others.begin(), others.end());
-            for (const std::uint32_t j : others) add_seams(edges_[i], edges_[j], found);
-        }
-        return found;
+        std::vector<std::vector<SmoothSurfaces::Seam>> found((edges_.size() + edges_per_task - 1) / edges_per_task);
+        parallel_for_ranges(edges_.size(), edges_per_task, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                add_seams(static_cast<std::uint32_t>(i), smooth, found[begin / edges_per_task]);
+        });
+        std::vector<SmoothSurfaces::Seam> all;
+        for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+        return all;
     }
 
   private:
+    void add_seams(std::uint32_t i, const auto& smooth, std::vector<SmoothSurfaces::Seam>& found) const {
+        if (!is_piece(edges_[i])) return;
+        std::vector<std::uint32_t> others;
+        tree_.visit(box_around(start(edges_[i]), end(edges_[i]), tolerance_), [&](std::uint32_t j) {
+            if (is_piece(edges_[j]) && j <= i) return;  // found from the other side
+            if (edges_[i].patch() != edges_[j].patch() && smooth(edges_[i].patch(), edges_[j].patch()))
+                others.push_back(j);
+        });
+        std::sort(others.begin(), others.end());
+        for (const std::uint32_t j : others) add_seams_between(edges_[i], edges_[j], found);
+    }
     const V3f& position(std::uint32_t corner) const {
         return scene_.vertices[scene_.patches[corner / 4].vertices[corner % 4]];
     }
@@ -307,7 +315,7 @@ class SeamFinder {
     const V3f& end(const PatchEdge& e) const { return position(e.end); }
     bool is_piece(const PatchEdge& e) const { return scene_.patches[e.patch()].surface != none; }
 
-    void add_seams(const PatchEdge& a, const PatchEdge& b, std::vector<SmoothSurfaces::Seam>& found) const {
+    void add_seams_between(const PatchEdge& a, const PatchEdge& b, std::vector<SmoothSurfaces::Seam>& found) const {
         const StraightEdge line(start(a), end(a)), other(start(b), end(b));
         if (line.length() >= other.length() ? !line.is_collinear(start(b), end(b), tolerance_)
                                             : !other.is_collinear(start(a), end(a), tolerance_))
@@ -348,14 +356,17 @@ std::vector<V3f> patch_normals(const Scene& scene) {
 SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options) {
     const CreaseTest creases(scene, options.crease_angle);
     const ContactTree contacts(scene);
-    const auto has_contact = [&](const PatchEdge& e) {
-        const Patch& patch = scene.patches[e.patch()];
-        return patch.surface != none &&
-               !contacts.along(scene.vertices[patch.vertices[e.start % 4]], scene.vertices[patch.vertices[e.end % 4]])
-                    .empty();
-    };
-
     const std::vector<PatchEdge> edges = sorted_edges(scene);
+    std::vector<std::uint8_t> has_contact(edges.size(), 0);
+    parallel_for_ranges(edges.size(), edges_per_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Patch& patch = scene.patches[edges[i].patch()];
+            if (patch.surface == none) continue;
+            const V3f &from = scene.vertices[patch.vertices[edges[i].start % 4]],
+                      &to = scene.vertices[patch.vertices[edges[i].end % 4]];
+            has_contact[i] = !contacts.along(from, to).empty();
+        }
+    });
     DisjointSets joined_corners(4 * scene.patches.size()), joined_edges(4 * scene.patches.size());
     std::vector<bool> is_joined(4 * scene.patches.size(), false);
     const auto join = [&](const PatchEdge& a, const PatchEdge& b) {
@@ -366,8 +377,10 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
     };
     for (auto first = edges.begin(); first != edges.end();) {
         const auto last = std::find_if(first, edges.end(), [&](const PatchEdge& e) { return !e.same_place(*first); });
+        const auto contact = has_contact.begin() + (first - edges.begin());
         const bool may_continue =
-            static_cast<std::size_t>(last - first) <= max_patches_at_an_edge && !std::any_of(first, last, has_contact);
+            static_cast<std::size_t>(last - first) <= max_patches_at_an_edge &&
+            std::none_of(contact, contact + (last - first), [](std::uint8_t x) { return x != 0; });
         if (may_continue)
             for (auto a = first; a != last; ++a)
                 for (auto b = a + 1; b != last; ++b)
