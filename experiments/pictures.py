@@ -28,7 +28,8 @@ SCENES = {  # name: file, view, paths per pixel of each reference, its shading
     "office-graz": (f"{program.SCENES}/office-graz.mgf", OFFICE_VIEW, 128, PATHS),
     "office": ("scenes/office.mgf", "--view desk", 128, PATHS),
     "nine rooms": ("maze:9:furniture", "--view room-4", 128, PATHS),
-    "sun-window": (None, None, 256, GATHERED_FROM_40M),  # few paths find the sunlit spot
+    "sun-window": (None, "", 256, GATHERED_FROM_40M),  # few paths find the sunlit spot
+    "sun and sky": (None, "--sky overcast:15000", 256, GATHERED_FROM_40M),  # the same window
 }
 PROCESSORS = 2
 SMOOTH, HYBRID, GATHERED = ("--shading smooth", "--shading hybrid --no-mirrors --denoise", "--shading gather --no-mirrors --denoise")
@@ -52,8 +53,8 @@ class Scene:
     def __init__(self, command: program.Program, name: str):
         file, view, paths, shading = SCENES[name]
         if file is None:
-            scene = AUDIT_SCENES[name]()
-            file, view = str(scene.write(WORK, name, scene.text)), scene.view()
+            scene = AUDIT_SCENES["sun-window"]()
+            file, view = f"{scene.write(WORK, 'sun-window', scene.text)} {view}", scene.view()
         self.file, self.view = file, view
         self.reference = Reference(command, WORK, f"{name.replace(' ', '-')}-", f"{file} {view} {SIZE}", paths, shading)
         good = WORK / f"{name.replace(' ', '-')}-good.exr"

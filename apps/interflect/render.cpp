@@ -279,6 +279,32 @@ DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const Ray
     return predict_time_of_elements(scene, solution, ray_caster, view, options.render);
 }
 
+/// Sets RenderArguments::render by the other options.
+void set_render_options(RenderArguments& options) {
+    options.render.width = options.size.width;
+    options.render.height = options.rows();
+    options.render.irradiance = options.shows_irradiance();
+    options.render.samples = options.samples.value_or(options.render.samples);
+    options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
+}
+
+/// Draws smooth shading instead of paths if a signal leaves pixels without light.
+/// @param time  Of tracing paths [s].
+Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                      RenderArguments& options, double time) {
+    if (traces_paths(options.shading)) {
+        // A signal that ended the solver would end gathering before its first ray.
+        if (options.path.needs_paths() || !is_stop_requested()) {
+            Picture picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options, time);
+            if (options.path.needs_paths() || has_every_pixel(picture.traced)) return picture;
+        }
+        spdlog::warn("stopped before each pixel had enough light: the picture is drawn as by --shading smooth");
+        options.render.samples = std::min(options.render.samples, RenderOptions().samples);
+    }
+    return is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
+                                      : draw_light(solved, ray_caster, view, options);
+}
+
 /// Draws the light of a solution; solves a scene first.
 void run_solution(RenderArguments& options, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
@@ -306,12 +332,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
         solve_options.limits.time = left / 2;  // until the time of drawing is known
     }
 
-    options.render.width = options.size.width;
-    options.render.height = options.rows();
-    options.render.irradiance = options.shows_irradiance();
-    options.render.samples = options.samples.value_or(options.render.samples);
-    options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
-
+    set_render_options(options);
     std::optional<DrawingTime> planned;
     const auto plan_or_preview = [&](const Solution& so_far) -> std::optional<Limits> {
         if (takes_previews(options)) write_preview(solved.scene, so_far, ray_caster, view, options);
@@ -328,20 +349,9 @@ void run_solution(RenderArguments& options, PendingFile& output) {
                                     {.after = seconds_to_preview, .use = plan_or_preview});
     if (traces_paths(options.shading) && !planned && !is_stop_requested()) plan_or_preview(solved.solution);
 
-    // A signal that ended the solver would end gathering before its first ray.
-    const bool gathers = traces_paths(options.shading) && (options.path.needs_paths() || !is_stop_requested());
     const double time = is_limited && planned ? std::max(shortest_time, options.seconds_left() - planned->finishing)
                                               : PathOptions().time;
-    Picture picture;
-    if (gathers) picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options, time);
-    const bool is_drawn = gathers && (options.path.needs_paths() || has_every_pixel(picture.traced));
-    if (traces_paths(options.shading) && !is_drawn) {
-        spdlog::warn("stopped before each pixel had enough light: the picture is drawn as by --shading smooth");
-        options.render.samples = std::min(options.render.samples, RenderOptions().samples);
-    }
-    if (!is_drawn)
-        picture = is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
-                                             : draw_light(solved, ray_caster, view, options);
+    const Picture picture = draw_solution(solved, ray_caster, view, options, time);
     if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
     if (!solved_before) stats.write(solved.scene, solved.solution);
