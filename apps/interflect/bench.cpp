@@ -18,7 +18,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/exports/json_text.h"
+#include "interflect/exports/records/json_text.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/prepared_rays.h"
 #include "interflect/solve.h"

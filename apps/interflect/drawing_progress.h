@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "apps/interflect/progress.h"
-#include "interflect/render/camera_samples.h"
+#include "interflect/render/pictures/camera_samples.h"
 
 namespace interflect::command {
 

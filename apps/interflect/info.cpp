@@ -17,7 +17,7 @@
 #include "apps/interflect/solution_info.h"
 #include "interflect/checks/memory_need.h"
 #include "interflect/checks/up_axis.h"
-#include "interflect/exports/solve_report.h"
+#include "interflect/exports/records/solve_report.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/emission.h"
 #include "interflect/measure.h"

@@ -13,7 +13,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/luminaires/emission.h"
-#include "interflect/render/path_samples.h"
+#include "interflect/render/lights/path_samples.h"
 #include "interflect/scene/core.h"
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/sampling/ray_maker.h"

@@ -25,7 +25,7 @@
 #include "apps/interflect/threads.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/core.h"
-#include "interflect/exports/json_text.h"
+#include "interflect/exports/records/json_text.h"
 #include "interflect/measure.h"
 
 namespace interflect::command {

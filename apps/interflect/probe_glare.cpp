@@ -15,7 +15,7 @@
 #include "apps/interflect/print_views.h"
 #include "apps/interflect/signals.h"
 #include "interflect/core.h"
-#include "interflect/exports/json_text.h"
+#include "interflect/exports/records/json_text.h"
 
 namespace interflect::command {
 

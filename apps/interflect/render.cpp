@@ -36,8 +36,8 @@
 #include "interflect/image/pending_image.h"
 #include "interflect/raycast/camera.h"
 #include "interflect/render.h"
-#include "interflect/render/camera_samples.h"
-#include "interflect/render/outlines.h"
+#include "interflect/render/pictures/camera_samples.h"
+#include "interflect/render/pictures/outlines.h"
 #include "interflect/scene/view.h"
 #include "interflect/solution.h"
 

@@ -17,7 +17,7 @@
 #include "interflect/core.h"
 #include "interflect/image.h"
 #include "interflect/render.h"
-#include "interflect/render/path_picture.h"
+#include "interflect/render/pictures/path_picture.h"
 
 namespace interflect::command {
 

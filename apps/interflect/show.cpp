@@ -5,7 +5,7 @@
 #include "apps/interflect/parse.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/render/camera_samples.h"
+#include "interflect/render/pictures/camera_samples.h"
 
 namespace interflect::command {
 

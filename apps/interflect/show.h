@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "interflect/render/camera_samples.h"
-#include "interflect/render/quantity_picture.h"
+#include "interflect/render/pictures/camera_samples.h"
+#include "interflect/render/pictures/quantity_picture.h"
 #include "interflect/solution.h"
 
 namespace interflect::command {

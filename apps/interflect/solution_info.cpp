@@ -8,7 +8,7 @@
 #include "apps/interflect/messages.h"
 #include "apps/interflect/print_views.h"
 #include "interflect/base/crc32.h"
-#include "interflect/exports/solve_report.h"
+#include "interflect/exports/records/solve_report.h"
 #include "interflect/solution.h"
 
 namespace interflect::command {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "interflect/exports/solve_report.h"
+#include "interflect/exports/records/solve_report.h"
 #include "interflect/geometry/patch_geometry.h"
 
 namespace interflect::command {

@@ -11,8 +11,8 @@
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
 #include "interflect/checks/memory_need.h"
-#include "interflect/exports/json_text.h"
-#include "interflect/exports/solve_report.h"
+#include "interflect/exports/records/json_text.h"
+#include "interflect/exports/records/solve_report.h"
 #include "interflect/prepare.h"
 #include "interflect/solve.h"
 

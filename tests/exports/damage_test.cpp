@@ -8,7 +8,7 @@
 #include <random>
 
 #include "interflect/core.h"
-#include "interflect/exports/checksums.h"
+#include "interflect/exports/hdf5/checksums.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solution.h"
 #include "interflect/solve.h"

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "interflect/core.h"
-#include "interflect/exports/checksums.h"
+#include "interflect/exports/hdf5/checksums.h"
 #include "interflect/solver.h"
 #include "tests/support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "interflect/exports/element_mesh.h"
+#include "interflect/exports/mesh/element_mesh.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "interflect/base/random.h"
-#include "interflect/render/smooth_field.h"
+#include "interflect/render/smooth/smooth_field.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -1,5 +1,5 @@
 // An HDF5 file may refer to arrays in any other file of the machine.
-#include "interflect/exports/hdf5_arrays.h"
+#include "interflect/exports/hdf5/hdf5_arrays.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "interflect/exports/json_text.h"
+#include "interflect/exports/records/json_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/generators/two_rooms.h"
 #include "interflect/prepare.h"
-#include "interflect/render/smooth_field.h"
+#include "interflect/render/smooth/smooth_field.h"
 #include "interflect/solve.h"
 #include "tests/exports/lightmaps.h"
 #include "tests/support/scenes.h"

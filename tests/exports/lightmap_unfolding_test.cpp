@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
-#include "interflect/render/smooth_field.h"
+#include "interflect/render/smooth/smooth_field.h"
 #include "tests/exports/lightmaps.h"
 #include "tests/support/scenes.h"
 

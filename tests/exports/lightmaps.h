@@ -6,7 +6,7 @@
 
 #include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
-#include "interflect/exports/lightmap.h"
+#include "interflect/exports/lightmap/lightmap.h"
 #include "interflect/solve.h"
 
 namespace interflect::lightmap_testing {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "interflect/exports/luminaire_records.h"
+#include "interflect/exports/records/luminaire_records.h"
 
 namespace interflect {
 

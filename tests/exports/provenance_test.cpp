@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "interflect/core.h"
-#include "interflect/exports/solve_report.h"
+#include "interflect/exports/records/solve_report.h"
 #include "interflect/solution.h"
 #include "tests/support/scenes.h"
 

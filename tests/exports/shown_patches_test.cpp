@@ -1,4 +1,4 @@
-#include "interflect/exports/shown_patches.h"
+#include "interflect/exports/mesh/shown_patches.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/exports/checksums.h"
+#include "interflect/exports/hdf5/checksums.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"

@@ -1,4 +1,4 @@
-#include "interflect/exports/solve_report.h"
+#include "interflect/exports/records/solve_report.h"
 
 #include <gtest/gtest.h>
 

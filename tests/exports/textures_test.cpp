@@ -10,7 +10,7 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/exports/opacity.h"
+#include "interflect/exports/mesh/opacity.h"
 #include "interflect/solution.h"
 #include "interflect/solve.h"
 #include "interflect/solver.h"

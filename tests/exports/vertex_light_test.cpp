@@ -1,6 +1,6 @@
 // Light in vertices: triangles follow direct light, and vertices have hybrid shading.
 
-#include "interflect/exports/vertex_light.h"
+#include "interflect/exports/vertices/vertex_light.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -10,15 +10,18 @@ LAYERS = [
     "render", "photometry", "metrics", "exports", "cluster",
 ]
 
-# The folders of the solver, in the same order; its own files come last.
-SOLVER_LAYERS = [
-    "light", "importance", "sampling", "noise", "deposit", "transport", "state", "error", "refinement", "iteration", "methods",
-    "methods/baselines", ".",
-]
-MOST_FILES = 12  # of a folder of the solver
+# Their own folders, in the same order; files beside these come last.
+INNER_LAYERS = {
+    "solver": [
+        "light", "importance", "sampling", "noise", "deposit", "transport", "state", "error", "refinement", "iteration",
+        "methods", "methods/baselines", ".",
+    ],
+    "render": ["smooth", "lights", "paths", "pictures", "."],
+    "exports": ["hdf5", "records", "mesh", "lightmap", "vertices", "files", "gltf", "foreign", "."],
+}
+MOST_FILES = 12  # of each of these folders
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+)/', re.MULTILINE)
-SOLVER_INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/solver/([^"]+)"', re.MULTILINE)
 USING_NAMESPACE = re.compile(r"^\s*using\s+namespace\b", re.MULTILINE)
 PRAGMA_ONCE = re.compile(r"^#pragma once$", re.MULTILINE)
 NAMESPACE = re.compile(r"^namespace interflect\b(?!::detail\b).*", re.MULTILINE)
@@ -37,7 +40,8 @@ def faults(root: Path) -> list[str]:
     for folder in folders:
         if folder.name in LAYERS:
             found += layer_faults(folder)
-    found += solver_faults(library / "solver")
+    for name in INNER_LAYERS:
+        found += inner_faults(library / name)
     public = sorted((root / "include").rglob("*.h"))
     for header in public:
         found += [f"{header}: includes interflect/{folder}/, which is not installed"
@@ -71,22 +75,24 @@ def layer_faults(folder: Path) -> list[str]:
     return found
 
 
-def solver_faults(solver: Path) -> list[str]:
-    """Finds folders with too many files, and includes from later folders of the solver."""
+def inner_faults(outer: Path) -> list[str]:
+    """Finds folders of a layer with too many files, and includes from its later folders."""
     found = []
-    for folder in sorted(path for path in solver.rglob("*") if path.is_dir()):
-        name = folder.relative_to(solver).as_posix()
+    layers = INNER_LAYERS[outer.name]
+    include = re.compile(rf'^\s*#\s*include\s*"interflect/{outer.name}/([^"]+)"', re.MULTILINE)
+    for folder in sorted(path for path in (outer, *outer.rglob("*")) if path.is_dir()):
+        name = folder.relative_to(outer).as_posix()
         files = [path for path in folder.iterdir() if path.is_file()]
-        if name not in SOLVER_LAYERS:
-            found.append(f"{folder}: not one of the solver's folders {' '.join(SOLVER_LAYERS)}")
+        if name not in layers:
+            found.append(f"{folder}: not one of the folders of {outer.name}, {' '.join(layers)}")
             continue
         if len(files) > MOST_FILES:
             found.append(f"{folder}: {len(files)} files, expected at most {MOST_FILES}")
         for source in sorted(path for path in files if path.suffix in (".h", ".cpp")):
-            for included in SOLVER_INCLUDE.findall(source.read_text()):
+            for included in include.findall(source.read_text()):
                 layer = Path(included).parent.as_posix()
-                if layer not in SOLVER_LAYERS or SOLVER_LAYERS.index(layer) > SOLVER_LAYERS.index(name):
-                    found.append(f"{source}: includes {included}, which is not before solver/{name}")
+                if layer not in layers or layers.index(layer) > layers.index(name):
+                    found.append(f"{source}: includes {included}, which is not before {outer.name}/{name}")
     return found
 
 

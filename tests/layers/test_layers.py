@@ -90,7 +90,7 @@ class Checker(unittest.TestCase):
 
     def test_unknown_folder_of_the_solver(self):
         self.write_solver("gadgets/gadget.cpp", "")
-        self.assert_only_fault("gadgets", "not one of the solver's folders")
+        self.assert_only_fault("gadgets", "not one of the folders of solver")
 
     def test_folder_of_the_solver_with_too_many_files(self):
         for i in range(13):

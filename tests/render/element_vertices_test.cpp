@@ -1,4 +1,4 @@
-#include "interflect/render/element_vertices.h"
+#include "interflect/render/smooth/element_vertices.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "interflect/base/random.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/render/smooth_field.h"
+#include "interflect/render/smooth/smooth_field.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -11,7 +11,7 @@
 
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
-#include "interflect/render/unoccluded_light.h"
+#include "interflect/render/lights/unoccluded_light.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"

@@ -1,4 +1,4 @@
-#include "interflect/render/light_tree.h"
+#include "interflect/render/lights/light_tree.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The mean light of sampled luminaires equals the sum over all, and many cost hardly more than a few.
 
-#include "interflect/render/luminaire_choice.h"
+#include "interflect/render/lights/luminaire_choice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "interflect/render/outlines.h"
+#include "interflect/render/pictures/outlines.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "interflect/render/quantity_picture.h"
+#include "interflect/render/pictures/quantity_picture.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -8,7 +8,7 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/render/camera_samples.h"
+#include "interflect/render/pictures/camera_samples.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

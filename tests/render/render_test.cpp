@@ -1,4 +1,4 @@
-#include "interflect/render/render_elements.h"
+#include "interflect/render/pictures/render_elements.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -11,9 +11,9 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/render/element_vertices.h"
-#include "interflect/render/outlines.h"
-#include "interflect/render/quantity_picture.h"
+#include "interflect/render/smooth/element_vertices.h"
+#include "interflect/render/pictures/outlines.h"
+#include "interflect/render/pictures/quantity_picture.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

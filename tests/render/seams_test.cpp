@@ -8,7 +8,7 @@
 #include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 #include "interflect/prepare.h"
-#include "interflect/render/smooth_field.h"
+#include "interflect/render/smooth/smooth_field.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -2,7 +2,7 @@
 //
 // Seen to fail: guided rays have the density of one of them; escaped rays have full weight beside guided ones;
 // densities lack the number of cells; without a guide, the noise is as that of chance.
-#include "interflect/render/sky_guide.h"
+#include "interflect/render/paths/sky_guide.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "interflect/base/random.h"
 #include "interflect/ray_caster.h"
-#include "interflect/render/traced_scene.h"
+#include "interflect/render/paths/traced_scene.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "interflect/elements/forest.h"
-#include "interflect/render/element_vertices.h"
-#include "interflect/render/smooth_field.h"
+#include "interflect/render/smooth/element_vertices.h"
+#include "interflect/render/smooth/smooth_field.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

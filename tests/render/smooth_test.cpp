@@ -5,9 +5,9 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/render/element_vertices.h"
-#include "interflect/render/smooth_field.h"
-#include "interflect/render/smooth_surfaces.h"
+#include "interflect/render/smooth/element_vertices.h"
+#include "interflect/render/smooth/smooth_field.h"
+#include "interflect/render/smooth/smooth_surfaces.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

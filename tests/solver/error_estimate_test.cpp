@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
-#include "interflect/render/render_elements.h"
+#include "interflect/render/pictures/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 

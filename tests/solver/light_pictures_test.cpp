@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "interflect/render/render_elements.h"
+#include "interflect/render/pictures/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/solver/room_with_window.h"
 

@@ -16,7 +16,7 @@
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/formats/mgf.h"
-#include "interflect/render/render_elements.h"
+#include "interflect/render/pictures/render_elements.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
 #include "tests/support/statistics.h"

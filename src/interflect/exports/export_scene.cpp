@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "interflect/core.h"
-#include "interflect/exports/exported_parts.h"
-#include "interflect/exports/foreign_scene.h"
-#include "interflect/exports/write_files.h"
+#include "interflect/exports/files/exported_parts.h"
+#include "interflect/exports/foreign/foreign_scene.h"
+#include "interflect/exports/files/write_files.h"
 #include "interflect/formats/extension.h"
 
 namespace interflect {

@@ -1,6 +1,6 @@
 #include "interflect/exports/probe_files.h"
 
-#include "interflect/exports/json_text.h"
+#include "interflect/exports/records/json_text.h"
 #include "interflect/image/image_codecs.h"
 
 namespace interflect::detail {

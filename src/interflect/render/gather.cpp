@@ -1,6 +1,6 @@
-#include "interflect/render/render_elements.h"
+#include "interflect/render/pictures/render_elements.h"
 
-#include "interflect/render/path_picture.h"
+#include "interflect/render/pictures/path_picture.h"
 
 namespace interflect {
 

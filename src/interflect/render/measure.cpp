@@ -10,8 +10,8 @@
 
 #include "interflect/core.h"
 #include "interflect/geometry/tangent_frame.h"
-#include "interflect/render/gauge.h"
-#include "interflect/render/path_picture.h"
+#include "interflect/render/paths/gauge.h"
+#include "interflect/render/pictures/path_picture.h"
 
 namespace interflect {
 

@@ -1,6 +1,6 @@
 #include "interflect/render.h"
 
-#include "interflect/render/path_picture.h"
+#include "interflect/render/pictures/path_picture.h"
 
 namespace interflect {
 

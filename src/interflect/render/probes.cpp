@@ -18,8 +18,8 @@
 #include "interflect/luminaires/illumination.h"
 #include "interflect/luminaires/skies.h"
 #include "interflect/raycast/panes.h"
-#include "interflect/render/element_vertices.h"
-#include "interflect/render/smooth_field.h"
+#include "interflect/render/smooth/element_vertices.h"
+#include "interflect/render/smooth/smooth_field.h"
 #include "interflect/render/sphere_quadrature.h"
 
 namespace interflect {

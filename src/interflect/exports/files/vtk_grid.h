@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "interflect/exports/vertices/lit_polygons.h"
+#include "interflect/scene.h"
+#include "interflect/solution.h"
+
+namespace interflect::detail {
+
+/// Rows of `components` numbers.
+struct VtkArray {
+    std::string name;
+    std::size_t components;
+    std::variant<std::vector<float>, std::vector<double>, std::vector<std::uint32_t>, std::vector<std::uint8_t>>
+        numbers;
+};
+
+class VtkGrid {
+  public:
+    using Sink = std::function<void(const VtkArray&)>;
+
+    /// Keeps references.
+    VtkGrid(const Scene& scene, const Solution& solution)
+        : scene_(scene), solution_(solution), polygons_(lit_polygons(scene, solution)) {}
+
+    std::size_t point_count() const { return polygons_.vertices.size(); }
+    std::size_t cell_count() const { return polygons_.size(); }
+    /// World coordinates [m]; double if the scene's origin is not 0.
+    VtkArray points() const;
+    std::vector<std::int64_t> connectivity() const;
+    /// Returns cell_count() + 1 bounds in connectivity().
+    std::vector<std::int64_t> offsets() const;
+    std::vector<std::uint8_t> types() const;
+
+    /// The first array is the default for display.
+    void visit_point_data(const Sink& sink) const;
+    void visit_cell_data(const Sink& sink) const;
+
+  private:
+    const Scene& scene_;
+    const Solution& solution_;
+    LitPolygons polygons_;
+};
+
+}  // namespace interflect::detail

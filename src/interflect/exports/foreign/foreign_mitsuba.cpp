@@ -1,0 +1,141 @@
+// Mitsuba 3: https://mitsuba.readthedocs.io, 'Plugins'.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "interflect/exports/foreign/foreign_scene.h"
+
+namespace interflect::detail {
+
+namespace for_mitsuba {
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+std::string rgb(const char* name, const Rgb& value) {
+    return fmt::format("<rgb name=\"{}\" value=\"{}\"/>", name, triple(value, ", "));
+}
+
+std::string texture(const char* name, const std::string& file) {
+    return fmt::format("<texture type=\"bitmap\" name=\"{}\"><string name=\"filename\" value=\"{}\"/></texture>", name,
+                       file);
+}
+
+std::string bsdf_text(ForeignScene& scene, std::uint32_t material) {
+    const Material& m = scene.scene.materials[material];
+    const auto two_sided = [](const std::string& reflectance) {
+        return fmt::format("<bsdf type=\"twosided\"><bsdf type=\"diffuse\">{}</bsdf></bsdf>", reflectance);
+    };
+    if (m.transmittance_texture != none)
+        return fmt::format("<bsdf type=\"mask\">{}{}</bsdf>", texture("opacity", scene.add_opacity_image(material)),
+                           two_sided(texture("reflectance", scene.add_opaque_reflectance_image(material))));
+    return two_sided(m.reflectance_texture == none ? rgb("reflectance", m.reflectance)
+                                                   : texture("reflectance", scene.add_reflectance_image(material)));
+}
+
+std::string point(const char* name, const V3f& value) {
+    return fmt::format("<point name=\"{}\" x=\"{}\" y=\"{}\" z=\"{}\"/>", name, value.x, value.y, value.z);
+}
+
+std::string look_at(const V3f& origin, const V3f& target, const V3f& up) {
+    return fmt::format("<lookat origin=\"{}\" target=\"{}\" up=\"{}\"/>", triple(origin, ", "), triple(target, ", "),
+                       triple(up, ", "));
+}
+
+std::string sensor_text(const ForeignScene& scene, const View& view) {
+    std::string transform = look_at(V3f(view.eye), V3f(view.look_at), view.up);
+    std::string lens =
+        fmt::format("    <string name=\"fov_axis\" value=\"y\"/>\n    <float name=\"fov\" value=\"{}\"/>\n", view.fov);
+    if (view.extent > 0) {  // orthographic sensors cover [-1, 1] horizontally
+        const float half =
+            view.extent / 2 * static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
+        transform = fmt::format("<scale x=\"{0}\" y=\"{0}\"/>", half) + transform;
+        lens.clear();
+    }
+    return fmt::format(
+        "  <sensor type=\"{}\">\n{}"
+        "    <transform name=\"to_world\">{}</transform>\n"
+        "    <sampler type=\"independent\"><integer name=\"sample_count\" value=\"{}\"/></sampler>\n"
+        "    <film type=\"hdrfilm\"><integer name=\"width\" value=\"{}\"/><integer name=\"height\" value=\"{}\"/>"
+        "<string name=\"pixel_format\" value=\"rgb\"/><rfilter type=\"box\"/></film>\n"
+        "  </sensor>\n",
+        view.extent > 0 ? "orthographic" : "perspective", lens, transform, scene.options.samples, scene.options.width,
+        scene.options.height);
+}
+
+std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
+    const Material& m = scene.material(mesh);
+    const std::string file = scene.add_file(mesh.name + ".ply", ply_of(mesh));
+    const std::string bsdf = bsdf_text(scene, mesh.material);
+    std::string emitter;
+    if (scene.emits(mesh))
+        emitter = "    <emitter type=\"area\">" +
+                  (m.exitance_texture == none ? rgb("radiance", scene.radiance(mesh))
+                                              : texture("radiance", scene.add_radiance_image(mesh.material))) +
+                  "</emitter>\n";
+    const auto shape = [&](bool is_flipped) {
+        return fmt::format(
+            "  <shape type=\"ply\">\n    <string name=\"filename\" value=\"{}\"/>\n"
+            "    <boolean name=\"face_normals\" value=\"true\"/>\n    <boolean name=\"flip_tex_coords\" "
+            "value=\"true\"/>\n{}"
+            "    {}\n{}  </shape>\n",
+            file, is_flipped ? "    <boolean name=\"flip_normals\" value=\"true\"/>\n" : "", bsdf, emitter);
+    };
+    if (!scene.emits(mesh) || mesh.backs != Backs::emit) return shape(false);
+    scene.leave_out("emission of the backs of faces that emit on both sides");
+    return shape(false);
+}
+
+std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
+    if (const auto* light = std::get_if<PointLight>(&luminaire.kind))
+        return fmt::format("  <emitter type=\"point\">{}{}</emitter>\n", point("position", light->position),
+                           rgb("intensity", light->intensity));
+    if (const auto* spot = std::get_if<SpotLight>(&luminaire.kind)) {
+        if (spot->inner_angle < spot->outer_angle) scene.warnings.add("spot", "spots fade in another way there");
+        if (spot->outer_angle > 90) scene.leave_out("what spots shine beyond 90 degrees from their axes");
+        const V3f up = std::abs(spot->direction.normalized().z) < 0.9f ? V3f(0, 0, 1) : V3f(1, 0, 0);
+        return fmt::format(
+            "  <emitter type=\"spot\">{}<float name=\"cutoff_angle\" value=\"{}\"/><float name=\"beam_width\" "
+            "value=\"{}\"/>"
+            "<transform name=\"to_world\">{}</transform></emitter>\n",
+            rgb("intensity", spot->intensity), std::min(spot->outer_angle, 90.0f), std::min(spot->inner_angle, 90.0f),
+            look_at(spot->position, spot->position + spot->direction, up));
+    }
+    if (const auto* directional = std::get_if<DirectionalLight>(&luminaire.kind)) {
+        if (directional->diameter > 0) scene.warnings.add("disc", "the sun is a point there");
+        const V3f& d = directional->direction;
+        return fmt::format(
+            "  <emitter type=\"directional\"><vector name=\"direction\" x=\"{}\" y=\"{}\" z=\"{}\"/>{}</emitter>\n",
+            d.x, d.y, d.z, rgb("irradiance", directional->irradiance));
+    }
+    if (!is_sky(luminaire)) scene.leave_out(fmt::format("lights of the kind '{}'", kind_name(luminaire)));
+    return "";
+}
+
+/// Mapping of 'envmap': left edge -z, +x a quarter to the right, upper edge +y.
+V3f envmap_direction(float x, float y) {
+    const float azimuth = 2 * pi * x, polar = pi * y;
+    return {std::sin(azimuth) * std::sin(polar), std::cos(polar), -std::cos(azimuth) * std::sin(polar)};
+}
+
+}  // namespace
+}  // namespace for_mitsuba
+
+std::string mitsuba_description(ForeignScene& scene) {
+    using namespace for_mitsuba;
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<!-- Interflect {} -->\n<scene version=\"3.0.0\">\n"
+        "  <integrator type=\"path\"><integer name=\"max_depth\" value=\"-1\"/></integrator>\n",
+        INTERFLECT_VERSION);
+    for (const View& view : scene.views) text += sensor_text(scene, view);
+    for (const ForeignMesh& mesh : scene.meshes) text += shape_text(scene, mesh);
+    for (const Luminaire& luminaire : scene.scene.luminaires) text += luminaire_text(scene, luminaire);
+    constexpr int rows = 512;
+    if (const std::string sky = scene.add_sky_image(2 * rows, rows, envmap_direction); !sky.empty())
+        text += fmt::format("  <emitter type=\"envmap\"><string name=\"filename\" value=\"{}\"/></emitter>\n", sky);
+    scene.warn_of_materials(false, true);
+    return text + "</scene>\n";
+}
+
+}  // namespace interflect::detail

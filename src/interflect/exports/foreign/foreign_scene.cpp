@@ -1,0 +1,204 @@
+#include "interflect/exports/foreign/foreign_scene.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <numbers>
+
+#include "interflect/exports/files/exported_parts.h"
+#include "interflect/exports/vertices/lit_polygons.h"
+#include "interflect/exports/mesh/opacity.h"
+#include "interflect/luminaires/skies.h"
+#include "interflect/scene/view.h"
+
+namespace interflect::detail {
+
+namespace {
+
+bool is_second_side(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
+
+Backs backs_of(const Scene& scene, const Patch& patch) {
+    if (patch.other_side == none) return Backs::pass;
+    return scene.materials[scene.patches[patch.other_side].material].exitance == Rgb(0) ? Backs::reflect : Backs::emit;
+}
+
+class Meshes {
+  public:
+    explicit Meshes(const Scene& scene) : scene_(scene), names_(material_names(scene)) {}
+
+    void add(const Patch& patch) {
+        constexpr std::array suffixes{"-one-sided", "", "-two-sided"};
+        const Backs backs = backs_of(scene_, patch);
+        const auto [entry, is_new] = numbers_.try_emplace({patch.material, backs}, meshes.size());
+        if (is_new) {
+            meshes.push_back({names_[patch.material] + suffixes[static_cast<std::size_t>(backs)],
+                              patch.material,
+                              backs,
+                              {},
+                              {},
+                              {}});
+            vertices_.emplace_back();
+        }
+        ForeignMesh& mesh = meshes[entry->second];
+        std::array<std::uint32_t, 4> face{none, none, none, none};
+        for (std::size_t k = 0; k < static_cast<std::size_t>(patch.vertex_count()); ++k)
+            face[k] = vertex(patch.vertices[k], mesh, vertices_[entry->second]);
+        mesh.faces.push_back(face);
+    }
+
+    std::vector<ForeignMesh> meshes;
+
+  private:
+    using Vertices = std::map<std::uint32_t, std::uint32_t>;
+
+    std::uint32_t vertex(std::uint32_t v, ForeignMesh& mesh, Vertices& known) const {
+        const auto [entry, is_new] = known.try_emplace(v, static_cast<std::uint32_t>(mesh.positions.size()));
+        if (is_new) {
+            mesh.positions.push_back(scene_.vertices[v]);
+            if (scene_.materials[mesh.material].is_textured())
+                mesh.texture_coordinates.push_back(scene_.texture_coordinates[v]);
+        }
+        return entry->second;
+    }
+
+    const Scene& scene_;
+    const std::vector<std::string> names_;
+    std::map<std::pair<std::uint32_t, Backs>, std::size_t> numbers_;
+    std::vector<Vertices> vertices_;
+};
+
+std::vector<View> local_views(const Scene& scene) {
+    std::vector<View> views = scene.views;
+    if (views.empty()) views.push_back(overview(scene));
+    for (View& view : views) view.eye -= scene.origin, view.look_at -= scene.origin;
+    return views;
+}
+
+Texture scaled(Texture texture, const Rgb& factor) {
+    for (Rgb& texel : texture.texels) texel *= factor;
+    return texture;
+}
+
+}  // namespace
+
+std::vector<std::array<std::uint32_t, 3>> ForeignMesh::triangles() const {
+    std::vector<std::array<std::uint32_t, 3>> cut;
+    for (const auto& [a, b, c, d] : faces) {
+        cut.push_back({a, b, c});
+        if (d != none) cut.push_back({a, c, d});
+    }
+    return cut;
+}
+
+ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& description,
+                           const SceneExportOptions& chosen, std::string (*file_name_escape)(std::string_view))
+    : scene(exported),
+      path(description),
+      options(chosen),
+      escape(file_name_escape),
+      materials(material_names(exported)),
+      views(local_views(exported)) {
+    std::vector<std::string> names;
+    for (const Luminaire& luminaire : scene.luminaires) names.push_back(luminaire.name);
+    luminaires = plain_names(names, "light");
+    Meshes all(scene);
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        if (!is_second_side(scene, i)) all.add(scene.patches[i]);
+    meshes = std::move(all.meshes);
+}
+
+std::string ForeignScene::add_file(const std::string& name, std::string bytes) {
+    std::string full = path.stem().string() + "-" + name;
+    files.push_back({path.parent_path() / full, std::move(bytes)});
+    return escape(full);
+}
+
+std::string ForeignScene::add_reflectance_image(std::uint32_t m) {
+    const Material& material = scene.materials[m];
+    return add_file(materials[m] + "-reflectance.exr",
+                    exr_bytes(scaled(scene.textures[material.reflectance_texture], material.reflectance)));
+}
+
+std::string ForeignScene::add_radiance_image(std::uint32_t m) {
+    const Material& material = scene.materials[m];
+    return add_file(materials[m] + "-radiance.exr", exr_bytes(scaled(scene.textures[material.exitance_texture],
+                                                                     material.exitance / std::numbers::pi_v<float>)));
+}
+
+std::string ForeignScene::add_transmittance_image(std::uint32_t m) {
+    const Material& material = scene.materials[m];
+    return add_file(materials[m] + "-transmittance.exr",
+                    exr_bytes(scaled(scene.textures[material.transmittance_texture], material.transmittance)));
+}
+
+std::string ForeignScene::add_opacity_image(std::uint32_t m) {
+    return add_file(materials[m] + "-opacity.exr", exr_bytes(opacity_of(scene, scene.materials[m])));
+}
+
+std::string ForeignScene::add_opaque_reflectance_image(std::uint32_t m) {
+    const Material& material = scene.materials[m];
+    const Texture reflectance = opaque_reflectance(scene, material, opacity_of(scene, material));
+    return add_file(materials[m] + "-reflectance.exr", exr_bytes(scaled(reflectance, material.reflectance)));
+}
+
+std::string ForeignScene::add_sky_image(int width, int height, const std::function<V3f(float, float)>& direction) {
+    bool has_sky = false;
+    for (const Luminaire& luminaire : scene.luminaires) has_sky |= is_sky(luminaire);
+    if (!has_sky) return "";
+    const Skies skies(scene);
+    Texture image{"", static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            image.texels.push_back(
+                skies.radiance(direction((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+                                         (static_cast<float>(y) + 0.5f) / static_cast<float>(height))));
+    return add_file("sky.exr", exr_bytes(image));
+}
+
+Rgb ForeignScene::radiance(const ForeignMesh& mesh) const {
+    return material(mesh).exitance / std::numbers::pi_v<float>;
+}
+
+void ForeignScene::warn_of_materials(bool has_glass, bool has_holes) {
+    for (const ForeignMesh& mesh : meshes) {
+        const Material& m = material(mesh);
+        if (m.specular_reflectance != Rgb(0)) leave_out("mirrors");
+        const bool is_pane = m.transmittance != Rgb(0), is_cut_out = m.transmittance_texture != none;
+        if (is_pane && is_cut_out && !has_holes) leave_out("holes: faces are opaque all over there");
+        if (is_pane && !is_cut_out && !has_glass) leave_out("glass: panes are opaque there");
+        if (!has_glass && mesh.backs == Backs::pass)
+            warnings.add("one-sided", "one-sided faces, through whose backs light passes here, block it there");
+    }
+}
+
+Rgb mean_texel(const Texture& texture) {
+    RgbD sum(0);
+    for (const Rgb& texel : texture.texels) sum += RgbD(texel);
+    return Rgb(sum / static_cast<double>(texture.texels.size()));
+}
+
+std::string ply_of(const ForeignMesh& mesh) {
+    const auto triangles = mesh.triangles();
+    const bool has_coordinates = !mesh.texture_coordinates.empty();
+    std::string bytes = fmt::format(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n"
+        "property float x\nproperty float y\nproperty float z\n{}"
+        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        mesh.positions.size(), has_coordinates ? "property float u\nproperty float v\n" : "", triangles.size());
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        for (int k = 0; k < 3; ++k) append_bytes(bytes, mesh.positions[i][k]);
+        if (!has_coordinates) continue;
+        for (int k = 0; k < 2; ++k) append_bytes(bytes, mesh.texture_coordinates[i][k]);
+    }
+    for (const auto& triangle : triangles) {
+        append_bytes(bytes, std::uint8_t{3});
+        for (const std::uint32_t v : triangle) append_bytes(bytes, v);
+    }
+    return bytes;
+}
+
+std::string triple(const V3f& v, const char* between) {
+    return fmt::format("{}{}{}{}{}", v.x, between, v.y, between, v.z);
+}
+
+}  // namespace interflect::detail

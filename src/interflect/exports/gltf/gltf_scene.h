@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "interflect/exports/gltf/gltf_document.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+using GltfPrimitives = std::map<std::uint32_t, std::vector<Json>>;
+
+/// Adds objects and views to a root node, which rotates `up` to +y and restores Scene::origin.
+void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives& primitives, const V3f& up);
+
+class GltfTextures {
+  public:
+    GltfTextures(GltfDocument& document, const Scene& scene) : document_(document), scene_(scene) {}
+
+    Json diffuse(const Material& material);
+    /// Adds reflectance and opacity of a material with a transmittance texture.
+    /// @param peak  Divisor of the reflectance.
+    void cut_out(Json& json, const Material& material, const Rgb& peak = Rgb(1));
+    Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));
+
+  private:
+    GltfDocument& document_;
+    const Scene& scene_;
+    std::map<std::pair<std::uint32_t, bool>, int> numbers_;  // keys: texture, whether divided
+};
+
+/// glTF's origin is the upper left corner.
+inline V2f gltf_coordinate(const V2f& coordinate) { return {coordinate.x, 1 - coordinate.y}; }
+
+}  // namespace interflect::detail

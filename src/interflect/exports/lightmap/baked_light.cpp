@@ -1,0 +1,105 @@
+#include "interflect/exports/lightmap/baked_light.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "interflect/base/parallel.h"
+#include "interflect/measure.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Least distance of ray starts from the border of a patch, over the spacing of points. At the foot of a wall, they
+/// would otherwise start in its plane.
+constexpr float inset = 0.05f;
+constexpr int gathered_directions = 64;
+
+}  // namespace
+
+BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeOptions& options,
+                       const DirectSampling& sampling)
+    : scene_(scene),
+      solution_(solution),
+      options_(options),
+      sampling_(sampling),
+      vertices_(scene, *solution.forest),
+      smooth_(*solution.forest, vertices_, solution.irradiance),
+      known_{*solution.forest, solution.irradiance, true} {
+    if (options.shading == BakeShading::smooth) return;
+    ray_caster_.emplace(scene);
+    if (options.shading == BakeShading::hybrid || sampling.is_tested) traced_.emplace(scene, *ray_caster_, &known_);
+}
+
+std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, float spacing,
+                                        const Monitor& monitor) const {
+    if (options_.shading == BakeShading::hybrid)
+        return hybrid_irradiance(*traced_, gauges(points, spacing), path_options(), monitor);
+    if (options_.shading == BakeShading::gather) return gathered(points, spacing, monitor);
+    std::vector<Rgb> values(points.size());
+    constexpr std::size_t points_per_task = 1 << 12;
+    parallel_for_ranges(points.size(), points_per_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) values[i] = interpolated(points[i]);
+    });
+    return values;
+}
+
+std::vector<GaugeLight> BakedLight::direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+                                           const Monitor& monitor) const {
+    PathOptions options = path_options();
+    options.samples = std::min(options.samples, max_samples);
+    return direct_irradiance(*traced_, gauges(points, spacing), options, monitor);
+}
+
+PathOptions BakedLight::path_options() const {
+    PathOptions path;
+    path.samples =
+        options_.samples.value_or(options_.shading == BakeShading::gather ? gathered_directions : sampling_.samples);
+    if (options_.shading == BakeShading::hybrid) path.until = sampling_.max_noise;
+    path.seed = options_.seed;
+    path.quantity = PathQuantity::irradiance;
+    return path;
+}
+
+std::vector<Gauge> BakedLight::gauges(std::span<const BakedPoint> points, float spacing) const {
+    std::vector<Gauge> gauges;
+    gauges.reserve(points.size());
+    for (const BakedPoint& point : points) {
+        const PatchGeometry& geometry = solution_.forest->geometry(point.patch);
+        const auto side = [&](const Parameters& p) {
+            return geometry.shape().edge_u * p.u + geometry.shape().edge_v * p.v;
+        };
+        Gauge gauge;
+        gauge.position = geometry.point(geometry.inset(point.at, inset * spacing));
+        gauge.normal = vertices_.normals().at(geometry, point.patch, point.at);
+        gauge.patch = point.patch;
+        gauge.side_u = side(point.sides[0]), gauge.side_v = side(point.sides[1]);
+        gauge.inset = inset * spacing;
+        gauges.push_back(gauge);
+    }
+    return gauges;
+}
+
+std::vector<Rgb> BakedLight::gathered(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const {
+    std::vector<MeasuringPoint> measuring;
+    measuring.reserve(points.size());
+    for (const BakedPoint& point : points) {
+        const PatchGeometry& geometry = solution_.forest->geometry(point.patch);
+        const V3f x = geometry.point(geometry.inset(point.at, inset * spacing));
+        const V3f normal = vertices_.normals().at(geometry, point.patch, point.at);
+        measuring.push_back({scene_.origin + Imath::V3d(x), normal});
+    }
+    const std::vector<MeasuredIrradiance> measured =
+        measure_irradiance(scene_, &solution_, *ray_caster_, measuring, path_options(), monitor);
+    const auto lit =
+        std::count_if(measured.begin(), measured.end(), [](const MeasuredIrradiance& m) { return m.is_measured(); });
+    if (static_cast<std::size_t>(lit) < measured.size())
+        throw Stopped(fmt::format("stopped when {} of {} texels or vertices had light", lit, measured.size()));
+    std::vector<Rgb> values;
+    values.reserve(measured.size());
+    for (const MeasuredIrradiance& m : measured) values.push_back(m.sum());
+    return values;
+}
+
+}  // namespace interflect::detail

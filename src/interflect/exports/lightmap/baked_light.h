@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interflect/export.h"
+#include "interflect/render/smooth/element_vertices.h"
+#include "interflect/render/paths/gauge.h"
+#include "interflect/render/smooth/smooth_field.h"
+#include "interflect/render/paths/traced_scene.h"
+#include "interflect/solution.h"
+
+namespace interflect::detail {
+
+/// Point of a surface whose light is stored in a texel or vertex.
+struct BakedPoint {
+    std::uint32_t patch = none;
+    Parameters at;
+    /// Sides of a parallelogram around the point, over which hybrid shading averages direct light.
+    std::array<Parameters, 2> sides{};
+};
+
+/// Sampling of direct light in hybrid shading.
+struct DirectSampling {
+    int samples;       ///< Without BakeOptions::samples.
+    double max_noise;  ///< Estimated relative error below which a quarter of the samples suffices.
+    bool is_tested;    ///< BakedLight::direct() is called.
+};
+
+/// Irradiance of points by the chosen shading.
+class BakedLight {
+  public:
+    /// Keeps references.
+    BakedLight(const Scene& scene, const Solution& solution, const BakeOptions& options,
+               const DirectSampling& sampling);
+
+    /// @param spacing  Distance between the points; rays start a twentieth of it inside their patch [m].
+    /// @return         [as H], per point. @throws Stopped
+    std::vector<Rgb> irradiance(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const;
+    /// Direct light of hybrid shading, if DirectSampling::is_tested; not for BakeShading::smooth.
+    std::vector<GaugeLight> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+                                   const Monitor& monitor) const;
+    /// As by SmoothField.
+    Rgb interpolated(const BakedPoint& point) const { return smooth_.at(point.patch, point.at); }
+
+  private:
+    PathOptions path_options() const;
+    std::vector<Gauge> gauges(std::span<const BakedPoint> points, float spacing) const;
+    std::vector<Rgb> gathered(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const;
+
+    const Scene& scene_;
+    const Solution& solution_;
+    const BakeOptions& options_;
+    const DirectSampling sampling_;
+    ElementVertices vertices_;
+    SmoothField smooth_;
+    KnownIrradiance known_;
+    std::optional<RayCaster> ray_caster_;  // not for smooth shading
+    std::optional<TracedScene> traced_;
+};
+
+}  // namespace interflect::detail

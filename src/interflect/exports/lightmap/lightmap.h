@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "interflect/export.h"
+#include "interflect/exports/lightmap/lightmap_charts.h"
+#include "interflect/image.h"
+
+namespace interflect::detail {
+
+struct Lightmap {
+    std::vector<LightmapChart> charts;
+    std::vector<std::uint32_t> chart_of_patch;  ///< `none` if hidden.
+    std::vector<std::uint32_t> index_in_chart;
+    std::vector<Image> images;               ///< H [lm/m^2] or L [cd/m^2]; 0 between charts.
+    std::vector<std::vector<Image>> groups;  ///< [group][image]
+    double used = 0;                         ///< Share of texels in charts and gutters.
+    double covered = 0;                      ///< Share of texels on patches.
+
+    /// Returns (0, 0) for the upper left corner.
+    V2f coordinate(std::uint32_t patch, Parameters at) const;
+    int page(std::uint32_t patch) const { return charts[chart_of_patch[patch]].page; }
+};
+
+/// Evaluates light at texel centres or, outside the patches, at the nearest point of a patch.
+/// @param options  Must include a lightmap.
+Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options);
+
+}  // namespace interflect::detail

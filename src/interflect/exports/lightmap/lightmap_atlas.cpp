@@ -1,0 +1,127 @@
+#include "interflect/exports/lightmap/lightmap_atlas.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+#define STBRP_STATIC
+#define STB_RECT_PACK_IMPLEMENTATION
+#include <stb/stb_rect_pack.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace interflect::detail {
+
+namespace {
+
+int to_multiple_of_4(int size) { return (size + 3) / 4 * 4; }
+
+struct Packing {
+    std::vector<stbrp_rect> rectangles;
+    Imath::V2i size{0, 0};
+    std::int64_t packed_area = 0;
+    bool is_complete = true;
+
+    std::int64_t area() const { return std::int64_t{size.x} * size.y; }
+};
+
+Packing pack(std::vector<stbrp_rect> rectangles, int width, int height) {
+    stbrp_context context;
+    std::vector<stbrp_node> nodes(static_cast<std::size_t>(width));
+    stbrp_init_target(&context, width, height, nodes.data(), width);
+    stbrp_pack_rects(&context, rectangles.data(), static_cast<int>(rectangles.size()));
+    Packing packing;
+    for (const stbrp_rect& r : rectangles) {
+        if (!r.was_packed) {
+            packing.is_complete = false;
+            continue;
+        }
+        packing.size.x = std::max(packing.size.x, to_multiple_of_4(r.x + r.w));
+        packing.size.y = std::max(packing.size.y, to_multiple_of_4(r.y + r.h));
+        packing.packed_area += std::int64_t{r.w} * r.h;
+    }
+    packing.rectangles = std::move(rectangles);
+    return packing;
+}
+
+std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen,
+                                      int gutter, bool lying) {
+    std::vector<stbrp_rect> rectangles;
+    for (const int i : chosen) {
+        const LightmapChart& chart = charts[static_cast<std::size_t>(i)];
+        const auto [low, high] = std::minmax({chart.columns + 2 * gutter, chart.rows + 2 * gutter});
+        rectangles.push_back({i, lying ? high : low, lying ? low : high, 0, 0, 0});
+    }
+    return rectangles;
+}
+
+/// Returns the smallest complete packing, or else a full image.
+Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen, int gutter,
+                     int max_size) {
+    constexpr std::size_t many_charts = 2000;
+    const int trials = chosen.size() > many_charts ? 6 : 96;
+    std::optional<Packing> best;
+    for (const bool lying : {true, false}) {
+        const std::vector<stbrp_rect> rectangles = rectangles_of(charts, chosen, gutter, lying);
+        double area = 0;
+        int widest = 0;
+        for (const stbrp_rect& r : rectangles) {
+            area += static_cast<double>(r.w) * r.h;
+            widest = std::max(widest, r.w);
+        }
+        const double narrowest = std::max<double>(widest, std::sqrt(area / 2));
+        const double broadest = std::max(narrowest, std::min<double>(max_size, std::sqrt(2 * area)));
+        for (int i = 0; i <= trials; ++i) {
+            const double width = narrowest + (broadest - narrowest) * i / trials;
+            Packing packing = pack(rectangles, std::min(to_multiple_of_4(static_cast<int>(width)), max_size), max_size);
+            if (packing.is_complete && (!best || packing.area() < best->area())) best = std::move(packing);
+        }
+    }
+    if (best) return *std::move(best);
+    Packing lying = pack(rectangles_of(charts, chosen, gutter, true), max_size, max_size);
+    Packing standing = pack(rectangles_of(charts, chosen, gutter, false), max_size, max_size);
+    return lying.packed_area >= standing.packed_area ? lying : standing;
+}
+
+void turn(LightmapChart& chart) {
+    for (FlatPatch& flat : chart.patches)
+        for (Imath::V2d& corner : flat.corners) corner = {corner.y, chart.size.x - corner.x};
+    std::swap(chart.size.x, chart.size.y);
+    std::swap(chart.columns, chart.rows);
+}
+
+}  // namespace
+
+std::vector<Imath::V2i> pack_charts(std::vector<LightmapChart>& charts, int gutter, int max_size) {
+    std::vector<Imath::V2i> sizes;
+    std::vector<int> left(charts.size());
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] = static_cast<int>(i);
+    while (!left.empty()) {
+        const Packing packing = best_packing(charts, left, gutter, max_size);
+        left.clear();
+        for (const stbrp_rect& r : packing.rectangles) {
+            if (!r.was_packed) {
+                left.push_back(r.id);
+                continue;
+            }
+            LightmapChart& chart = charts[static_cast<std::size_t>(r.id)];
+            if (chart.columns + 2 * gutter != r.w) turn(chart);
+            chart.page = static_cast<int>(sizes.size());
+            chart.left = r.x + gutter;
+            chart.top = r.y + gutter;
+        }
+        sizes.push_back(packing.size);
+    }
+    return sizes;
+}
+
+}  // namespace interflect::detail

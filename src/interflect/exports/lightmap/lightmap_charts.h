@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/export.h"
+#include "interflect/exports/mesh/flat_patches.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Patches in a plane. The border of their rectangle runs through the outermost texel centres.
+struct LightmapChart {
+    FlatPatches patches;  ///< Coordinates along columns and rows from texel (0, 0) [m].
+    Imath::V2d size;      ///< [m]
+    int columns = 2, rows = 2;
+    int page = 0, left = 0, top = 0;  ///< Place of texel (0, 0), set by pack_charts().
+
+    Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
+};
+
+/// Makes charts of the `shown` patches: kept_layouts(), and other smooth surfaces, unfolded() and split at creases,
+/// contacts and gaps narrower than two texels.
+std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
+                                       Warnings* warnings = nullptr);
+
+}  // namespace interflect::detail

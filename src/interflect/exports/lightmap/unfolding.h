@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/exports/mesh/flat_patches.h"
+#include "interflect/render/smooth/smooth_surfaces.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Patches that must be in other charts, per patch.
+using ChartConflicts = std::vector<std::vector<std::uint32_t>>;
+
+/// Includes whole edges.
+using Joints = std::vector<SmoothSurfaces::Seam>;
+
+/// Unfolds smooth surfaces by joining flat pieces at common edges, deformed by up to max_stretch and max_shear. A piece
+/// starts another layout if it would deform more, overlap, or come closer than `gap` [m] to a piece further away in
+/// space.
+std::vector<FlatPatches> unfolded(const Scene& scene, const SmoothSurfaces::Groups& corners, const Joints& joints,
+                                  const ChartConflicts& conflicts, std::vector<FlatPatches> pieces, double gap);
+
+}  // namespace interflect::detail

@@ -1,0 +1,58 @@
+#include "interflect/exports/mesh/shown_patches.h"
+
+#include <algorithm>
+
+#include "interflect/exports/mesh/encased_patches.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/ray_caster.h"
+#include "interflect/solver/light/patch_light.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Black beside lit rooms, about the light of a moonless night.
+constexpr double max_dark = 1e-3;  // [lm/m^2]
+constexpr double max_dark_of_mean = 1e-4;
+/// Limit inside solids: invisible, but above stray rays at seams (2e-4 in a room with 5 million rays).
+constexpr double max_stray_of_mean = 1e-3;
+
+double mean_of(const Scene& scene, const std::vector<float>& light) {
+    double sum = 0, area = 0;
+    for (std::size_t p = 0; p < light.size(); ++p) {
+        const double own = PatchGeometry(scene, scene.patches[p]).area();
+        sum += own * static_cast<double>(light[p]);
+        area += own;
+    }
+    return area > 0 ? sum / area : 0;
+}
+
+std::vector<bool> at_most(const std::vector<float>& light, double limit) {
+    std::vector<bool> dark;
+    dark.reserve(light.size());
+    for (const float each : light) dark.push_back(static_cast<double>(each) <= limit);
+    return dark;
+}
+
+}  // namespace
+
+std::vector<bool> shown_patches(const Scene& scene, const Solution& solution) {
+    const bool is_dimmed = !solution.undimmed_light.empty();
+    const std::vector<float> light = is_dimmed ? solution.undimmed_light : patch_light(scene, solution.irradiance);
+    const double mean = mean_of(scene, light);
+    const std::vector<bool> dark = at_most(light, std::min(max_dark, max_dark_of_mean * mean));
+    const RayCaster ray_caster(scene);
+    std::vector<bool> shown(scene.patches.size(), true);
+    for (std::uint32_t p = 0; p < shown.size(); ++p) {
+        const std::uint32_t other = scene.patches[p].other_side;
+        if (other != none && dark[p]) shown[p] = dark[other] && p < other;
+        if (ray_caster.uncovered_share(p) == 0) shown[p] = false;
+    }
+    if (std::find(dark.begin(), dark.end(), false) == dark.end()) return shown;  // an unlit scene keeps its faces
+    const std::vector<bool> encased = encased_patches(scene, ray_caster, at_most(light, max_stray_of_mean * mean));
+    for (std::uint32_t p = 0; p < shown.size(); ++p)
+        if (encased[p]) shown[p] = false;
+    return shown;
+}
+
+}  // namespace interflect::detail

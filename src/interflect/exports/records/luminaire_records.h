@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "interflect/exports/records/json_text.h"
+#include "interflect/light_sources.h"
+
+namespace interflect::detail {
+
+/// Webs in order of first use.
+class WebTable {
+  public:
+    std::size_t index_of(const std::shared_ptr<const PhotometricWeb>& web);
+    Json json() const;  ///< `photometric_webs` of a solution file.
+
+  private:
+    std::vector<std::shared_ptr<const PhotometricWeb>> webs_;
+};
+/// Inverse of WebTable::json(). @throws Json::exception, std::runtime_error
+std::vector<std::shared_ptr<const PhotometricWeb>> webs_of(const Json& json);
+
+/// Images in the order of environment_maps().
+using MapImages = std::vector<std::shared_ptr<const Texture>>;
+
+/// @param webs  Receives the luminaire's web. @param maps  Contains its image.
+Json json_of(const Luminaire& luminaire, WebTable& webs, const MapImages& maps = {});
+/// Inverse of json_of(). @throws Json::exception, std::runtime_error
+Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs,
+                       const MapImages& maps = {});
+
+}  // namespace interflect::detail

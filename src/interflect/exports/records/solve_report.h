@@ -1,0 +1,40 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "interflect/exports/records/json_text.h"
+#include "interflect/solution.h"
+
+namespace interflect::detail {
+
+/// Uses the names of the command line. Unset limits are null. Omits seed, method and max_elements.
+Json json_of(const SolveOptions& options);
+
+/// Inverse of json_of(). @throws Json::exception, InputError for missing or unknown values.
+void read_options(const Json& stored, SolveOptions& options);
+
+/// Omits the duration, so equal input gives equal text. Unknown errors are null.
+Json json_of(const IterationReport& report);
+
+/// Inverse of json_of(). @throws Json::exception
+IterationReport report_of(const Json& json);
+
+/// Return unknown errors as infinity.
+std::vector<std::string> report_columns();
+std::vector<double> report_row(const IterationReport& report);
+/// Inverse of report_row(). @throws std::runtime_error for impossible numbers.
+IterationReport report_of_row(std::span<const double> row);
+
+Json json_of(const View& view);
+View view_of(const Json& json);
+
+/// @throws Json::exception
+template <class Vector>
+Vector vector_of(const Json& json) {
+    using Number = decltype(Vector::x);
+    return {json.at(0).get<Number>(), json.at(1).get<Number>(), json.at(2).get<Number>()};
+}
+
+}  // namespace interflect::detail

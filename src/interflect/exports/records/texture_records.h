@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "interflect/exports/hdf5/hdf5_arrays.h"
+#include "interflect/exports/records/json_text.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+// Metadata of textures as JSON; texels and coordinates as arrays.
+
+Json json_of(const Texture& texture);
+Json json_of(const std::vector<Texture>& textures);
+/// Omits texels. @throws Json::exception
+std::vector<Texture> textures_of(const Json& json);
+
+void add_textures(const Material& material, Json& json);
+/// @throws Json::exception
+void read_textures(const Json& json, Material& material);
+
+/// @return  Positions in the file.
+std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene);
+/// @param scene  Receives texels. @throws std::runtime_error
+void read_textures(const Hdf5Reader& file, Scene& scene);
+
+}  // namespace interflect::detail

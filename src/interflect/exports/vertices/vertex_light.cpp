@@ -1,0 +1,289 @@
+#include "interflect/exports/vertices/vertex_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <queue>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "interflect/base/monitor_section.h"
+#include "interflect/base/random.h"
+#include "interflect/exports/lightmap/baked_light.h"
+#include "interflect/exports/mesh/shown_patches.h"
+#include "interflect/geometry/texture_mapping.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Middle of two corners, where interpolation is tested.
+struct Middle {
+    std::size_t a, b;
+    Parameters at;
+};
+/// Middles of edges and of both diagonals, since either may divide a square.
+constexpr std::array<Middle, 6> square_middles{{{0, 1, {0.5f, 0}},
+                                                {1, 2, {1, 0.5f}},
+                                                {2, 3, {0.5f, 1}},
+                                                {3, 0, {0, 0.5f}},
+                                                {0, 2, {0.5f, 0.5f}},
+                                                {1, 3, {0.5f, 0.5f}}}};
+constexpr std::array<Middle, 3> triangle_middles{{{0, 1, {0.5f, 0}}, {1, 2, {0.5f, 0.5f}}, {2, 0, {0, 0.5f}}}};
+
+std::span<const Middle> middles_of(bool is_triangle) {
+    return is_triangle ? std::span<const Middle>(triangle_middles) : std::span<const Middle>(square_middles);
+}
+
+float longest_edge(const PatchGeometry& patch) {
+    const std::span<const Parameters> corners = corners_of(patch.is_triangle());
+    float longest = 0;
+    for (std::size_t c = 0; c < corners.size(); ++c)
+        longest =
+            std::max(longest, (patch.point(corners[(c + 1) % corners.size()]) - patch.point(corners[c])).length());
+    return longest;
+}
+
+/// Area-weighted mean over the shown leaves, of the mean of the channels [as H].
+double mean_irradiance(const Solution& solution, const std::vector<bool>& shown) {
+    const ElementForest& forest = *solution.forest;
+    double sum = 0, area = 0;
+    for (const std::uint32_t leaf : forest.leaves()) {
+        if (!shown[forest.patch(leaf)]) continue;
+        sum += mean_channel(solution.irradiance[leaf]) * forest.area(leaf);
+        area += forest.area(leaf);
+    }
+    return area > 0 ? sum / area : 0;
+}
+
+/// Sides of the area over which a vertex averages direct light, in the patch's parameters: two of the finest elements,
+/// which hides steps along shadow borders.
+std::array<Parameters, 2> sides_of(const PatchGeometry& patch, float min_edge) {
+    const auto side = [&](const V3f& edge) { return std::min(1.0f, 2 * min_edge / edge.length()); };
+    return {{{side(patch.shape().edge_u), 0}, {0, side(patch.shape().edge_v)}}};
+}
+
+double count_triangles(const Scene& scene, const ElementForest& forest, const std::vector<bool>& shown) {
+    const ElementMesh mesh(scene, forest, std::vector<Rgb>(forest.size(), Rgb(0)));
+    double triangles = 0;
+    for (const std::uint32_t leaf : forest.leaves()) {
+        if (!shown[forest.patch(leaf)]) continue;
+        const std::size_t vertices = mesh.outline(leaf).size();
+        const bool is_fan = vertices > (forest.geometry(forest.patch(leaf)).is_triangle() ? 3u : 4u);
+        triangles += static_cast<double>(is_fan ? vertices : vertices - std::min<std::size_t>(vertices, 2));
+    }
+    return triangles;
+}
+
+/// Divides elements, coarse ones first, until direct light is interpolated well.
+class Division {
+  public:
+    Division(const Scene& scene, const BakedLight& light, const std::vector<bool>& shown, double mean,
+             const VertexOptions& options)
+        : scene_(scene),
+          light_(light),
+          shown_(shown),
+          mean_(mean),
+          options_(options),
+          forest_(std::make_shared<ElementForest>(scene, scene.patches.size() + capacity(options))) {
+        for (std::uint32_t p = 0; p < forest_->patch_count(); ++p) edges_.push_back(longest_edge(forest_->geometry(p)));
+        triangles_ = count_triangles(scene, *forest_, shown);
+    }
+
+    std::shared_ptr<const ElementForest> run(const Monitor& monitor) {
+        std::vector<std::uint32_t> leaves = divide_long_edges();
+        for (double fraction = 0; !leaves.empty(); fraction = (1 + fraction) / 2)
+            leaves = divide_badly_interpolated(leaves, monitor_section(monitor, fraction, (1 + fraction) / 2));
+        forest_->put_in_order(forest_->patch_count());
+        return forest_;
+    }
+
+  private:
+    struct Key {
+        std::uint32_t patch;
+        Parameters at;
+        bool operator==(const Key& o) const { return patch == o.patch && at.u == o.at.u && at.v == o.at.v; }
+    };
+    struct KeyHash {
+        std::size_t operator()(const Key& key) const {
+            return mix(mix(key.patch ^ std::hash<float>()(key.at.u), 0) ^ std::hash<float>()(key.at.v), 0);
+        }
+    };
+
+    static std::size_t capacity(const VertexOptions& options) {
+        return 2 * static_cast<std::size_t>(options.max_triangles) + 4;
+    }
+
+    bool is_triangle(std::uint32_t e) const { return forest_->geometry(forest_->patch(e)).is_triangle(); }
+    float edge(std::uint32_t e) const { return edges_[forest_->patch(e)] * std::abs(forest_->cell(e).size); }
+
+    /// Returns the first child, or `none` at the limit of triangles or elements.
+    std::uint32_t divide(std::uint32_t e, double max_triangles) {
+        // Includes fans of neighbours; measured in furnished rooms.
+        const double added = is_triangle(e) ? 6 : 9.5;
+        if (triangles_ + added > max_triangles) return none;
+        const std::uint32_t child = forest_->subdivide(e);
+        if (child != none) triangles_ += added;
+        return child;
+    }
+
+    /// Divides the longest edges first. Returns the leaves of shown patches.
+    std::vector<std::uint32_t> divide_long_edges() {
+        const double half_of_all = options_.max_triangles / 2.0;
+        std::priority_queue<std::pair<float, std::uint32_t>> longest;
+        const auto add = [&](std::uint32_t e) {
+            if (edge(e) > options_.max_edge) longest.emplace(edge(e), e);
+        };
+        for (std::uint32_t p = 0; p < forest_->patch_count(); ++p)
+            if (shown_[p]) add(p);
+        while (!longest.empty()) {
+            const std::uint32_t child = divide(longest.top().second, half_of_all);
+            if (child == none) break;
+            longest.pop();
+            for (std::uint32_t k = 0; k < 4; ++k) add(child + k);
+        }
+        std::vector<std::uint32_t> leaves = forest_->leaves();
+        std::erase_if(leaves, [&](std::uint32_t e) { return !shown_[forest_->patch(e)]; });
+        return leaves;
+    }
+
+    /// Returns the children.
+    std::vector<std::uint32_t> divide_badly_interpolated(const std::vector<std::uint32_t>& leaves,
+                                                         const Monitor& monitor) {
+        std::vector<std::uint32_t> tested;
+        for (const std::uint32_t e : leaves)
+            if (edge(e) > options_.min_edge) tested.push_back(e);
+        // Few samples find the leaves that may be interpolated badly, many distinguish light from noise.
+        constexpr int few = 16, many = 64;
+        constexpr double deviations = 2;
+        find_direct_light(tested, few, monitor_section(monitor, 0, 0.5));
+        std::erase_if(tested, [&](std::uint32_t e) { return !(error_of(e, deviations) > options_.max_error); });
+        find_direct_light(tested, many, monitor_section(monitor, 0.5, 1));
+        std::vector<std::pair<double, std::uint32_t>> worst;  // error times area
+        for (const std::uint32_t e : tested)
+            if (const double error = error_of(e, deviations); error > options_.max_error)
+                worst.emplace_back(error * forest_->area(e), e);
+        std::sort(worst.begin(), worst.end(), [](const auto& a, const auto& b) {
+            return a.first > b.first || (a.first == b.first && a.second < b.second);
+        });
+        std::vector<std::uint32_t> children;
+        for (const auto& [error, e] : worst) {
+            const std::uint32_t child = divide(e, options_.max_triangles);
+            if (child == none) continue;
+            for (std::uint32_t k = 0; k < 4; ++k) children.push_back(child + k);
+        }
+        return children;
+    }
+
+    void find_direct_light(const std::vector<std::uint32_t>& leaves, int max_samples, const Monitor& monitor) {
+        std::vector<BakedPoint> points;
+        known_.clear();
+        for (const std::uint32_t e : leaves) {
+            const Cell cell = forest_->cell(e);
+            const std::uint32_t patch = forest_->patch(e);
+            const auto add = [&](const Parameters& local) {
+                const Parameters at = cell.at(local.u, local.v);
+                if (known_.try_emplace({patch, at}, points.size()).second)
+                    points.push_back({patch, at, sides_of(forest_->geometry(patch), options_.min_edge)});
+            };
+            for (const Parameters& corner : corners_of(is_triangle(e))) add(corner);
+            for (const Middle& middle : middles_of(is_triangle(e))) add(middle.at);
+        }
+        direct_ = light_.direct(points, options_.min_edge, max_samples, monitor);
+    }
+
+    /// Emission of textures counts as direct light.
+    GaugeLight direct_at(std::uint32_t e, Parameters local) const {
+        const std::uint32_t patch = forest_->patch(e);
+        const Parameters at = forest_->cell(e).at(local.u, local.v);
+        GaugeLight light = direct_[known_.at({patch, at})];
+        light.irradiance += exitance_at(scene_, scene_.patches[patch], at);
+        return light;
+    }
+
+    /// Largest error of interpolation beyond the given number of standard deviations, relative to the irradiance there
+    /// or the mean.
+    double error_of(std::uint32_t e, double deviations) const {
+        double largest = 0;
+        const std::span<const Parameters> corners = corners_of(is_triangle(e));
+        for (const auto& [first, second, at] : middles_of(is_triangle(e))) {
+            const GaugeLight a = direct_at(e, corners[first]), b = direct_at(e, corners[second]),
+                             middle = direct_at(e, at);
+            const Rgb error = middle.irradiance - 0.5f * (a.irradiance + b.irradiance);
+            const double size = (std::abs(error.x) + std::abs(error.y) + std::abs(error.z)) / 3.0;
+            const double noise = std::sqrt(middle.squared_error + 0.25 * (a.squared_error + b.squared_error));
+            const double all =
+                mean_channel(light_.interpolated({forest_->patch(e), forest_->cell(e).at(at.u, at.v), {}}));
+            const double scale = std::max({all, mean_channel(middle.irradiance), mean_});
+            if (scale > 0) largest = std::max(largest, (size - deviations * noise) / scale);
+        }
+        return largest;
+    }
+
+    const Scene& scene_;
+    const BakedLight& light_;
+    const std::vector<bool>& shown_;
+    const double mean_;
+    const VertexOptions& options_;
+    std::shared_ptr<ElementForest> forest_;
+    std::vector<float> edges_;                             // longest of each patch [m]
+    double triangles_ = 0;                                 // about
+    std::unordered_map<Key, std::size_t, KeyHash> known_;  // in direct_
+    std::vector<GaugeLight> direct_;
+};
+
+/// One point per vertex, on its first shown patch.
+class VertexPoints {
+  public:
+    VertexPoints(const ElementForest& forest, const ElementVertices& vertices, const std::vector<bool>& shown,
+                 const VertexOptions& options)
+        : numbers_(vertices.count(), none) {
+        for (const std::uint32_t e : forest.leaves()) {
+            const std::uint32_t patch = forest.patch(e);
+            if (!shown[patch]) continue;
+            const PatchGeometry& geometry = forest.geometry(patch);
+            for (std::size_t c = 0; c < (geometry.is_triangle() ? 3u : 4u); ++c) {
+                std::uint32_t& number = numbers_[vertices.corners(e)[c]];
+                if (number != none) continue;
+                number = static_cast<std::uint32_t>(points_.size());
+                const Parameters local = corners_of(geometry.is_triangle())[c];
+                points_.push_back({patch, forest.cell(e).at(local.u, local.v), sides_of(geometry, options.min_edge)});
+            }
+        }
+    }
+
+    const std::vector<BakedPoint>& points() const { return points_; }
+    /// Returns `none` for hidden patches.
+    std::uint32_t number(std::uint32_t vertex) const { return numbers_[vertex]; }
+
+  private:
+    std::vector<BakedPoint> points_;
+    std::vector<std::uint32_t> numbers_;
+};
+
+}  // namespace
+
+VertexLight make_vertex_light(const Scene& scene, const Solution& solution, const ExportOptions& options) {
+    std::vector<bool> shown = shown_patches(scene, solution);
+    if (options.bake.shading == BakeShading::smooth)
+        return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance), std::move(shown)};
+    constexpr DirectSampling vertex_sampling{64, 1e-3, /*is_tested=*/true};
+    const BakedLight light(scene, solution, options.bake, vertex_sampling);
+    constexpr double share_of_division = 0.4;  // of the time; roughly
+    Division division(scene, light, shown, mean_irradiance(solution, shown), options.vertices);
+    const auto forest = division.run(monitor_section(options.monitor, 0, share_of_division));
+    ElementVertices vertices(scene, *forest);
+    const VertexPoints points(*forest, vertices, shown, options.vertices);
+    const std::vector<Rgb> irradiance = light.irradiance(points.points(), options.vertices.min_edge,
+                                                         monitor_section(options.monitor, share_of_division, 1));
+    const auto at_corner = [&](std::uint32_t leaf, std::uint32_t corner) {
+        const std::uint32_t i = points.number(vertices.corners(leaf)[corner]);
+        return i == none ? std::nullopt : std::optional(irradiance[i]);
+    };
+    std::vector<Rgb> values = joined_at_vertices(*forest, vertices, at_corner);
+    return {forest, ElementMesh(scene, *forest, std::move(vertices), std::move(values)), std::move(shown)};
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/elements/forest.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/render/lights/light_tree.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Reflected light of a solution, for final gathering. sample() omits dim elements: combine it with sampled directions.
+/// Thread-safe.
+class KnownLight {
+  public:
+    /// @param irradiance  Per element; only leaves are used. Arguments must outlive this.
+    KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
+               std::span<const Rgb> irradiance);
+
+    struct Place {
+        std::uint32_t patch = none, leaf = none;
+        Parameters parameters;
+    };
+    Place place(std::uint32_t patch, const V3f& x) const;
+    int level(std::uint32_t patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
+
+    const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
+    Rgb reflected_radiance(const Place& place) const;
+
+    /// Whether the leaf is small at this squared distance [m^2].
+    bool is_far(const Place& place, float distance2) const {
+        constexpr float max_solid_angle = 0.25f;  // [sr]
+        return forest_.area(place.leaf) <= max_solid_angle * distance2;
+    }
+
+    /// Samples a bright point that may illuminate x on a surface with normal n; its patch may be `none`.
+    /// @param choice  Selects the patch; in (0, 1).
+    /// @param u, v    In [0, 1).
+    Place sample(const V3f& x, const V3f& n, double choice, float u, float v) const;
+    /// Density of sample() [1/m^2].
+    float density(const Place& place, const V3f& x, const V3f& n) const;
+
+  private:
+    const Scene& scene_;
+    std::span<const PatchGeometry> geometry_;
+    const ElementForest& forest_;
+    std::span<const Rgb> irradiance_;
+    std::vector<float> excess_;  // sum of channels [lm or W]
+    LightTree tree_;
+};
+
+}  // namespace interflect::detail

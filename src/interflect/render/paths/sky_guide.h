@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/render/paths/indirect_field.h"
+
+namespace interflect::detail {
+
+struct PathScene;
+
+/// Directions towards the visible sky around the records of an IndirectField, for sampling: chance rarely finds a small
+/// window (path guiding, Vorba et al. 2014). Records in reach of the same record share a density over cells of equal
+/// projected solid angle, learned from their rays. Immutable, thread-safe.
+class SkyGuide {
+  public:
+    /// Empty without skies. If stopped, ends within milliseconds, with fewer densities.
+    SkyGuide(const PathScene& scene, const IndirectField& field, const std::atomic<bool>* stop);
+
+    /// Whether some ray from around a record has reached the sky.
+    bool sees_sky(std::uint32_t record) const {
+        return record < groups_.size() && densities_[groups_[record]].back() > 0;
+    }
+    /// @param record  That sees the sky; also below. @param n  Normal at the place. Numbers in [0, 1).
+    V3f sample(std::uint32_t record, const V3f& n, double cell, float u, float v) const;
+    /// Returns the density of sample() [1/sr].
+    float density(std::uint32_t record, const V3f& n, const V3f& direction) const;
+
+    std::int64_t rays() const { return rays_; }
+
+  private:
+    static constexpr std::size_t side = 16, cells = side * side;
+    using Cells = std::array<float, cells>;
+    using Cumulative = std::array<std::uint16_t, cells>;  // the last is max_cumulative, or 0 if nothing sees the sky
+    static constexpr std::uint16_t max_cumulative = 0xFFFF;
+
+    /// Rays that some places have sent to the sky.
+    struct Search {
+        const PathScene& scene;
+        std::span<const SurfacePoint> places;
+        std::uint64_t key;
+        Cells rays{}, squares{};  // number of rays, and sum of squared luminances that they found
+        std::int64_t traced = 0;  // includes those behind panes
+
+        void by_chance();
+        void guided_by(const Cumulative& density);
+        void trace(std::span<const std::uint8_t, cells> cells_of_rays);
+        /// Root mean square of the light in each cell: densities in proportion to it have the least variance.
+        Cells light() const;
+    };
+    static Search search(const PathScene& scene, std::span<const SurfacePoint> places, std::uint64_t key);
+    /// Extends a density to neighbouring cells.
+    static Cumulative density_of(const Cells& light);
+    static std::size_t cell_at(const Cumulative& density, double x);
+
+    std::vector<std::uint32_t> groups_;  // by record
+    std::vector<Cumulative> densities_;  // by group
+    std::int64_t rays_ = 0;
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,190 @@
+#include "interflect/render/paths/traced_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "interflect/base/monitor_section.h"
+#include "interflect/base/parallel.h"
+#include "interflect/render/paths/part_statistics.h"
+#include "interflect/render/smooth/smooth_surfaces.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Larger batches stratify little better; more batches improve the error estimate.
+constexpr int largest_batch = 64;
+
+std::vector<PatchGeometry> geometry_of(const Scene& scene) {
+    std::vector<PatchGeometry> geometry;
+    geometry.reserve(scene.patches.size());
+    for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
+    return geometry;
+}
+
+bool has_mirrors(const Scene& scene) {
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [](const Material& m) { return largest_channel(m.specular_reflectance) > 0; });
+}
+
+}  // namespace
+
+TracedScene::TracedScene(const Scene& scene, const RayCaster& ray_caster, const KnownIrradiance* known)
+    : scene_(scene),
+      ray_caster_(ray_caster),
+      geometry_(geometry_of(scene)),
+      lights_(patch_lights(scene, geometry_, emitted_powers(scene, geometry_)), scene.patches.size()),
+      luminaires_(scene),
+      skies_(scene),
+      panes_(scene, ray_caster),
+      unoccluded_(scene, geometry_),
+      has_mirrors_(has_mirrors(scene)) {
+    if (!known) return;
+    known_.emplace(scene, geometry_, known->forest, known->irradiance);
+    if (known->is_interpolated && !scene.normals.empty()) smooth_normals_.emplace(scene, find_smooth_surfaces(scene));
+}
+
+PathScene TracedScene::paths(const PathStart& start, const PathOptions& options, std::size_t batch_size) const {
+    PathScene paths{scene_,
+                    ray_caster_,
+                    &start,
+                    geometry_,
+                    lights_,
+                    luminaires_,
+                    skies_,
+                    options,
+                    batch_size,
+                    panes_,
+                    !panes_.empty() || has_mirrors_,
+                    unoccluded_};
+    if (known_) paths.known = &*known_;
+    if (smooth_normals_) paths.smooth_normals = &*smooth_normals_;
+    return paths;
+}
+
+std::size_t TracedScene::batch_size(int samples, int batches) {
+    return std::bit_floor(static_cast<unsigned>(std::clamp(samples / batches, 1, largest_batch)));
+}
+
+std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop) {
+    std::vector<SurfacePoint> points;
+    for (const Gauge& g : scene.start->gauges) {
+        const V3f start = g.patch == none ? g.position : scene.lifted(g.patch, g.position);
+        points.push_back({start, g.normal, g.patch, g.spacing()});
+    }
+    if (!scene.start->camera) return points;
+    PathScene finding = scene;
+    finding.batch_size = 1;
+    finding.finds_points = true;
+    const std::size_t pixels =
+        static_cast<std::size_t>(scene.options.width) * static_cast<std::size_t>(scene.options.height);
+    std::vector<std::vector<SurfacePoint>> found((pixels + paths_per_tile - 1) / paths_per_tile);
+    parallel_for_ranges(pixels, paths_per_tile, [&](std::size_t begin, std::size_t end) {
+        if (stop && *stop) return;
+        std::vector<BatchOfPaths> batches;
+        for (std::size_t i = begin; i < end; ++i) batches.push_back({.pixel = static_cast<std::uint32_t>(i)});
+        PathWavefront wavefront(finding);
+        wavefront.trace(batches);
+        found[begin / paths_per_tile] = wavefront.points();
+    });
+    for (const std::vector<SurfacePoint>& some : found) points.insert(points.end(), some.begin(), some.end());
+    return points;
+}
+
+namespace {
+
+/// Traces the gauges `first`, ... Returns the number of rays.
+std::int64_t trace_gauges(const PathScene& paths, std::size_t first, std::span<GaugeLight> irradiance) {
+    const auto size = static_cast<std::uint32_t>(paths.batch_size);
+    std::vector<PartStatistics> light(irradiance.size());
+    std::vector<BatchOfPaths> batches;
+    std::int64_t rays = 0;
+    const auto trace = [&] {
+        PathWavefront wavefront(paths);
+        wavefront.trace(batches);
+        rays += wavefront.counts().rays;
+        for (const BatchOfPaths& b : batches) light[b.pixel - first].add((b.direct + b.indirect) / size);
+    };
+    const auto add_batches = [&](std::size_t i, std::size_t from, std::size_t to) {
+        for (std::size_t k = from; k < to; ++k)
+            batches.push_back(
+                {.pixel = static_cast<std::uint32_t>(first + i), .first_point = static_cast<std::uint32_t>(k) * size});
+    };
+    const double target = paths.options.until > 0 ? paths.options.until : hybrid_target;
+    const std::size_t all_batches = static_cast<std::size_t>(paths.options.samples) / size;
+    // Two batches agree about light that neither finds: only exact light may end early.
+    const std::size_t first_batches = paths.directions_find_light() ? all_batches : 2;
+    for (std::size_t i = 0; i < irradiance.size(); ++i) add_batches(i, 0, first_batches);
+    trace();
+    batches.clear();
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+        if (std::sqrt(light[i].squared_error()) > target * mean_channel(light[i].mean))
+            add_batches(i, first_batches, all_batches);
+    trace();
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+        irradiance[i] = {Rgb(light[i].mean), static_cast<float>(light[i].squared_error())};
+    return rays;
+}
+
+std::vector<GaugeLight> trace_all_gauges(const PathScene& paths, const Monitor& monitor) {
+    const std::size_t gauges = paths.start->gauges.size();
+    std::vector<GaugeLight> irradiance(gauges);
+    constexpr std::size_t per_tile = 256;
+    constexpr std::size_t tiles_per_report = 256;
+    std::int64_t rays = 0;
+    for (std::size_t first = 0; first < gauges; first += per_tile * tiles_per_report) {
+        const std::size_t count = std::min(per_tile * tiles_per_report, gauges - first);
+        std::vector<std::int64_t> rays_of_tile((count + per_tile - 1) / per_tile);
+        parallel_for_ranges(count, per_tile, [&](std::size_t begin, std::size_t end) {
+            if (monitor.stop && *monitor.stop) return;
+            rays_of_tile[begin / per_tile] =
+                trace_gauges(paths, first + begin, std::span(irradiance).subspan(first + begin, end - begin));
+        });
+        if (monitor.stop && *monitor.stop)
+            throw Stopped(fmt::format("stopped when {} of {} texels or vertices had light", first, gauges));
+        for (const std::int64_t of_tile : rays_of_tile) rays += of_tile;
+        if (monitor.on_progress)
+            monitor.on_progress({rays, static_cast<double>(first + count) / static_cast<double>(gauges)});
+    }
+    return irradiance;
+}
+
+PathStart start_at(std::span<const Gauge> gauges) {
+    PathStart start;
+    start.gauges = gauges;
+    return start;
+}
+
+constexpr int batches_of_gauge = 8;
+
+}  // namespace
+
+std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
+                                   const Monitor& monitor) {
+    const PathStart start = start_at(gauges);
+    PathScene paths = scene.paths(start, options, TracedScene::batch_size(options.samples, batches_of_gauge));
+    constexpr double share_of_records = 0.6;  // of the time; roughly
+    const IndirectField field(paths, first_points(paths, monitor.stop), monitor_section(monitor, 0, share_of_records));
+    paths.indirect_field = &field;
+    const SkyGuide guide(paths, field, monitor.stop);
+    paths.sky_guide = &guide;
+    std::vector<Rgb> irradiance;
+    irradiance.reserve(gauges.size());
+    for (const GaugeLight& light :
+         trace_all_gauges(paths, monitor_section(monitor, share_of_records, 1, field.rays() + guide.rays())))
+        irradiance.push_back(light.irradiance);
+    return irradiance;
+}
+
+std::vector<GaugeLight> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
+                                          const PathOptions& options, const Monitor& monitor) {
+    const PathStart start = start_at(gauges);
+    PathScene paths = scene.paths(start, options, TracedScene::batch_size(options.samples, batches_of_gauge));
+    paths.is_direct_only = true;
+    return trace_all_gauges(paths, monitor);
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "interflect/elements/forest.h"
+#include "interflect/render.h"
+#include "interflect/render/paths/path_wavefront.h"
+#include "interflect/render/paths/traced_scene.h"
+
+namespace interflect::detail {
+
+/// @throws InputError for inconsistent sizes or a forest of another scene.
+KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
+
+/// Peak memory of trace_picture() [bytes], measured with 1.4 million emitting patches.
+inline constexpr std::size_t path_bytes_per_pixel = 600, path_bytes_per_patch = 250;
+
+/// @param start  Starts of options.width x options.height pixels.
+/// @param known  Null: Russian roulette ends paths.
+PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
+                          const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known);
+
+/// @throws InputError as Camera() does.
+PathStart start_at_camera(const View& view, const PathOptions& options, const Imath::V3d& origin);
+
+}  // namespace interflect::detail

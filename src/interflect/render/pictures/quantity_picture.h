@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "interflect/elements/forest.h"
+#include "interflect/image.h"
+#include "interflect/image/false_colour.h"
+#include "interflect/ray_caster.h"
+#include "interflect/render/pictures/camera_samples.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+struct Quantity {
+    std::string name;               ///< ASCII, as is `unit`.
+    std::string unit;               ///< "lm/m^2"; empty for pure numbers.
+    std::span<const float> values;  ///< One per element; only leaves are used.
+    Spacing spacing = Spacing::logarithmic;
+
+    std::string label() const { return unit.empty() ? name : name + " [" + unit + "]"; }
+};
+
+struct QuantityPicture {
+    Image values;  ///< Means over visible surfaces; 0 without surfaces.
+    Image shown;   ///< False colours; escaped rays are black.
+    ColourScale scale;
+    std::int64_t non_finite_pixels = 0;  ///< In either image.
+    bool interrupted = false;            ///< The remaining pixels are 0.
+};
+
+/// Draws leaves without shading.
+/// @throws InputError as render() does.
+QuantityPicture render_quantity(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster,
+                                const View& view, const Quantity& quantity, const CameraSampling& sampling,
+                                const Monitor& monitor = {});
+
+}  // namespace interflect::detail

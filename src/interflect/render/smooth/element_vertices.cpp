@@ -1,0 +1,314 @@
+#include "interflect/render/smooth/element_vertices.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+#include "interflect/base/random.h"
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+namespace {
+
+using Corners = std::array<std::uint32_t, 4>;
+
+std::uint32_t corner_count(const Corners& corners) { return corners[3] == none ? 3 : 4; }
+
+/// Corners of each child as points of the parent: corners 0 to 3, the midpoint 4 + c of the edge that starts at corner
+/// c, the centre 8.
+using Places = std::array<std::array<std::uint32_t, 4>, 4>;
+constexpr Places quadrilateral_children{{{0, 4, 8, 7}, {4, 1, 5, 8}, {7, 8, 6, 3}, {8, 5, 2, 6}}};
+constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};
+
+/// Several times faster than std::unordered_map here.
+class KeyTable {
+  public:
+    explicit KeyTable(std::size_t most) : entries_(std::bit_ceil(most + most / 2 + 1)) {}
+
+    std::uint32_t find(std::uint64_t key) const { return entries_[slot(key)].number; }
+    std::uint32_t find_or_insert(std::uint64_t key, std::uint32_t number) {
+        TableEntry& entry = entries_[slot(key)];
+        if (entry.number == none) entry = {key, number};
+        return entry.number;
+    }
+
+  private:
+    struct TableEntry {
+        std::uint64_t key = 0;
+        std::uint32_t number = none;
+    };
+
+    std::size_t slot(std::uint64_t key) const {
+        const std::size_t mask = entries_.size() - 1;
+        std::size_t i = mix(key, 0) & mask;
+        while (entries_[i].number != none && entries_[i].key != key) i = (i + 1) & mask;
+        return i;
+    }
+
+    std::vector<TableEntry> entries_;
+};
+
+class VertexBuilder {
+  public:
+    VertexBuilder(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options)
+        : forest_(forest),
+          surfaces_(find_smooth_surfaces(scene, options)),
+          corners_(forest.size()),
+          middles_(forest.size() - forest.patch_count()) {  // a parent has at most four midpoints, and four children
+        edges_of_.assign(surfaces_.corners.count, no_edge);
+        for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
+            for (std::uint32_t c = 0; c < 4; ++c) corners_[p][c] = surfaces_.corners.group[4 * p + c];
+        for (std::uint32_t e = 0; e < forest.size(); ++e)
+            if (!forest.is_leaf(e)) give_vertices_to_children(e);
+    }
+
+    std::uint32_t count() const { return static_cast<std::uint32_t>(edges_of_.size()); }
+
+    void find_hanging_vertices(std::vector<ElementVertices::Hanging>& hanging,
+                               std::vector<ElementVertices::Coupling>& couplings) const {
+        find_vertices_on_seams(hanging, couplings);
+        std::vector<bool> hangs(count(), false);
+        for (std::uint32_t e = 0; e < forest_.size(); ++e)
+            if (forest_.is_leaf(e)) mark_middles_of_edges(e, hangs);
+        for (std::uint32_t v = surfaces_.corners.count; v < count(); ++v) {
+            hangs[v] = hangs[v] || lies_on_half_of_a_leafs_edge(v, hangs);
+            if (hangs[v]) hanging.push_back({v, edges_of_[v]});
+        }
+    }
+
+    const SmoothSurfaces& surfaces() const { return surfaces_; }
+    std::vector<Corners> release_corners() { return std::move(corners_); }
+
+  private:
+    using Ends = std::array<std::uint32_t, 2>;
+    static constexpr Ends no_edge{none, none};  // for patch corners and centres
+
+    Ends ends_of_edge(std::uint32_t e, std::uint32_t c) const {
+        const Corners& corners = corners_[e];
+        const std::uint32_t a = corners[c], b = corners[(c + 1) % corner_count(corners)];
+        return {std::min(a, b), std::max(a, b)};
+    }
+    /// Patch edges use their group: edges at a crease can have the same ends, but not the same midpoint.
+    std::uint64_t edge_key(std::uint32_t e, std::uint32_t c) const {
+        const auto key = [](std::uint64_t low, std::uint64_t high) { return high << 32 | low; };
+        if (e < forest_.patch_count()) return key(surfaces_.edges.group[4 * e + c], surfaces_.edges.group[4 * e + c]);
+        const Ends ends = ends_of_edge(e, c);
+        return key(ends[0], ends[1]);
+    }
+
+    std::uint32_t add_vertex(Ends ends) {
+        edges_of_.push_back(ends);
+        return count() - 1;
+    }
+    std::uint32_t middle_of_edge(std::uint32_t e, std::uint32_t c) {
+        const std::uint32_t middle = middles_.find_or_insert(edge_key(e, c), count());
+        if (middle == count()) add_vertex(ends_of_edge(e, c));
+        return middle;
+    }
+    void give_vertices_to_children(std::uint32_t e) {
+        const Corners& corners = corners_[e];
+        std::array<std::uint32_t, 9> vertex{};
+        std::copy(corners.begin(), corners.end(), vertex.begin());
+        const bool triangle = corners[3] == none;
+        for (std::uint32_t c = 0; c < corner_count(corners); ++c) vertex[4 + c] = middle_of_edge(e, c);
+        if (!triangle) vertex[8] = add_vertex(no_edge);
+        const std::uint32_t child = forest_.first_child(e);
+        for (std::uint32_t k = 0; k < 4; ++k)
+            for (std::uint32_t c = 0; c < 4; ++c)
+                corners_[child + k][c] = vertex[(triangle ? triangle_children : quadrilateral_children)[k][c]];
+    }
+
+    void mark_middles_of_edges(std::uint32_t leaf, std::vector<bool>& hangs) const {
+        for (std::uint32_t c = 0; c < corner_count(corners_[leaf]); ++c)
+            if (const std::uint32_t middle = middles_.find(edge_key(leaf, c)); middle != none) hangs[middle] = true;
+    }
+    /// Requires final values of `hangs` before v.
+    bool lies_on_half_of_a_leafs_edge(std::uint32_t v, const std::vector<bool>& hangs) const {
+        const auto [end, later_end] = edges_of_[v];
+        return later_end != none && hangs[later_end] &&
+               (edges_of_[later_end][0] == end || edges_of_[later_end][1] == end);
+    }
+
+    /// Leaf edge on an edge of its patch.
+    struct LeafEdge {
+        std::array<std::uint32_t, 2> vertices;
+        std::array<float, 2> at;  // along the patch edge, ascending
+
+        float size() const { return at[1] - at[0]; }
+    };
+
+    /// Collects edges that overlap [from, to] of the patch's edge. `e` covers [low, high].
+    void collect_leaf_edges(std::uint32_t e, std::uint32_t c, float low, float high, float from, float to,
+                            std::vector<LeafEdge>& found) const {
+        if (high <= from || low >= to) return;
+        const std::uint32_t corners = corner_count(corners_[e]), next = (c + 1) % corners;
+        if (forest_.is_leaf(e)) {
+            found.push_back({{corners_[e][c], corners_[e][next]}, {low, high}});
+            return;
+        }
+        constexpr std::array<std::uint32_t, 4> child_at_corner{0, 1, 3, 2};
+        const auto child = [&](std::uint32_t corner) {
+            return forest_.first_child(e) + (corners == 3 ? corner : child_at_corner[corner]);
+        };
+        const float middle = (low + high) / 2;
+        collect_leaf_edges(child(c), c, low, middle, from, to, found);
+        collect_leaf_edges(child(next), c, middle, high, from, to, found);
+    }
+
+    struct SeamSide {
+        std::vector<LeafEdge> leaves;
+        float length;  // of the whole patch edge [m]
+    };
+    using SeamSides = std::array<SeamSide, 2>;
+
+    SeamSides sides_of(const SmoothSurfaces::Seam& seam) const {
+        SeamSides sides;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const std::uint32_t patch = seam.edge[k] / 4, corner = seam.edge[k] % 4;
+            collect_leaf_edges(patch, corner, 0, 1, seam.from[k], seam.to[k], sides[k].leaves);
+            const PatchGeometry& geometry = forest_.geometry(patch);
+            const std::span<const Parameters> corners = corners_of(geometry.is_triangle());
+            const V3f start = geometry.point(corners[corner]),
+                      end = geometry.point(corners[(corner + 1) % corners.size()]);
+            sides[k].length = (end - start).length();
+        }
+        return sides;
+    }
+
+    struct SeamVertex {
+        std::uint32_t vertex;
+        std::array<std::uint32_t, 2> ends;
+        float fraction, angle;
+        float edge_length;  // from ends[0] to ends[1] [m]
+    };
+
+    static void add_seam_vertices(const SmoothSurfaces::Seam& seam, const SeamSides& sides, std::size_t k,
+                                  std::vector<SeamVertex>& found) {
+        constexpr float margin = 1e-5f;
+        const std::size_t other = 1 - k;
+        const auto& leaves = sides[other].leaves;
+        const auto add = [&](std::uint32_t vertex, float at) {
+            if (at < seam.from[k] - margin || at > seam.to[k] + margin) return;
+            const bool is_end = at < seam.from[k] + margin || at > seam.to[k] - margin;
+            const float share = std::clamp((at - seam.from[k]) / (seam.to[k] - seam.from[k]), 0.0f, 1.0f);
+            const float there = seam.to[other] + share * (seam.from[other] - seam.to[other]);
+            const auto leaf =
+                std::find_if(leaves.begin(), leaves.end(), [&](const LeafEdge& l) { return there <= l.at[1]; });
+            if (leaf == leaves.end() || leaf->vertices[0] == vertex || leaf->vertices[1] == vertex) return;
+            constexpr float pi = std::numbers::pi_v<float>;
+            found.push_back({vertex, leaf->vertices, std::clamp((there - leaf->at[0]) / leaf->size(), 0.0f, 1.0f),
+                             is_end ? pi / 2 : pi, leaf->size() * sides[other].length});
+        };
+        for (const LeafEdge& leaf : sides[k].leaves) add(leaf.vertices[0], leaf.at[0]);
+        if (!sides[k].leaves.empty()) add(sides[k].leaves.back().vertices[1], sides[k].leaves.back().at[1]);
+    }
+
+    void find_vertices_on_seams(std::vector<ElementVertices::Hanging>& hanging,
+                                std::vector<ElementVertices::Coupling>& couplings) const {
+        std::vector<SeamVertex> found;
+        std::unordered_map<std::uint32_t, float> longest_own;  // [m]
+        for (const SmoothSurfaces::Seam& seam : surfaces_.seams) {
+            const SeamSides sides = sides_of(seam);
+            for (std::size_t k = 0; k < 2; ++k) {
+                add_seam_vertices(seam, sides, k, found);
+                for (const LeafEdge& leaf : sides[k].leaves)
+                    for (const std::uint32_t v : leaf.vertices) {
+                        float& longest = longest_own[v];
+                        longest = std::max(longest, leaf.size() * sides[k].length);
+                    }
+            }
+        }
+        // The ends of an edge can hang only on longer edges, so they precede the vertices on it.
+        std::stable_sort(found.begin(), found.end(),
+                         [](const SeamVertex& a, const SeamVertex& b) { return a.edge_length > b.edge_length; });
+        constexpr float clearly_longer = 1.01f;
+        std::unordered_set<std::uint32_t> hangs;
+        for (const SeamVertex& v : found)
+            if (v.edge_length > clearly_longer * longest_own[v.vertex] && hangs.insert(v.vertex).second)
+                hanging.push_back({v.vertex, v.ends, v.fraction});
+        for (const SeamVertex& v : found)
+            if (!hangs.contains(v.vertex)) couplings.push_back({v.vertex, v.ends, v.fraction, v.angle});
+    }
+
+    const ElementForest& forest_;
+    const SmoothSurfaces surfaces_;
+    std::vector<Corners> corners_;
+    std::vector<Ends> edges_of_;  // [vertex] ends of the halved edge, or no_edge
+    KeyTable middles_;
+};
+
+float angle_between(const V3f& a, const V3f& b) { return std::atan2(a.cross(b).length(), a.dot(b)); }
+
+/// Returns [rad].
+std::array<float, 4> corner_angles(const PatchGeometry& patch, const Cell& cell) {
+    if (patch.is_triangle()) {  // the element is similar to its patch
+        const V3f a = patch.point({0, 0}), b = patch.point({1, 0}), c = patch.point({0, 1});
+        return {angle_between(b - a, c - a), angle_between(c - b, a - b), angle_between(a - c, b - c), 0};
+    }
+    // Lines of constant u or v are straight.
+    const auto angle = [&](float s, float t) {
+        const Parameters p = cell.at(s, t);
+        return angle_between(patch.point({1, p.v}) - patch.point({0, p.v}),
+                             patch.point({p.u, 1}) - patch.point({p.u, 0}));
+    };
+    constexpr float pi = std::numbers::pi_v<float>;
+    return {angle(0, 0), pi - angle(1, 0), angle(1, 1), pi - angle(0, 1)};
+}
+
+}  // namespace
+
+ElementVertices::ElementVertices(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options) {
+    forest.require_made_for(scene);
+    VertexBuilder builder(scene, forest, options);
+    count_ = builder.count();
+    builder.find_hanging_vertices(hanging_, couplings_);
+    normals_ = SmoothNormals(scene, builder.surfaces());
+    corners_ = builder.release_corners();
+}
+
+std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
+                               std::span<const Rgb> irradiance) {
+    std::vector<Rgb> values(irradiance.begin(), irradiance.end());
+    vertices.normals().apply(forest, values);
+    return joined_at_vertices(forest, vertices, [&](std::uint32_t leaf, std::uint32_t) { return values[leaf]; });
+}
+
+std::vector<Rgb> joined_at_vertices(
+    const ElementForest& forest, const ElementVertices& vertices,
+    const std::function<std::optional<Rgb>(std::uint32_t leaf, std::uint32_t corner)>& at_corner) {
+    std::vector<RgbD> sum(vertices.count(), RgbD(0, 0, 0));
+    std::vector<double> weight(vertices.count(), 0.0);
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        if (!forest.is_leaf(e)) continue;
+        const Corners& corners = vertices.corners(e);
+        const std::array<float, 4> angles = corner_angles(forest.geometry(forest.patch(e)), forest.cell(e));
+        for (std::uint32_t c = 0; c < corner_count(corners); ++c) {
+            const std::optional<Rgb> value = at_corner(e, c);
+            if (!value) continue;
+            sum[corners[c]] += RgbD(*value) * angles[c];
+            weight[corners[c]] += angles[c];
+        }
+    }
+    const auto mean = [&](std::uint32_t v) { return weight[v] > 0 ? Rgb(sum[v] / weight[v]) : Rgb(0, 0, 0); };
+    std::vector<Rgb> means(vertices.count());
+    for (std::uint32_t v = 0; v < means.size(); ++v) means[v] = mean(v);
+    const auto is_known = [&](const std::array<std::uint32_t, 2>& ends) {
+        return weight[ends[0]] > 0 && weight[ends[1]] > 0;
+    };
+    for (const auto& [vertex, ends, fraction, angle] : vertices.couplings()) {
+        if (!(weight[vertex] > 0 && is_known(ends))) continue;
+        sum[vertex] += RgbD(means[ends[0]] * (1 - fraction) + means[ends[1]] * fraction) * angle;
+        weight[vertex] += angle;
+    }
+    for (const auto& coupling : vertices.couplings()) means[coupling.vertex] = mean(coupling.vertex);
+    for (const auto& [vertex, ends, fraction] : vertices.hanging())
+        if (is_known(ends)) means[vertex] = means[ends[0]] * (1 - fraction) + means[ends[1]] * fraction;
+    return means;
+}
+
+}  // namespace interflect::detail

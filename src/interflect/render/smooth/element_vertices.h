@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/elements/forest.h"
+#include "interflect/render/smooth/smooth_normals.h"
+#include "interflect/render/smooth/smooth_surfaces.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Shared by the elements at a point of one smooth surface.
+class ElementVertices {
+  public:
+    /// T-vertex inside an edge of a larger leaf; interpolated linearly.
+    struct Hanging {
+        std::uint32_t vertex;
+        std::array<std::uint32_t, 2> ends;
+        float fraction = 0.5f;  // 0 at ends[0], 1 at ends[1]
+    };
+    /// Vertex on a seam (SmoothSurfaces::Seam), inside a leaf edge of the other side not clearly longer than its own.
+    /// Averages both sides.
+    struct Coupling {
+        std::uint32_t vertex;
+        std::array<std::uint32_t, 2> ends;
+        float fraction;
+        float angle;  // weight of the other side's value [rad]
+    };
+
+    /// @throws InputError for a forest of another scene.
+    ElementVertices(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options = {});
+
+    std::uint32_t count() const { return count_; }
+    /// Returns the vertices at (0,0) (1,0) (1,1) (0,1) of an element's Cell; on triangles (0,0) (1,0) (0,1), then
+    /// `none`.
+    const std::array<std::uint32_t, 4>& corners(std::uint32_t e) const { return corners_[e]; }
+    /// The ends of an edge precede the vertices that hang on it.
+    const std::vector<Hanging>& hanging() const { return hanging_; }
+    /// Couplings interpolate the values before any coupling.
+    const std::vector<Coupling>& couplings() const { return couplings_; }
+    const SmoothNormals& normals() const { return normals_; }
+
+  private:
+    std::vector<std::array<std::uint32_t, 4>> corners_;
+    std::vector<Hanging> hanging_;
+    std::vector<Coupling> couplings_;
+    SmoothNormals normals_;
+    std::uint32_t count_ = 0;
+};
+
+/// Averages the values of the corners of the leaves at each vertex, by angle, independent of tessellation (Thuermer and
+/// Wuethrich 1998).
+/// @param at_corner  Value of a leaf at its corner 0 to 3; nullopt to ignore it.
+std::vector<Rgb> joined_at_vertices(
+    const ElementForest& forest, const ElementVertices& vertices,
+    const std::function<std::optional<Rgb>(std::uint32_t leaf, std::uint32_t corner)>& at_corner);
+/// The same for the irradiance of leaves, after SmoothNormals.
+std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
+                               std::span<const Rgb> irradiance);
+
+}  // namespace interflect::detail

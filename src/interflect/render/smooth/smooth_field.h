@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/elements/forest.h"
+#include "interflect/render/smooth/element_vertices.h"
+
+namespace interflect::detail {
+
+/// Continuous on each smooth surface: linear on triangles, bilinear on quadrilaterals.
+class SmoothField {
+  public:
+    /// @param forest, vertices  Must not change during use.
+    /// @param values            Per element; only leaves are used.
+    /// @throws InputError if sizes disagree.
+    SmoothField(const ElementForest& forest, const ElementVertices& vertices, std::span<const Rgb> values);
+
+    /// Thread-safe.
+    Rgb at(std::uint32_t patch, Parameters p) const;
+
+  private:
+    const ElementForest& forest_;
+    const ElementVertices& vertices_;
+    std::vector<Rgb> value_;
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/elements/forest.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/render/smooth/smooth_surfaces.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Shading of curved surfaces by Scene::normals: H(x) = H_solved(x) + G (n(x) - n_mean) (docs/method.md, Curved
+/// surfaces). The correction is clamped to the largest step of irradiance across edges.
+class SmoothNormals {
+  public:
+    SmoothNormals() = default;
+    SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces);
+
+    /// Corrects the centres of leaves; clamps to >= 0.
+    /// @param irradiance  Per element; only leaves change.
+    void apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const;
+
+    /// Returns the unit normal; the patch's own unless all corners have normals.
+    V3f at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const;
+
+  private:
+    /// Edges are numbered by their first corner.
+    struct Neighbour {
+        std::uint32_t patch;
+        std::uint32_t edge, other_edge;
+    };
+    struct CurvedPatch {
+        std::uint32_t patch;
+        std::uint32_t first_neighbour = 0, last_neighbour = 0;
+        std::array<V3f, 4> normals;
+
+        V3f normal_at(bool is_triangle, Parameters p) const;
+        V3f mean_normal(bool is_triangle) const;
+    };
+    struct Gradient {
+        std::array<Imath::V3d, 3> by_normal;  ///< G per channel.
+        Rgb largest_change;
+    };
+
+    Gradient gradient(const ElementForest& forest, std::span<const Rgb> irradiance, const CurvedPatch& curved) const;
+    std::span<const Neighbour> neighbours(const CurvedPatch& curved) const {
+        return std::span(neighbours_).subspan(curved.first_neighbour, curved.last_neighbour - curved.first_neighbour);
+    }
+
+    std::vector<CurvedPatch> curved_;
+    std::vector<Neighbour> neighbours_;
+};
+
+}  // namespace interflect::detail
