@@ -11,9 +11,9 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/render/smooth/element_vertices.h"
 #include "interflect/render/pictures/outlines.h"
 #include "interflect/render/pictures/quantity_picture.h"
+#include "interflect/render/smooth/element_vertices.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -5,8 +5,8 @@
 
 #include "interflect/core.h"
 #include "interflect/exports/files/exported_parts.h"
-#include "interflect/exports/foreign/foreign_scene.h"
 #include "interflect/exports/files/write_files.h"
+#include "interflect/exports/foreign/foreign_scene.h"
 #include "interflect/formats/extension.h"
 
 namespace interflect {

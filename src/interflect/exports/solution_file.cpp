@@ -14,12 +14,12 @@
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/exports/hdf5/checksums.h"
-#include "interflect/exports/records/description.h"
 #include "interflect/exports/hdf5/hdf5_arrays.h"
+#include "interflect/exports/records/description.h"
 #include "interflect/exports/records/json_text.h"
-#include "interflect/exports/saved_run.h"
 #include "interflect/exports/records/solve_report.h"
 #include "interflect/exports/records/texture_records.h"
+#include "interflect/exports/saved_run.h"
 #include "interflect/solution.h"
 
 namespace interflect {

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "interflect/exports/vertices/lit_polygons.h"
 #include "interflect/exports/files/mesh_files.h"
+#include "interflect/exports/vertices/lit_polygons.h"
 
 namespace interflect::detail {
 

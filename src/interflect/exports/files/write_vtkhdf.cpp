@@ -2,9 +2,9 @@
 
 #include <array>
 
-#include "interflect/exports/hdf5/hdf5_arrays.h"
 #include "interflect/exports/files/mesh_files.h"
 #include "interflect/exports/files/vtk_grid.h"
+#include "interflect/exports/hdf5/hdf5_arrays.h"
 
 namespace interflect::detail {
 

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "interflect/exports/files/exported_parts.h"
-#include "interflect/exports/vertices/lit_polygons.h"
 #include "interflect/exports/mesh/opacity.h"
+#include "interflect/exports/vertices/lit_polygons.h"
 #include "interflect/luminaires/skies.h"
 #include "interflect/scene/view.h"
 

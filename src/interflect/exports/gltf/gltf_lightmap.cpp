@@ -8,10 +8,10 @@
 #include <tuple>
 
 #include "interflect/base/escapes.h"
-#include "interflect/exports/mesh/display_range.h"
-#include "interflect/exports/mesh/element_mesh.h"
 #include "interflect/exports/gltf/gltf_scene.h"
 #include "interflect/exports/lightmap/lightmap.h"
+#include "interflect/exports/mesh/display_range.h"
+#include "interflect/exports/mesh/element_mesh.h"
 #include "interflect/exports/mesh/welded_vertices.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/image/image_codecs.h"

@@ -5,11 +5,11 @@
 #include <numbers>
 
 #include "interflect/base/escapes.h"
-#include "interflect/exports/mesh/display_range.h"
 #include "interflect/exports/gltf/gltf_scene.h"
+#include "interflect/exports/mesh/display_range.h"
 #include "interflect/exports/mesh/opacity.h"
-#include "interflect/exports/vertices/vertex_light.h"
 #include "interflect/exports/mesh/welded_vertices.h"
+#include "interflect/exports/vertices/vertex_light.h"
 #include "interflect/geometry/texture_mapping.h"
 
 namespace interflect::detail {

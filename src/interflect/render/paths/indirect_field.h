@@ -9,8 +9,8 @@
 
 #include "interflect/core.h"
 #include "interflect/geometry/box_tree.h"
-#include "interflect/render/smooth/local_fit.h"
 #include "interflect/render/paths/part_statistics.h"
+#include "interflect/render/smooth/local_fit.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {

@@ -14,15 +14,15 @@
 #include "interflect/raycast/camera.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/render.h"
-#include "interflect/render/paths/gauge.h"
-#include "interflect/render/paths/indirect_field.h"
 #include "interflect/render/lights/known_light.h"
 #include "interflect/render/lights/light_tree.h"
 #include "interflect/render/lights/luminaire_choice.h"
 #include "interflect/render/lights/path_samples.h"
+#include "interflect/render/lights/unoccluded_light.h"
+#include "interflect/render/paths/gauge.h"
+#include "interflect/render/paths/indirect_field.h"
 #include "interflect/render/paths/sky_guide.h"
 #include "interflect/render/smooth/smooth_normals.h"
-#include "interflect/render/lights/unoccluded_light.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {

@@ -9,9 +9,9 @@
 #include "interflect/render/lights/known_light.h"
 #include "interflect/render/lights/light_tree.h"
 #include "interflect/render/lights/luminaire_choice.h"
+#include "interflect/render/lights/unoccluded_light.h"
 #include "interflect/render/paths/path_wavefront.h"
 #include "interflect/render/smooth/smooth_normals.h"
-#include "interflect/render/lights/unoccluded_light.h"
 
 namespace interflect::detail {
 
