@@ -58,10 +58,13 @@ double mean_irradiance(const Solution& solution, const std::vector<bool>& shown)
     return area > 0 ? sum / area : 0;
 }
 
+/// Distance of the points for which light is averaged [m]. Long edges do not make it coarser.
+float spacing_of(const VertexOptions& options) { return std::min(options.min_edge, VertexOptions().min_edge); }
+
 /// Sides of the area over which a vertex averages direct light, in the patch's parameters: two of the finest elements,
 /// which hides steps along shadow borders.
-std::array<Parameters, 2> sides_of(const PatchGeometry& patch, float min_edge) {
-    const auto side = [&](const V3f& edge) { return std::min(1.0f, 2 * min_edge / edge.length()); };
+std::array<Parameters, 2> sides_of(const PatchGeometry& patch, float spacing) {
+    const auto side = [&](const V3f& edge) { return std::min(1.0f, 2 * spacing / edge.length()); };
     return {{{side(patch.shape().edge_u), 0}, {0, side(patch.shape().edge_v)}}};
 }
 
@@ -186,12 +189,12 @@ class Division {
             const auto add = [&](const Parameters& local) {
                 const Parameters at = cell.at(local.u, local.v);
                 if (known_.try_emplace({patch, at}, points.size()).second)
-                    points.push_back({patch, at, sides_of(forest_->geometry(patch), options_.min_edge)});
+                    points.push_back({patch, at, sides_of(forest_->geometry(patch), spacing_of(options_))});
             };
             for (const Parameters& corner : corners_of(is_triangle(e))) add(corner);
             for (const Middle& middle : middles_of(is_triangle(e))) add(middle.at);
         }
-        direct_ = light_.direct(points, options_.min_edge, max_samples, monitor);
+        direct_ = light_.direct(points, spacing_of(options_), max_samples, monitor);
     }
 
     /// Emission of textures counts as direct light.
@@ -249,7 +252,8 @@ class VertexPoints {
                 if (number != none) continue;
                 number = static_cast<std::uint32_t>(points_.size());
                 const Parameters local = corners_of(geometry.is_triangle())[c];
-                points_.push_back({patch, forest.cell(e).at(local.u, local.v), sides_of(geometry, options.min_edge)});
+                points_.push_back(
+                    {patch, forest.cell(e).at(local.u, local.v), sides_of(geometry, spacing_of(options))});
             }
         }
     }
@@ -276,7 +280,7 @@ VertexLight make_vertex_light(const Scene& scene, const Solution& solution, cons
     const auto forest = division.run(monitor_section(options.monitor, 0, share_of_division));
     ElementVertices vertices(scene, *forest);
     const VertexPoints points(*forest, vertices, shown, options.vertices);
-    const std::vector<Rgb> irradiance = light.irradiance(points.points(), options.vertices.min_edge,
+    const std::vector<Rgb> irradiance = light.irradiance(points.points(), spacing_of(options.vertices),
                                                          monitor_section(options.monitor, share_of_division, 1));
     const auto at_corner = [&](std::uint32_t leaf, std::uint32_t corner) {
         const std::uint32_t i = points.number(vertices.corners(leaf)[corner]);
