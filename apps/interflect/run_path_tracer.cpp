@@ -4,7 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "apps/interflect/long_work.h"
@@ -81,7 +81,10 @@ void PathTracerArguments::check_samples(const CLI::App& app, int samples) {
                          fmt::format("expected no less than --samples, {}, found {}", samples, most.as<int>()));
 }
 
-bool has_every_pixel(const PathTracing& traced) { return std::isfinite(traced.relative_error); }
+bool has_every_pixel(const PathTracing& traced) {
+    return std::all_of(traced.batches.begin(), traced.batches.end(),
+                       [](std::uint32_t batches) { return batches >= 2; });
+}
 
 std::vector<ImageLayer> layers_of(const PathTracing& traced) {
     const PictureLayers& l = traced.layers;

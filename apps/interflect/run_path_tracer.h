@@ -43,8 +43,8 @@ using Tracer = PathTracing (*)(const Scene&, const Solution&, const RayCaster&, 
                                const Monitor&);
 
 /// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
-/// with a partial result, which is neither filtered nor reported if smooth shading can replace it. @param solution Null
-/// for path tracing. @param tracer  Draws a solution.
+/// with a partial result, which is neither filtered nor reported if smooth shading can replace it.
+/// @param solution  Null for path tracing. @param tracer  Draws a solution.
 PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const Tracer& tracer,
                             const RayCaster& ray_caster, const View& view, PathOptions options,
                             const PathTracerArguments& arguments);

@@ -39,7 +39,7 @@ struct VertexOptions {
     /// darker; > 0.
     float max_error = 0.05f;
     float min_edge = 0.02f;       ///< Shorter edges are not divided [m], > 0.
-    float max_edge = 0.25f;       ///< Longer edges are divided wherever max_triangles suffices [m], >= min_edge.
+    float max_edge = 0.25f;       ///< Longer edges are divided, by up to half of max_triangles [m], >= min_edge.
     int max_triangles = 200'000;  ///< About; faces of the scene are never merged. >= 1.
 };
 

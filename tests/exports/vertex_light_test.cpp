@@ -120,6 +120,22 @@ TEST(VertexLight, IsThatOfTheElementsWithSmoothShading) {
     EXPECT_EQ(triangles_of(light).size(), 2u * 8 * 8);
 }
 
+// A plate above half of the floor hides a uniform sky. Seen to add half of the triangles, when the noise of few samples
+// was overestimated.
+TEST(VertexLight, FollowsThePenumbraOfASky) {
+    Scene scene;
+    const std::uint32_t black = add_material(scene, Rgb(0), Rgb(0));
+    add_rectangle(scene, {-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, black);
+    add_rectangle(scene, {0, -2, 0.1f}, {2, 0, 0}, {0, 4, 0}, black, 1, 1, true);
+    scene.luminaires.push_back({"sky", 0, UniformSky{Rgb(100)}});
+    const Solution solution = lightmap_testing::uniform(scene, 200);
+    ExportOptions options;
+    options.vertices.min_edge = options.vertices.max_edge;
+    VertexLight undivided = make_vertex_light(scene, solution, options);
+    VertexLight light = make_vertex_light(scene, solution, {});
+    EXPECT_GT(triangles_of(light).size(), 13 * triangles_of(undivided).size() / 10);
+}
+
 // Coarse elements of one value a wall, far from the truth, hardly change the light of vertices: direct light does not
 // come from them. Smooth shading shows them. Long edges do not blur it (seen: averaged over two of them).
 TEST(VertexLight, TakesDirectLightFromTheLampAndNotFromTheSolution) {

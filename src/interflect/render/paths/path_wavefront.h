@@ -27,6 +27,9 @@
 
 namespace interflect::detail {
 
+/// In hybrid shading, one of this many paths also samples lights by its direction, best near emitters.
+constexpr std::uint32_t paths_per_direction = 4;
+
 /// Camera, or one gauge per pixel.
 struct PathStart {
     std::optional<Camera> camera;

@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t places_per_task = 256, place_groups_per_task = 16;
+constexpr std::size_t places_per_task = 256, place_groups_per_task = 1;
 constexpr int rounds = 8;                    // of rays through each cell
 constexpr float share_of_neighbours = 0.1f;  // cells and groups of records
 
@@ -40,7 +40,7 @@ V3f direction_in(std::size_t cell, const SteadyFrame& frame, float u, float v) {
     return frame.direction((static_cast<float>(cell / side) + u) / side, (static_cast<float>(cell % side) + v) / side);
 }
 
-/// Returns the group of each record: those in reach of the same early record, as early ones are far apart.
+/// Returns the group of each record: those in reach of the same early record, as most early ones are far apart.
 std::vector<std::uint32_t> groups_of(const IndirectField& field) {
     std::vector<std::uint32_t> groups(field.size());
     parallel_for_ranges(field.size(), places_per_task, [&](std::size_t begin, std::size_t end) {
@@ -93,7 +93,7 @@ SkyGuide::SkyGuide(const PathScene& scene, const IndirectField& field, const std
     });
     densities_.resize(count);
     parallel_for_ranges(count, place_groups_per_task, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t g = begin; g < end; ++g) {
+        for (std::size_t g = begin; g < end && !(stop && *stop); ++g) {
             Cells around = light[g];
             for (const std::uint32_t near : groups_near(field, groups_, places[g]))
                 for (std::size_t c = 0; c < cells; ++c) around[c] += share_of_neighbours * light[near][c];

@@ -158,14 +158,21 @@ PathStart start_at(std::span<const Gauge> gauges) {
     return start;
 }
 
-constexpr int batches_of_gauge = 8;
+/// Batches have equal numbers of directions if each has a multiple of paths_per_direction.
+std::size_t batch_size_of_gauges(const PathScene& paths) {
+    constexpr int usual_batches = 8;
+    const std::size_t size = TracedScene::batch_size(paths.options.samples, usual_batches);
+    const bool has_two = paths.options.samples >= 2 * static_cast<int>(paths_per_direction);
+    return paths.directions_find_light() && has_two ? std::max<std::size_t>(size, paths_per_direction) : size;
+}
 
 }  // namespace
 
 std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
                                    const Monitor& monitor) {
     const PathStart start = start_at(gauges);
-    PathScene paths = scene.paths(start, options, TracedScene::batch_size(options.samples, batches_of_gauge));
+    PathScene paths = scene.paths(start, options, 1);
+    paths.batch_size = batch_size_of_gauges(paths);
     constexpr double share_of_records = 0.6;  // of the time; roughly
     const IndirectField field(paths, first_points(paths, monitor.stop), monitor_section(monitor, 0, share_of_records));
     paths.indirect_field = &field;
@@ -182,7 +189,8 @@ std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gau
 std::vector<GaugeLight> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
                                           const PathOptions& options, const Monitor& monitor) {
     const PathStart start = start_at(gauges);
-    PathScene paths = scene.paths(start, options, TracedScene::batch_size(options.samples, batches_of_gauge));
+    PathScene paths = scene.paths(start, options, 1);
+    paths.batch_size = batch_size_of_gauges(paths);
     paths.is_direct_only = true;
     return trace_all_gauges(paths, monitor);
 }

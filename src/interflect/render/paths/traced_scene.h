@@ -22,7 +22,7 @@ struct KnownIrradiance {
     bool is_interpolated = false;  ///< Hybrid shading: an IndirectField replaces gathered directions.
 };
 
-/// Paths that a PathWavefront traces together.
+/// Paths that a PathWavefront traces together, which amortises the cost of a call.
 constexpr std::size_t paths_per_tile = 2048;
 
 /// Immutable, thread-safe.
@@ -61,7 +61,7 @@ constexpr double hybrid_target = 0.06;
 std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop);
 
 /// Irradiance of gauges by hybrid shading, with options.samples paths for each. Without skies and extended sources that
-/// only chance finds, a quarter of them if the estimated relative error is below options.until or, without it,
+/// only chance finds, two batches of them if the estimated relative error is below options.until or, without it,
 /// hybrid_target.
 /// @param scene  With interpolated KnownIrradiance.
 /// @return       [as H], per gauge; the same bits for any number of threads. @throws Stopped
