@@ -151,7 +151,7 @@ class Interrupt(CommandTest):
             self.assertIn("ended by a signal, without a result", rest)
             self.assertEqual(self.files(), ["room.h5", "room.mgf"])
 
-    # Seen to be half black, and two thirds as bright where half of the samples were missing.
+    # Earlier pictures were black in one half, and too dark where samples were missing.
     def test_a_picture_without_all_pixels_is_drawn_otherwise(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
         picture = ("render", "room.h5", *VIEW, "--size", "800x600", "--samples")

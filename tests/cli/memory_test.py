@@ -193,7 +193,7 @@ class LongRuns(MemoryCase):
         return min(self.peak(*run, "--threads", "1")[0] for _ in range(3))
 
     def test_take_no_more_memory_than_short_ones(self):
-        # Linux counts resident pages for each processor and thread, in batches: one of each has the least error.
+        # Linux counts resident pages per processor and thread, in batches: a single thread has the least error.
         processors = os.sched_getaffinity(0)
         os.sched_setaffinity(0, {min(processors)})
         self.addCleanup(os.sched_setaffinity, 0, processors)

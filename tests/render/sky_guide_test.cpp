@@ -1,7 +1,7 @@
 // The sky through a window, in hybrid shading: directions learned near records find it.
 //
-// Seen to fail: guided rays have the density of one of them; escaped rays have full weight beside guided ones;
-// densities lack the number of cells; without a guide, the noise is as that of chance.
+// Seen to fail: the density of guided rays ignores their number; escaped rays have full weight beside guided rays;
+// densities lack the number of cells; no guide.
 #include "interflect/render/paths/sky_guide.h"
 
 #include <gtest/gtest.h>
@@ -129,8 +129,8 @@ TEST(SkyThroughAWindow, HasTheNoiseOfFarMoreChanceDirections) {
     EXPECT_LT(5 * statistics_of(errors_below(uniform, false, 2)).rms, by_chance);
 }
 
-// One path in four takes a direction. Seen to be 2.0, 1.33 and 1.2 times too bright, when it was always the first of
-// four.
+// One path in four takes a direction. When it was always the first of four, the sky was 2.0, 1.33 and 1.2 times too
+// bright.
 TEST(UniformSky, IsUnbiasedForAnyNumberOfSamples) {
     Scene scene;
     add_rectangle(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_material(scene, Rgb(0), Rgb(0)));

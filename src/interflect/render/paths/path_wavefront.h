@@ -27,7 +27,7 @@
 
 namespace interflect::detail {
 
-/// In hybrid shading, one of this many paths also samples lights by its direction, best near emitters.
+/// In hybrid shading, one path of each group of this size also samples lights by its direction, best near emitters.
 constexpr std::uint32_t paths_per_direction = 4;
 
 /// Camera, or one gauge per pixel.
@@ -198,9 +198,9 @@ class PathWavefront {
     /// @param path  Its throughput includes the reflectance at x; also below.
     void connect_to_patch(const V3f& x, const Path& path, const LightSample& sample);
     void connect_to_luminaire(const V3f& x, const Path& path, const LightSample& sample);
-    /// Returns SeenPlace::guide; none at later vertices.
+    /// Returns SeenPlace::guide at the first vertex.
     std::uint32_t guide_of(const Path& path) const;
-    /// Returns the radiance that they sample: without a guide not that of uniform skies.
+    /// Returns the radiance of the skies that shadow rays sample; uniform skies need a guide.
     Rgb sky_of_shadow_rays(const Path& path, const V3f& direction) const;
     /// Returns the density of all shadow rays of a path to the sky [1/sr].
     float sky_density(const Path& path, std::uint32_t vertex, const V3f& direction) const;

@@ -18,7 +18,7 @@ constexpr std::size_t places_per_task = 256, place_groups_per_task = 1;
 constexpr int rounds = 8;                    // of rays through each cell
 constexpr float share_of_neighbours = 0.1f;  // cells and groups of records
 
-/// Nearly the same for nearly the same normals: those of walls and floors are far from its singularity.
+/// Changes little between similar normals. Its singularity is far from the normals of walls and floors.
 struct SteadyFrame {
     V3f s, t, n;
 

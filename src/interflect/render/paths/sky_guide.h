@@ -36,7 +36,7 @@ class SkyGuide {
   private:
     static constexpr std::size_t side = 16, cells = side * side;
     using Cells = std::array<float, cells>;
-    using Cumulative = std::array<std::uint16_t, cells>;  // the last is max_cumulative, or 0 if nothing sees the sky
+    using Cumulative = std::array<std::uint16_t, cells>;  // the last is max_cumulative, or 0 without visible sky
     static constexpr std::uint16_t max_cumulative = 0xFFFF;
 
     /// Rays that some places have sent to the sky.
