@@ -13,6 +13,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import cycles
 import numpy as np
 from audit_scenes import SCENES as AUDIT_SCENES
 from lab import drawing, program, results
@@ -24,12 +25,25 @@ TABLE = program.ROOT / "experiments/results/pictures.csv"
 SIZE = "--size 960x540"
 OFFICE_VIEW = "--eye 3.7037,0.0788,2.2690 --look-at 1.0023,8.9229,-1.1130"
 PATHS, GATHERED_FROM_40M = "path", "gather --rays 40M"
-SCENES = {  # name: file, view, paths per pixel of each reference, its shading
+
+
+def house() -> str:
+    """Returns a file and options for a house with a window and the sun."""
+    scene = AUDIT_SCENES["sun-window"]()
+    return f"{scene.write(WORK, 'sun-window', scene.text)} {scene.view()}"
+
+
+def room_from_blender() -> str:
+    return f"{cycles.exported('room')} --view window"
+
+
+SCENES = {  # name: file or its maker, options, paths per pixel of each reference, its shading
     "office-graz": (f"{program.SCENES}/office-graz.mgf", OFFICE_VIEW, 128, PATHS),
     "office": ("scenes/office.mgf", "--view desk", 128, PATHS),
     "nine rooms": ("maze:9:furniture", "--view room-4", 128, PATHS),
-    "sun-window": (None, "", 256, GATHERED_FROM_40M),  # few paths find the sunlit spot
-    "sun and sky": (None, "--sky overcast:15000", 256, GATHERED_FROM_40M),  # the same window
+    "sun-window": (house, "", 256, GATHERED_FROM_40M),  # few paths find the sunlit spot
+    "sun and sky": (house, "--sky overcast:15000", 256, GATHERED_FROM_40M),
+    "room from Blender": (room_from_blender, "", 128, PATHS),
 }
 PROCESSORS = 2
 SMOOTH, HYBRID, GATHERED = ("--shading smooth", "--shading hybrid --no-mirrors --denoise", "--shading gather --no-mirrors --denoise")
@@ -52,9 +66,8 @@ def processor_seconds() -> float:
 class Scene:
     def __init__(self, command: program.Program, name: str):
         file, view, paths, shading = SCENES[name]
-        if file is None:
-            scene = AUDIT_SCENES["sun-window"]()
-            file, view = f"{scene.write(WORK, 'sun-window', scene.text)} {view}", scene.view()
+        if callable(file):
+            file = file()
         self.file, self.view = file, view
         self.reference = Reference(command, WORK, f"{name.replace(' ', '-')}-", f"{file} {view} {SIZE}", paths, shading)
         good = WORK / f"{name.replace(' ', '-')}-good.exr"
