@@ -10,12 +10,12 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr const char* root = "VTKHDF";
+constexpr const char* root_group = "VTKHDF";
 
 template <class Number>
 void add_numbers(Hdf5Writer& file, const std::string& name, const std::vector<Number>& numbers,
                  std::size_t columns = 1) {
-    file.write_compressed<Number>(fmt::format("{}/{}", root, name), numbers, columns);
+    file.write_compressed<Number>(fmt::format("{}/{}", root_group, name), numbers, columns);
 }
 
 void add_array(Hdf5Writer& file, const std::string& folder, const VtkArray& array) {
@@ -26,7 +26,7 @@ void add_array(Hdf5Writer& file, const std::string& folder, const VtkArray& arra
 /// The grid has one part.
 void add_count(Hdf5Writer& file, const char* name, std::size_t count) {
     const std::array number{static_cast<std::int64_t>(count)};
-    file.write<std::int64_t>(fmt::format("{}/{}", root, name), number);
+    file.write<std::int64_t>(fmt::format("{}/{}", root_group, name), number);
 }
 
 }  // namespace
@@ -39,8 +39,8 @@ std::vector<ExportedFile> make_vtkhdf(const std::filesystem::path& path, const S
     add_count(file, "NumberOfPoints", grid.point_count());
     add_count(file, "NumberOfCells", grid.cell_count());
     add_count(file, "NumberOfConnectivityIds", connectivity.size());
-    file.write_attribute(root, "Version", std::array<std::int64_t, 2>{1, 0});
-    file.write_attribute(root, "Type", std::string_view("UnstructuredGrid"));
+    file.write_attribute(root_group, "Version", std::array<std::int64_t, 2>{1, 0});
+    file.write_attribute(root_group, "Type", std::string_view("UnstructuredGrid"));
     add_array(file, "", grid.points());
     add_numbers(file, "Connectivity", connectivity);
     add_numbers(file, "Offsets", grid.offsets());
