@@ -37,7 +37,8 @@ struct SteadyFrame {
 
 template <std::size_t side>
 V3f direction_in(std::size_t cell, const SteadyFrame& frame, float u, float v) {
-    return frame.direction((static_cast<float>(cell / side) + u) / side, (static_cast<float>(cell % side) + v) / side);
+    const std::size_t ring = cell / side, sector = cell % side;
+    return frame.direction((static_cast<float>(ring) + u) / side, (static_cast<float>(sector) + v) / side);
 }
 
 /// Returns the group of each record: those in reach of the same early record, as most early ones are far apart.
