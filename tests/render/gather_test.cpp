@@ -132,7 +132,11 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     const std::uint32_t first = forest.first_child(7);
     irradiance[first + 1] = Rgb(30), irradiance[first + 3] = Rgb(40);
     pull(forest, irradiance);
-    const KnownLight light(scene, geometry, forest, irradiance);
+    KnownLight light(scene, geometry, forest, irradiance);
+    light.sample_brighter_than(3);
+    std::vector<float> weights(scene.patches.size(), 1);
+    weights[5] = 0.7f, weights[10] = 1.3f;
+    light.weigh(weights);
     const V3f x(0.5f, 1, 0), n(0, 0, 1);
     double in_front = 0;  // area of the bright leaves
     for (const std::uint32_t leaf : forest.leaves())
@@ -158,7 +162,8 @@ TEST(KnownLight, LeavesEvenLightToDirections) {
     for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
     const ElementForest forest(scene, 1000);
     const std::vector<Rgb> irradiance(forest.size(), Rgb(1));
-    const KnownLight light(scene, geometry, forest, irradiance);
+    KnownLight light(scene, geometry, forest, irradiance);
+    light.sample_brighter_than(3);
     EXPECT_EQ(light.sample({0.5f, 1, 0}, {0, 0, 1}, 0.5, 0.5f, 0.5f).patch, none);
     EXPECT_EQ(light.density({0, 0, {0.5f, 0.5f}}, {0.5f, 1, 0}, {0, 0, 1}), 0);
 }

@@ -7,44 +7,33 @@
 
 namespace interflect::detail {
 
-namespace {
-
-/// Minimum reflected radiosity of sampled elements, relative to the mean over all surfaces. Sampling dimmer ones adds
-/// noise, since directions find them well (Karlik et al. 2019): in a furnace, irradiance of 128 paths then varies
-/// by 2.6% in place of 1.8%.
-constexpr double bright_over_mean = 2;
-
-/// Returns the power reflected above this limit, sum of channels [lm or W]. Inner elements have the sum of their
-/// leaves.
-std::vector<float> excess_power(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance) {
-    const auto reflected_radiosity = [&](std::uint32_t e) {
-        return channel_sum(scene.materials[scene.patches[forest.patch(e)].material].reflectance * irradiance[e]);
-    };
-    double power = 0, area = 0;
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
-        power += static_cast<double>(reflected_radiosity(i)) * forest.area(i);
-        area += forest.area(i);
-    }
-    const auto limit = static_cast<float>(bright_over_mean * power / area);
-    std::vector<float> excess(forest.size(), 0.0f);
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
-        if (forest.is_leaf(e)) excess[e] = std::max(0.0f, reflected_radiosity(e) - limit) * forest.area(e);
-    forest.for_siblings_from_leaves([&](std::uint32_t first) {
-        excess[forest.parent(first)] = excess[first] + excess[first + 1] + excess[first + 2] + excess[first + 3];
-    });
-    return excess;
-}
-
-}  // namespace
-
 KnownLight::KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
                        std::span<const Rgb> irradiance)
     : scene_(scene),
       geometry_(geometry),
       forest_(forest),
       irradiance_(irradiance),
-      excess_(excess_power(scene, forest, irradiance)),
-      tree_(patch_lights(scene, geometry, std::span(excess_).first(scene.patches.size())), scene.patches.size()) {}
+      excess_(forest.size()),
+      tree_({}, 0) {}
+
+void KnownLight::sample_brighter_than(float radiosity) {
+    excess_.assign(forest_.size(), 0.0f);
+    for (std::uint32_t e = 0; e < forest_.size(); ++e) {
+        if (!forest_.is_leaf(e)) continue;
+        const Rgb& reflectance = scene_.materials[scene_.patches[forest_.patch(e)].material].reflectance;
+        excess_[e] = std::max(0.0f, channel_sum(reflectance * irradiance_[e]) - radiosity) * forest_.area(e);
+    }
+    forest_.for_siblings_from_leaves([&](std::uint32_t first) {
+        excess_[forest_.parent(first)] = excess_[first] + excess_[first + 1] + excess_[first + 2] + excess_[first + 3];
+    });
+    power_.assign(excess_.begin(), excess_.begin() + static_cast<std::ptrdiff_t>(scene_.patches.size()));
+    tree_ = LightTree(patch_lights(scene_, geometry_, power_), scene_.patches.size());
+}
+
+void KnownLight::weigh(std::span<const float> weights) {
+    for (std::size_t i = 0; i < power_.size(); ++i) power_[i] *= weights[i];
+    tree_ = LightTree(patch_lights(scene_, geometry_, power_), scene_.patches.size());
+}
 
 KnownLight::Place KnownLight::place(std::uint32_t patch, const V3f& x) const {
     const Parameters p = geometry_[patch].parameters_of(x);

@@ -13,12 +13,21 @@
 namespace interflect::detail {
 
 /// Reflected light of a solution, for final gathering. sample() omits dim elements: combine it with sampled directions.
-/// Thread-safe.
+/// Constant methods are thread-safe.
 class KnownLight {
   public:
+    /// Samples nothing yet.
     /// @param irradiance  Per element; only leaves are used. Arguments must outlive this.
     KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
                std::span<const Rgb> irradiance);
+
+    /// @param radiosity  Reflected [lm/m^2 or W/m^2], sum of channels.
+    void sample_brighter_than(float radiosity);
+    /// Multiplies sampling_powers(). @param weights  Above 0, per patch.
+    void weigh(std::span<const float> weights);
+
+    /// sample() selects patches as if they emitted this, sum of channels [lm or W].
+    std::span<const float> sampling_powers() const { return power_; }
 
     struct Place {
         std::uint32_t patch = none, leaf = none;
@@ -48,7 +57,8 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> excess_;  // sum of channels [lm or W]
+    std::vector<float> excess_;  // power above the limit, sum of channels [lm or W]
+    std::vector<float> power_;   // of patches
     LightTree tree_;
 };
 

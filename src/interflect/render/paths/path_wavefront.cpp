@@ -391,8 +391,8 @@ void PathWavefront::add(std::uint32_t index, std::uint32_t bounces, const Rgb& r
 
 std::uint32_t PathWavefront::shadow_rays_at(std::uint32_t vertex) const {
     if (vertex == 1 && s_.is_indirect_only) return 0;
-    if (vertex > 1 || !s_.known) return 1;
-    return s_.is_hybrid() ? hybrid_shadow_rays : gathered_shadow_rays;
+    if (vertex > 1) return 1;
+    return s_.is_hybrid() ? hybrid_shadow_rays : s_.known ? gathered_shadow_rays : 1;
 }
 
 void PathWavefront::connect_to_patch(const V3f& x, const Path& path, const LightSample& sample) {

@@ -9,6 +9,7 @@
 #include "interflect/base/monitor_section.h"
 #include "interflect/base/parallel.h"
 #include "interflect/render/paths/part_statistics.h"
+#include "interflect/render/paths/seen_light.h"
 #include "interflect/render/smooth/smooth_surfaces.h"
 
 namespace interflect::detail {
@@ -43,7 +44,7 @@ TracedScene::TracedScene(const Scene& scene, const RayCaster& ray_caster, const 
       unoccluded_(scene, geometry_),
       has_mirrors_(has_mirrors(scene)) {
     if (!known) return;
-    known_.emplace(scene, geometry_, known->forest, known->irradiance);
+    known_.emplace(*known);
     if (known->is_interpolated && !scene.normals.empty()) smooth_normals_.emplace(scene, find_smooth_surfaces(scene));
 }
 
@@ -60,9 +61,14 @@ PathScene TracedScene::paths(const PathStart& start, const PathOptions& options,
                     panes_,
                     !panes_.empty() || has_mirrors_,
                     unoccluded_};
-    if (known_) paths.known = &*known_;
     if (smooth_normals_) paths.smooth_normals = &*smooth_normals_;
     return paths;
+}
+
+KnownLight TracedScene::known_light(const PathScene& paths, std::span<const SurfacePoint> points) const {
+    KnownLight light(scene_, geometry_, known_->forest, known_->irradiance);
+    sample_seen_light(light, paths, points);
+    return light;
 }
 
 std::size_t TracedScene::batch_size(int samples, int batches) {
@@ -73,7 +79,7 @@ std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic
     std::vector<SurfacePoint> points;
     for (const Gauge& g : scene.start->gauges) {
         const V3f start = g.patch == none ? g.position : scene.lifted(g.patch, g.position);
-        points.push_back({start, g.normal, g.patch, g.spacing()});
+        points.push_back({start + g.normal * g.offset, g.normal, g.patch, g.spacing()});
     }
     if (!scene.start->camera) return points;
     PathScene finding = scene;
@@ -173,8 +179,11 @@ std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gau
     const PathStart start = start_at(gauges);
     PathScene paths = scene.paths(start, options, 1);
     paths.batch_size = batch_size_of_gauges(paths);
+    const std::vector<SurfacePoint> points = first_points(paths, monitor.stop);
+    const KnownLight known = scene.known_light(paths, points);
+    paths.known = &known;
     constexpr double share_of_records = 0.6;  // of the time; roughly
-    const IndirectField field(paths, first_points(paths, monitor.stop), monitor_section(monitor, 0, share_of_records));
+    const IndirectField field(paths, points, monitor_section(monitor, 0, share_of_records));
     paths.indirect_field = &field;
     const SkyGuide guide(paths, field, monitor.stop);
     paths.sky_guide = &guide;

@@ -33,8 +33,11 @@ class TracedScene {
     TracedScene(const TracedScene&) = delete;
     TracedScene& operator=(const TracedScene&) = delete;
 
-    /// @param start, options  Must outlive the result.
+    /// Without known light. @param start, options  Must outlive the result.
     PathScene paths(const PathStart& start, const PathOptions& options, std::size_t batch_size) const;
+
+    /// Returns the known irradiance, to be sampled where random ones of `points` see bright elements.
+    KnownLight known_light(const PathScene& paths, std::span<const SurfacePoint> points) const;
 
     /// Paths per batch, a power of two, for at least this number of batches.
     static std::size_t batch_size(int samples, int batches);
@@ -49,7 +52,7 @@ class TracedScene {
     Panes panes_;
     UnoccludedLight unoccluded_;
     bool has_mirrors_;
-    std::optional<KnownLight> known_;
+    std::optional<KnownIrradiance> known_;
     std::optional<SmoothNormals> smooth_normals_;  // for hybrid shading of scenes with normals
 };
 

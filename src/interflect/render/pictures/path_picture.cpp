@@ -260,11 +260,14 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     const std::size_t usual_batch = TracedScene::batch_size(options.samples, min_batches);
     PathScene path_scene =
         traced.paths(start, options, is_limited(options) ? std::min(usual_batch, small_batch) : usual_batch);
+    if (!known) return draw(path_scene, options, monitor, time_left);
+    const std::vector<SurfacePoint> points = first_points(path_scene, monitor.stop);
+    const KnownLight light = traced.known_light(path_scene, points);
+    path_scene.known = &light;
     if (!is_hybrid) return draw(path_scene, options, monitor, time_left);
     path_scene.batch_size = std::max(path_scene.batch_size, small_batch);
     constexpr double share_of_records = 0.25;  // of the time; roughly
-    const IndirectField field(path_scene, first_points(path_scene, monitor.stop),
-                              monitor_section(monitor, 0, share_of_records));
+    const IndirectField field(path_scene, points, monitor_section(monitor, 0, share_of_records));
     path_scene.indirect_field = &field;
     const SkyGuide guide(path_scene, field, monitor.stop);
     path_scene.sky_guide = &guide;

@@ -1,0 +1,112 @@
+#include "interflect/render/paths/seen_light.h"
+
+#include <algorithm>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "interflect/base/parallel.h"
+#include "interflect/base/random.h"
+#include "interflect/render/lights/path_samples.h"
+#include "interflect/render/paths/path_wavefront.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Minimum reflected radiosity of sampled elements, relative to the mean that the points see. Sampling dimmer ones adds
+/// noise, since directions find them well (Karlik et al. 2019): in a furnace, irradiance of 128 paths then varies
+/// by 2.6% in place of 1.8%.
+constexpr float bright_over_mean = 2;
+constexpr std::size_t rays_to_surfaces = 1 << 14, rays_to_bright_places = 1 << 16, rays_per_task = 1 << 10;
+
+std::uint64_t key_of(const PathScene& scene) { return mix(scene.options.seed, 0x5ee11); }
+
+const SurfacePoint& random_one(std::span<const SurfacePoint> points, std::uint32_t word) {
+    return points[static_cast<std::size_t>((std::uint64_t{word} * points.size()) >> 32)];
+}
+
+/// Calls visit(ray, hit, transmittance) for all hits of surfaces, also behind panes.
+void trace(const PathScene& scene, std::span<const Ray> rays, const auto& visit) {
+    std::vector<Hit> hits(rays.size());
+    scene.ray_caster.trace(rays, hits);
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        if (hits[i].patch != none) visit(i, hits[i], Rgb(1));
+    if (scene.panes.empty()) return;
+    std::vector<Panes::HitBehind> behind;
+    scene.panes.trace(rays, hits, behind);
+    for (const Panes::HitBehind& b : behind)
+        if (b.hit.patch != none) visit(b.ray, b.hit, b.transmittance);
+}
+
+/// Returns the mean of reflected radiosity over cosine-distributed directions, sum of channels.
+float mean_radiosity(const KnownLight& light, const PathScene& scene, std::span<const SurfacePoint> points) {
+    const auto sum = parallel_sum(rays_to_surfaces, rays_per_task, 0.0, [&](std::size_t begin, std::size_t end) {
+        std::vector<Ray> rays;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto words = random_words(key_of(scene), i);
+            const SurfacePoint& p = random_one(points, words[0]);
+            rays.push_back({p.position, cosine_direction(p.normal, unit_float(words[1]), unit_float(words[2]))});
+        }
+        double found = 0;
+        trace(scene, rays, [&](std::size_t i, const Hit& hit, const Rgb& transmittance) {
+            const V3f x = rays[i].origin + hit.distance * rays[i].direction;
+            const Rgb radiance = transmittance * light.reflected_radiance(light.place(hit.patch, x));
+            found += static_cast<double>(channel_sum(radiance)) * std::numbers::pi;
+        });
+        return found;
+    });
+    return static_cast<float>(sum / rays_to_surfaces);
+}
+
+/// Returns the share of rays to each patch that met it. A patch that got fewer rays than its power suggests faces away
+/// from the points: the missing rays count as hidden.
+std::vector<float> seen_shares(const KnownLight& light, const PathScene& scene, std::span<const SurfacePoint> points,
+                               std::uint64_t key) {
+    struct Sent {
+        std::uint32_t patch = none;
+        bool arrives = false;
+    };
+    std::vector<Sent> sent(rays_to_bright_places);
+    parallel_for_ranges(sent.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
+        std::vector<Ray> rays;
+        std::vector<std::size_t> index;  // in `sent`
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto words = random_words(mix(key, 1), i), places = random_words(mix(key, 2), i);
+            const SurfacePoint& p = random_one(points, words[0]);
+            const KnownLight::Place place =
+                light.sample(p.position, p.normal, unit_float(words[1]), unit_float(places[0]), unit_float(places[1]));
+            if (place.patch == none) continue;
+            const V3f to = scene.geometry[place.patch].point(place.parameters) - p.position;
+            if (!(p.normal.dot(to) > 0 && scene.geometry[place.patch].normal().dot(to) < 0)) continue;
+            sent[i].patch = place.patch;
+            rays.push_back({p.position, to.normalized()});
+            index.push_back(i);
+        }
+        trace(scene, rays, [&](std::size_t i, const Hit& hit, const Rgb&) {
+            if (hit.patch == sent[index[i]].patch) sent[index[i]].arrives = true;
+        });
+    });
+    std::vector<float> rays(scene.geometry.size(), 0.0f), share(scene.geometry.size(), 1.0f);
+    for (const Sent& s : sent) {
+        if (s.patch == none) continue;
+        ++rays[s.patch];
+        if (s.arrives) ++share[s.patch];
+    }
+    const std::span<const float> powers = light.sampling_powers();
+    const double power = std::accumulate(powers.begin(), powers.end(), 0.0);
+    const auto rays_per_power = static_cast<float>(power > 0 ? rays_to_bright_places / power : 0);
+    for (std::size_t i = 0; i < share.size(); ++i) share[i] /= 1 + std::max(rays[i], rays_per_power * powers[i]);
+    return share;
+}
+
+}  // namespace
+
+void sample_seen_light(KnownLight& light, const PathScene& scene, std::span<const SurfacePoint> points) {
+    if (points.empty()) return;
+    light.sample_brighter_than(bright_over_mean * mean_radiosity(light, scene, points));
+    // Without the hidden patches of the first round, the second sends enough rays to the others.
+    for (const std::uint64_t round : {0, 1}) light.weigh(seen_shares(light, scene, points, mix(key_of(scene), round)));
+}
+
+}  // namespace interflect::detail
