@@ -15,7 +15,7 @@ namespace {
 
 constexpr int bar_width = 24;
 constexpr double seconds_between_lines = 2;  // if stderr is not a terminal
-constexpr double min_fraction = 1e-5;        // of the work; below, the remaining time is unknown
+constexpr double min_fraction = 1e-5;        // of the work between two reports that tell the remaining time
 
 }  // namespace
 
@@ -50,14 +50,20 @@ ProgressBar::~ProgressBar() {
         print_progress(not_shown_);
 }
 
+std::string ProgressBar::time_left(const WorkDone& work) {
+    if (work.fraction >= 1) return duration(0);
+    if (!first_) first_ = work;
+    const double done = work.fraction - first_->fraction;
+    if (done < min_fraction) return "-";
+    return duration((work.seconds - first_->seconds) / done * (1 - work.fraction));
+}
+
 void ProgressBar::show(const WorkDone& work) {
     const double fraction = work.fraction;
     const std::string error = work.error ? "error " + percent(*work.error) + ", " : std::string();
-    const std::string left =
-        fraction > min_fraction ? duration(work.seconds / fraction * (1 - fraction)) : std::string("-");
     const std::string text =
         fmt::format("{:3.0f}%  {} rays, {}/s, {}{} left", 100 * fraction, magnitude(static_cast<double>(work.rays)),
-                    magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, left);
+                    magnitude(static_cast<double>(work.rays) / std::max(work.seconds, 1e-9)), error, time_left(work));
     if (terminal_) {
         const auto filled = static_cast<std::size_t>(std::lround(bar_width * fraction));
         print_progress(

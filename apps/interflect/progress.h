@@ -25,7 +25,11 @@ class ProgressBar {
     void show(const WorkDone& work);
 
   private:
+    /// From the speed since the first report: before it, work was prepared.
+    std::string time_left(const WorkDone& work);
+
     bool terminal_;
+    std::optional<WorkDone> first_;
     double last_shown_ = -1e9;  // [s]
     std::string not_shown_;     // a later line
 };
