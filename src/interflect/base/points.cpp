@@ -39,6 +39,21 @@ constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::arra
 constexpr std::array<Directions, 4> directions = {sobol_directions(0, 0, {}), sobol_directions(1, 0, {1}),
                                                   sobol_directions(2, 1, {1, 3}), sobol_directions(3, 1, {1, 3, 1})};
 
+/// Sobol' words of the numbers 0 to 255 and of 256 times them, by number and dimension.
+using WordsOfByte = std::array<std::array<std::uint32_t, 4>, 256>;
+
+constexpr WordsOfByte words_of_byte(std::size_t shift) {
+    WordsOfByte words{};
+    for (std::size_t byte = 1; byte < words.size(); ++byte) {
+        const auto lowest = static_cast<std::size_t>(std::countr_zero(byte));
+        for (std::size_t d = 0; d < 4; ++d)
+            words[byte][d] = words[byte & (byte - 1)][d] ^ directions[d][shift + lowest];
+    }
+    return words;
+}
+
+constexpr std::array<WordsOfByte, 2> words_of_bytes{words_of_byte(0), words_of_byte(8)};
+
 /// Owen scrambling of bit-reversed numbers: each bit depends only on itself and lower bits. Form of Laine and Karras
 /// 2011, constants of N. Vegdahl 2021.
 constexpr std::uint32_t nested_permutation(std::uint32_t x, std::uint32_t seed) {
@@ -102,13 +117,15 @@ std::array<float, 4> shuffled_point(std::uint64_t key, std::uint32_t index) {
     const auto order_seed = static_cast<std::uint32_t>(mix(key, order) >> 32);
     const std::uint32_t place =
         (reverse_bits(nested_permutation(reverse_bits(index), order_seed)) & shuffled_bits) | (index & ~shuffled_bits);
+    std::array<std::uint32_t, 4> words{};
+    for (std::size_t d = 0; d < 4; ++d)
+        words[d] = words_of_bytes[0][place & 0xff][d] ^ words_of_bytes[1][place >> 8 & 0xff][d];
+    for (std::uint32_t bits = place & ~shuffled_bits; bits != 0; bits &= bits - 1)
+        for (std::size_t d = 0; d < 4; ++d) words[d] ^= directions[d][static_cast<std::size_t>(std::countr_zero(bits))];
     std::array<float, 4> point;
     for (std::size_t d = 0; d < 4; ++d) {
-        std::uint32_t word = 0;
-        for (std::uint32_t bits = place; bits != 0; bits &= bits - 1)
-            word ^= directions[d][static_cast<std::size_t>(std::countr_zero(bits))];
         const auto seed = static_cast<std::uint32_t>(mix(key, d) >> 32);
-        point[d] = unit_float(reverse_bits(nested_permutation(word, seed)));
+        point[d] = unit_float(reverse_bits(nested_permutation(words[d], seed)));
     }
     return point;
 }
