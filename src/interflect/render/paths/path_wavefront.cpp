@@ -25,6 +25,10 @@ constexpr std::uint32_t gathered_shadow_rays = 4;
 /// For hybrid shading: error of filtered pixels in office-graz, 16 samples: one ray 8.8%, two 6.5%, four 5.5% in 1.1
 /// and 1.4 times the time of one.
 constexpr std::uint32_t hybrid_shadow_rays = 4;
+/// Paths of a record for each ray to a bright place. Two take 0.89 to 0.97 of the time of one in five scenes, with
+/// equal errors; four up to 1.05 times the error in blocks of 9 pixels.
+constexpr std::uint32_t record_paths_per_place = 2;
+
 /// Uniform in the gauge's parallelogram, moved to its patch.
 V3f start_on(const PathScene& s, const Gauge& gauge, float u, float v) {
     if (gauge.patch == none) return gauge.position;
@@ -359,7 +363,9 @@ bool PathWavefront::end_at_known_light(const Hit& hit, const Ray& ray, const Pat
 }
 
 void PathWavefront::connect_to_known_light(const V3f& x, const Path& path) {
-    const PlaceSample sample = place_sample(sequence(path).key, vertex_, point_index(path));
+    const std::uint32_t point = point_index(path), paths = paths_per_place();
+    if (point % paths != 0) return;
+    const PlaceSample sample = place_sample(sequence(path).key, vertex_, point / paths);
     const KnownLight::Place place = s_.known->sample(x, path.normal, sample.patch, sample.u, sample.v);
     if (place.patch == none) return;
     const V3f to_light = s_.geometry[place.patch].point(place.parameters) - x;
@@ -380,7 +386,8 @@ void PathWavefront::connect_to_known_light(const V3f& x, const Path& path) {
 float PathWavefront::density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                                      float distance2) const {
     const float cosine = -s_.geometry[place.patch].normal().dot(direction);
-    return cosine > 0 ? s_.known->density(place, x, n) * distance2 / cosine : 0;
+    if (!(cosine > 0)) return 0;
+    return s_.known->density(place, x, n) * distance2 / (cosine * static_cast<float>(paths_per_place()));
 }
 
 void PathWavefront::add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance) {
@@ -388,6 +395,8 @@ void PathWavefront::add(std::uint32_t index, std::uint32_t bounces, const Rgb& r
     PathLight& light = light_[index];
     (bounces == 0 ? light.emitted : bounces == 1 ? light.direct : light.indirect) += radiance;
 }
+
+std::uint32_t PathWavefront::paths_per_place() const { return s_.is_indirect_only ? record_paths_per_place : 1; }
 
 std::uint32_t PathWavefront::shadow_rays_at(std::uint32_t vertex) const {
     if (vertex == 1 && s_.is_indirect_only) return 0;

@@ -211,7 +211,9 @@ class PathWavefront {
     static bool is_unoccluded(const Connection& connection, const Hit& hit);
     /// Returns whether the path ends.
     bool end_at_known_light(const Hit& hit, const Ray& ray, const Path& path);
-    /// Returns the density of KnownLight::sample() [1/sr].
+    /// Paths for each ray to a place of KnownLight::sample().
+    std::uint32_t paths_per_place() const;
+    /// Returns the density of KnownLight::sample() [1/sr], per path.
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                           float distance2) const;
     void connect_to_known_light(const V3f& x, const Path& path);
