@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "interflect/base/random.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/render/lights/unoccluded_light.h"
+#include "interflect/render/paths/traced_scene.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
@@ -170,6 +172,46 @@ TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
         EXPECT_LT(std::sqrt(squares / static_cast<double>(hybrid.image.pixels.size())), 0.0115);
         EXPECT_NEAR(mean_of(hybrid.layers.reflected.indirect), 60, 0.3);
     }
+}
+
+/// A known spot on the ceiling of a dim room gives about half of the indirect light on its floor. Seen to fail when
+/// the density of rays to bright places lacks the number of paths for each, or counts them twice.
+TEST(Hybrid, FindsTheIndirectLightOfABrightSpot) {
+    const Scene scene = closed_box({4, 3, 2.5f}, 16, {Material{"", Rgb(0.5f)}});
+    const RayCaster ray_caster(scene);
+    const ElementForest forest(scene, scene.patches.size());
+    std::vector<Rgb> irradiance(scene.patches.size(), Rgb(1));
+    const std::size_t middle_of_ceiling = 5 * 16 * 16 + 8 * 16 + 8;
+    irradiance[middle_of_ceiling] = Rgb(200);
+    const KnownIrradiance known{forest, irradiance, true};
+    const TracedScene traced(scene, ray_caster, &known);
+    std::vector<Gauge> gauges;
+    std::vector<double> exact;
+    for (std::uint64_t i = 0; i < 100; ++i) {
+        const auto words = random_words(3, i);
+        const V3f x(1 + 2 * unit_float(words[0]), 1 + unit_float(words[1]), 0.01f), up(0, 0, 1);
+        gauges.push_back({.position = x, .normal = up, .side_u = {0.05f, 0, 0}, .side_v = {0, 0.05f, 0}});
+        exact.push_back(0);
+        for (std::size_t p = 0; p < scene.patches.size(); ++p) {
+            std::vector<V3f> corners;
+            for (const std::uint32_t v : scene.patches[p].vertices) corners.push_back(scene.vertices[v]);
+            exact.back() +=
+                static_cast<double>(polygon_irradiance(corners, x, up) * irradiance[p].x) * 0.5 / std::numbers::pi;
+        }
+    }
+    double ratio = 0;
+    constexpr int seeds = 4;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        PathOptions options{.samples = 16, .quantity = PathQuantity::irradiance};
+        options.seed = seed;
+        const std::vector<Rgb> found = hybrid_irradiance(traced, gauges, options, {});
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            const double relative = static_cast<double>(found[i].x) / exact[i];
+            EXPECT_NEAR(relative, 1, 0.1);
+            ratio += relative / static_cast<double>(seeds * found.size());
+        }
+    }
+    EXPECT_NEAR(ratio, 1, 0.01);
 }
 
 /// Without occluders, direct light is exact in every pixel.
