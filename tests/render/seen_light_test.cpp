@@ -1,7 +1,7 @@
-// Which bright elements are sampled for final gathering: those that the points of a picture see.
+// Selection of bright elements for final gathering, by their visibility from the points of a picture.
 //
-// Seen to fail: all patches keep their power; those that no test ray is sent to keep it; few rays leave a patch out;
-// the limit is twice the mean over all surfaces.
+// Seen to fail: hidden patches keep their power; patches without test rays keep their power; one lost ray removes a
+// patch; the limit is twice the mean over all surfaces.
 #include "interflect/render/paths/seen_light.h"
 
 #include <gtest/gtest.h>
@@ -31,8 +31,7 @@ struct House {
 
     explicit House(bool has_outside) {
         irradiance.assign(scene.patches.size(), Rgb(1));
-        for (std::size_t i = 0; i < 4; ++i)
-            irradiance[i] = irradiance[8 + i] = Rgb(9), irradiance[spot + i] = Rgb(100);
+        for (std::size_t i = 0; i < 4; ++i) irradiance[i] = irradiance[8 + i] = Rgb(9), irradiance[spot + i] = Rgb(100);
         if (has_outside) {
             add_rectangle(scene, {-0.1f, 0, 0}, {0, 0, 3}, {0, 4, 0}, 0, 2, 2);
             add_rectangle(scene, {0, -0.1f, 0}, {4, 0, 0}, {0, 0, 3}, 0, 2, 2);
@@ -71,7 +70,7 @@ TEST(SeenLight, IsThatOfARoomAlsoIfTheSunShinesOutside) {
     EXPECT_GT(House(true).share_of_spot(), 0.8 * without_outside);
 }
 
-/// Thousands of bright patches get about one ray each, by chance more or none: none may be left out.
+/// Thousands of bright patches get about one test ray each, and many get 0, but all must stay likely.
 TEST(SeenLight, SamplesManySmallPatchesAlike) {
     Scene scene = closed_box({4, 4, 3}, 4, {Material{"", Rgb(0.5f)}});
     const auto dim = static_cast<std::uint32_t>(scene.patches.size());

@@ -16,7 +16,7 @@ namespace interflect::detail {
 /// Constant methods are thread-safe.
 class KnownLight {
   public:
-    /// Samples nothing yet.
+    /// sample() returns no place until sample_brighter_than().
     /// @param irradiance  Per element; only leaves are used. Arguments must outlive this.
     KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
                std::span<const Rgb> irradiance);
@@ -26,7 +26,7 @@ class KnownLight {
     /// Multiplies sampling_powers(). @param weights  Above 0, per patch.
     void weigh(std::span<const float> weights);
 
-    /// sample() selects patches as if they emitted this, sum of channels [lm or W].
+    /// Emitted power of each patch, as sample() assumes, sum of channels [lm or W].
     std::span<const float> sampling_powers() const { return power_; }
 
     struct Place {

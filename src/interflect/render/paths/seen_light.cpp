@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum reflected radiosity of sampled elements, relative to the mean that the points see. Sampling dimmer ones adds
+/// Minimum reflected radiosity of sampled elements, relative to the visible mean. Sampling dimmer ones adds
 /// noise, since directions find them well (Karlik et al. 2019): in a furnace, irradiance of 128 paths then varies
 /// by 2.6% in place of 1.8%.
 constexpr float bright_over_mean = 2;

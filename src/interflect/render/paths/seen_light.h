@@ -9,8 +9,8 @@ namespace interflect::detail {
 
 struct PathScene;
 
-/// Makes light.sample() suit the points, by rays from random ones: it finds elements that are brighter than twice the
-/// mean of what they see, and seldom those of patches that are hidden from them, such as sunlit walls outdoors.
+/// Adapts light.sample() to the points, by rays from random ones: it returns elements brighter than twice the mean
+/// radiosity visible from them, and seldom an element of a hidden patch, such as a sunlit wall outdoors.
 /// @param scene  Only its ray caster, panes, geometry and seed are used.
 void sample_seen_light(KnownLight& light, const PathScene& scene, std::span<const SurfacePoint> points);
 

@@ -36,7 +36,7 @@ class TracedScene {
     /// Without known light. @param start, options  Must outlive the result.
     PathScene paths(const PathStart& start, const PathOptions& options, std::size_t batch_size) const;
 
-    /// Returns the known irradiance, to be sampled where random ones of `points` see bright elements.
+    /// Returns the known irradiance, with sampling adapted to the points (sample_seen_light()).
     KnownLight known_light(const PathScene& paths, std::span<const SurfacePoint> points) const;
 
     /// Paths per batch, a power of two, for at least this number of batches.
