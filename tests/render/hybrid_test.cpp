@@ -204,9 +204,9 @@ TEST(Hybrid, FindsTheIndirectLightOfABrightSpot) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         PathOptions options{.samples = 16, .quantity = PathQuantity::irradiance};
         options.seed = seed;
-        const std::vector<Rgb> found = hybrid_irradiance(traced, gauges, options, {});
+        const std::vector<GaugeLight> found = hybrid_irradiance(traced, gauges, options, {});
         for (std::size_t i = 0; i < found.size(); ++i) {
-            const double relative = static_cast<double>(found[i].x) / exact[i];
+            const double relative = static_cast<double>(found[i].irradiance().x) / exact[i];
             EXPECT_NEAR(relative, 1, 0.1);
             ratio += relative / static_cast<double>(seeds * found.size());
         }

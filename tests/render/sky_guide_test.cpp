@@ -81,7 +81,7 @@ std::vector<double> errors_below(const KnownSky& sky, bool has_glass, std::uint6
     }
     PathOptions options;
     options.samples = samples, options.seed = seed, options.quantity = PathQuantity::irradiance;
-    const std::vector<Rgb> found = hybrid_irradiance(traced, gauges, options, {});
+    const std::vector<GaugeLight> found = hybrid_irradiance(traced, gauges, options, {});
     std::vector<double> exact;
     double mean = 0;
     for (const Gauge& gauge : gauges) {
@@ -90,7 +90,7 @@ std::vector<double> errors_below(const KnownSky& sky, bool has_glass, std::uint6
     }
     std::vector<double> errors;
     for (std::size_t i = 0; i < gauges.size(); ++i)
-        errors.push_back((static_cast<double>(found[i].x) - exact[i]) / (mean > 0 ? mean : 1));
+        errors.push_back((static_cast<double>(found[i].irradiance().x) - exact[i]) / (mean > 0 ? mean : 1));
     return errors;
 }
 
@@ -145,7 +145,7 @@ TEST(UniformSky, IsUnbiasedForAnyNumberOfSamples) {
         PathOptions options;
         options.samples = count, options.quantity = PathQuantity::irradiance;
         double sum = 0, squares = 0;
-        for (const GaugeLight& light : direct_irradiance(traced, gauges, options, {})) {
+        for (const SampledIrradiance& light : direct_irradiance(traced, gauges, options, {})) {
             const double relative = static_cast<double>(light.irradiance.x) / (pi * 100) - 1;
             sum += relative, squares += relative * relative;
         }

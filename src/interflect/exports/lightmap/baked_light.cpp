@@ -6,6 +6,7 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/measure.h"
+#include "interflect/render.h"
 
 namespace interflect::detail {
 
@@ -15,6 +16,40 @@ namespace {
 /// would otherwise start in its plane.
 constexpr float inset = 0.05f;
 constexpr int gathered_directions = 64;
+
+SampledLight no_light(int width, int height) {
+    const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    return {Image(width, height), Image(width, height), std::vector<float>(count), std::vector<float>(count)};
+}
+
+/// Removes noise of direct light in a grid.
+void filter(const PointGrid& grid, std::span<const Gauge> gauges, std::span<const GaugeLight> light, float spacing,
+            std::span<Rgb> irradiance) {
+    const int width = grid.width, height = static_cast<int>(grid.points.size()) / width;
+    PictureLayers layers;
+    layers.is_indirect_interpolated = true;
+    layers.pixel_size = spacing;
+    for (Image* image : {&layers.emitted, &layers.albedo, &layers.normal, &layers.position})
+        *image = Image(width, height);
+    for (SampledLight* l : {&layers.reflected, &layers.halves[0], &layers.halves[1]}) *l = no_light(width, height);
+    layers.depth.resize(grid.points.size());
+    for (std::size_t i = 0; i < grid.points.size(); ++i) {
+        const std::uint32_t point = grid.points[i];
+        if (point == none) continue;
+        layers.depth[i] = 1;
+        layers.albedo.pixels[i] = Rgb(1);
+        layers.normal.pixels[i] = gauges[point].normal;
+        layers.position.pixels[i] = gauges[point].position;
+        layers.reflected.indirect.pixels[i] = light[point].indirect;
+        for (std::size_t h = 0; h < 2; ++h) {
+            layers.halves[h].direct.pixels[i] = light[point].halves[h].irradiance;
+            layers.halves[h].direct_variance[i] = light[point].halves[h].squared_error;
+        }
+    }
+    const Image filtered = denoise(layers);
+    for (std::size_t i = 0; i < grid.points.size(); ++i)
+        if (grid.points[i] != none) irradiance[grid.points[i]] = filtered.pixels[i];
+}
 
 }  // namespace
 
@@ -32,10 +67,17 @@ BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeO
     if (options.shading == BakeShading::hybrid || sampling.is_tested) traced_.emplace(scene, *ray_caster_, &known_);
 }
 
-std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, float spacing,
-                                        const Monitor& monitor) const {
-    if (options_.shading == BakeShading::hybrid)
-        return hybrid_irradiance(*traced_, gauges(points, spacing), path_options(), monitor);
+std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids,
+                                        float spacing, const Monitor& monitor) const {
+    if (options_.shading == BakeShading::hybrid) {
+        const std::vector<Gauge> places = gauges(points, spacing);
+        const std::vector<GaugeLight> light = hybrid_irradiance(*traced_, places, path_options(), monitor);
+        std::vector<Rgb> values;
+        values.reserve(light.size());
+        for (const GaugeLight& l : light) values.push_back(l.irradiance());
+        for (const PointGrid& grid : grids) filter(grid, places, light, spacing, values);
+        return values;
+    }
     if (options_.shading == BakeShading::gather) return gathered(points, spacing, monitor);
     std::vector<Rgb> values(points.size());
     constexpr std::size_t points_per_task = 1 << 12;
@@ -45,8 +87,8 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, floa
     return values;
 }
 
-std::vector<GaugeLight> BakedLight::direct(std::span<const BakedPoint> points, float spacing, int max_samples,
-                                           const Monitor& monitor) const {
+std::vector<SampledIrradiance> BakedLight::direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+                                                  const Monitor& monitor) const {
     PathOptions options = path_options();
     options.samples = std::min(options.samples, max_samples);
     return direct_irradiance(*traced_, gauges(points, spacing), options, monitor);

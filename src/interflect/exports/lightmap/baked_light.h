@@ -30,6 +30,12 @@ struct DirectSampling {
     bool is_tested;    ///< BakedLight::direct() is called.
 };
 
+/// Neighbouring points on a surface: indices, row by row; none where there is no surface.
+struct PointGrid {
+    int width;
+    std::vector<std::uint32_t> points;
+};
+
 /// Irradiance of points by the chosen shading.
 class BakedLight {
   public:
@@ -37,12 +43,14 @@ class BakedLight {
     BakedLight(const Scene& scene, const Solution& solution, const BakeOptions& options,
                const DirectSampling& sampling);
 
+    /// @param grids    In which noise of hybrid shading is filtered.
     /// @param spacing  Distance between the points; rays start a twentieth of it inside their patch [m].
     /// @return         [as H], per point. @throws Stopped
-    std::vector<Rgb> irradiance(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const;
+    std::vector<Rgb> irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids, float spacing,
+                                const Monitor& monitor) const;
     /// Direct light of hybrid shading, if DirectSampling::is_tested; not for BakeShading::smooth.
-    std::vector<GaugeLight> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
-                                   const Monitor& monitor) const;
+    std::vector<SampledIrradiance> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+                                          const Monitor& monitor) const;
     /// As by SmoothField.
     Rgb interpolated(const BakedPoint& point) const { return smooth_.at(point.patch, point.at); }
 

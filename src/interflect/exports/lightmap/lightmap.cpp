@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "interflect/base/monitor_section.h"
 #include "interflect/base/parallel.h"
@@ -179,11 +180,15 @@ class LightmapTexels {
         const int columns = chart.columns + 2 * options_.gutter;
         const std::vector<std::size_t> copied = copied_texels(places, static_cast<std::size_t>(columns));
         std::vector<std::size_t> place_index(places.size());
+        PointGrid grid{columns, std::vector<std::uint32_t>(places.size(), none)};
         for (std::size_t i = 0; i < places.size(); ++i) {
             place_index[i] = places_.size();
-            if (copied[i] == i) places_.push_back(places[i]);
             texels_inside_ += places[i].is_inside;
+            if (copied[i] != i) continue;
+            grid.points[i] = static_cast<std::uint32_t>(places_.size());
+            places_.push_back(places[i]);
         }
+        grids_.push_back(std::move(grid));
         for (std::size_t i = 0; i < places.size(); ++i) {
             const int column = chart.left - options_.gutter + static_cast<int>(i) % columns;
             const int row = chart.top - options_.gutter + static_cast<int>(i) / columns;
@@ -192,7 +197,7 @@ class LightmapTexels {
     }
     void evaluate(const Scene& scene, const BakedLight& light, const Monitor& monitor,
                   std::vector<Image>& images) const {
-        const std::vector<Rgb> irradiance = light.irradiance(places_, 1 / options_.texels_per_metre, monitor);
+        const std::vector<Rgb> irradiance = light.irradiance(places_, grids_, 1 / options_.texels_per_metre, monitor);
         for (const Target& target : targets_)
             images[target.page].at(target.column, target.row) =
                 content_of(scene, places_[target.place], irradiance[target.place], options_.content);
@@ -208,6 +213,7 @@ class LightmapTexels {
 
     const LightmapOptions& options_;
     std::vector<BakedPoint> places_;
+    std::vector<PointGrid> grids_;  // of charts
     std::vector<Target> targets_;
     std::int64_t texels_inside_ = 0;
 };
@@ -242,18 +248,21 @@ double texel_count(const LightmapChart& chart, int gutter) {
 }
 
 /// @param image_texels  Of all images. @param chart_texels  With gutters.
-void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, bool gathers,
+void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, BakeShading shading,
                     std::size_t groups) {
     constexpr double encoded_bytes = 16, target_bytes = 16;
     // Per image texel: itself, a copy to encode.
     constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
     // Per chart texel: two copies of its place, target, light.
     constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb),
+                     hybrid_bytes = sizeof(SurfacePoint) + sizeof(Gauge) + sizeof(GaugeLight) + sizeof(Rgb),
                      gathered_bytes =
                          path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);
+    const bool gathers = shading == BakeShading::gather;
+    const double shading_bytes = gathers ? gathered_bytes : shading == BakeShading::hybrid ? hybrid_bytes : 0;
     const double bytes =
         image_texels * (image_bytes + (options.groups ? static_cast<double>(groups) * group_bytes : 0)) +
-        chart_texels * (texel_bytes + (gathers ? gathered_bytes : 0));
+        chart_texels * (texel_bytes + shading_bytes);
     if (bytes > static_cast<double>(options.max_bytes))
         throw InputError(
             fmt::format("lightmap: {:.3g} million texels need {:.0f} MiB of memory, the limit (max_bytes) is {} MiB: "
@@ -283,8 +292,7 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     double image_texels = 0, chart_texels = 0;
     for (const Imath::V2i& size : sizes) image_texels += static_cast<double>(size.x) * size.y;
     for (const LightmapChart& chart : lightmap.charts) chart_texels += texel_count(chart, lightmap_options.gutter);
-    require_memory(image_texels, chart_texels, lightmap_options, options.bake.shading == BakeShading::gather,
-                   solution.groups.size());
+    require_memory(image_texels, chart_texels, lightmap_options, options.bake.shading, solution.groups.size());
     for (const Imath::V2i& size : sizes) lightmap.images.emplace_back(size.x, size.y);
     LightmapTexels texels(lightmap_options);
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {

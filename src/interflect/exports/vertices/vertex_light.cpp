@@ -198,10 +198,10 @@ class Division {
     }
 
     /// Emission of textures counts as direct light.
-    GaugeLight direct_at(std::uint32_t e, Parameters local) const {
+    SampledIrradiance direct_at(std::uint32_t e, Parameters local) const {
         const std::uint32_t patch = forest_->patch(e);
         const Parameters at = forest_->cell(e).at(local.u, local.v);
-        GaugeLight light = direct_[known_.at({patch, at})];
+        SampledIrradiance light = direct_[known_.at({patch, at})];
         light.irradiance += exitance_at(scene_, scene_.patches[patch], at);
         return light;
     }
@@ -212,8 +212,8 @@ class Division {
         double largest = 0;
         const std::span<const Parameters> corners = corners_of(is_triangle(e));
         for (const auto& [first, second, at] : middles_of(is_triangle(e))) {
-            const GaugeLight a = direct_at(e, corners[first]), b = direct_at(e, corners[second]),
-                             middle = direct_at(e, at);
+            const SampledIrradiance a = direct_at(e, corners[first]), b = direct_at(e, corners[second]),
+                                    middle = direct_at(e, at);
             const Rgb error = middle.irradiance - 0.5f * (a.irradiance + b.irradiance);
             const double size = (std::abs(error.x) + std::abs(error.y) + std::abs(error.z)) / 3.0;
             const double noise = std::sqrt(middle.squared_error + 0.25 * (a.squared_error + b.squared_error));
@@ -234,7 +234,7 @@ class Division {
     std::vector<float> edges_;                             // longest of each patch [m]
     double triangles_ = 0;                                 // about
     std::unordered_map<Key, std::size_t, KeyHash> known_;  // in direct_
-    std::vector<GaugeLight> direct_;
+    std::vector<SampledIrradiance> direct_;
 };
 
 /// One point per vertex, on its first shown patch.
@@ -280,7 +280,7 @@ VertexLight make_vertex_light(const Scene& scene, const Solution& solution, cons
     const auto forest = division.run(monitor_section(options.monitor, 0, share_of_division));
     ElementVertices vertices(scene, *forest);
     const VertexPoints points(*forest, vertices, shown, options.vertices);
-    const std::vector<Rgb> irradiance = light.irradiance(points.points(), spacing_of(options.vertices),
+    const std::vector<Rgb> irradiance = light.irradiance(points.points(), {}, spacing_of(options.vertices),
                                                          monitor_section(options.monitor, share_of_division, 1));
     const auto at_corner = [&](std::uint32_t leaf, std::uint32_t corner) {
         const std::uint32_t i = points.number(vertices.corners(leaf)[corner]);

@@ -105,14 +105,33 @@ namespace {
 /// Traces the gauges `first`, ... Returns the number of rays.
 std::int64_t trace_gauges(const PathScene& paths, std::size_t first, std::span<GaugeLight> irradiance) {
     const auto size = static_cast<std::uint32_t>(paths.batch_size);
-    std::vector<PartStatistics> light(irradiance.size());
+    struct Light {
+        PartStatistics direct, indirect;
+        std::array<PartStatistics, 2> halves;  // of even and odd batches
+    };
+    std::vector<Light> light(irradiance.size());
+    const auto sampled = [](const PartStatistics& s, float squared_error) {
+        return SampledIrradiance{Rgb(s.mean), squared_error};
+    };
+    const auto result = [&](const Light& l) {
+        const auto error = static_cast<float>(l.direct.squared_error());
+        GaugeLight of_gauge{sampled(l.direct, error), {}, Rgb(l.indirect.mean)};
+        for (std::size_t h = 0; h < 2; ++h)
+            of_gauge.halves[h] = l.halves[h].batches > 0 ? sampled(l.halves[h], 2 * error) : of_gauge.direct;
+        return of_gauge;
+    };
     std::vector<BatchOfPaths> batches;
     std::int64_t rays = 0;
     const auto trace = [&] {
         PathWavefront wavefront(paths);
         wavefront.trace(batches);
         rays += wavefront.counts().rays;
-        for (const BatchOfPaths& b : batches) light[b.pixel - first].add((b.direct + b.indirect) / size);
+        for (const BatchOfPaths& b : batches) {
+            Light& l = light[b.pixel - first];
+            l.halves[l.direct.batches % 2].add(b.direct / size);
+            l.direct.add(b.direct / size);
+            l.indirect.add(b.indirect / size);
+        }
     };
     const auto add_batches = [&](std::size_t i, std::size_t from, std::size_t to) {
         for (std::size_t k = from; k < to; ++k)
@@ -127,11 +146,11 @@ std::int64_t trace_gauges(const PathScene& paths, std::size_t first, std::span<G
     trace();
     batches.clear();
     for (std::size_t i = 0; i < irradiance.size(); ++i)
-        if (std::sqrt(light[i].squared_error()) > target * mean_channel(light[i].mean))
+        if (std::sqrt(light[i].direct.squared_error()) >
+            target * mean_channel(light[i].direct.mean + light[i].indirect.mean))
             add_batches(i, first_batches, all_batches);
     trace();
-    for (std::size_t i = 0; i < irradiance.size(); ++i)
-        irradiance[i] = {Rgb(light[i].mean), static_cast<float>(light[i].squared_error())};
+    for (std::size_t i = 0; i < irradiance.size(); ++i) irradiance[i] = result(light[i]);
     return rays;
 }
 
@@ -174,8 +193,8 @@ std::size_t batch_size_of_gauges(const PathScene& paths) {
 
 }  // namespace
 
-std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
-                                   const Monitor& monitor) {
+std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
+                                          const PathOptions& options, const Monitor& monitor) {
     const PathStart start = start_at(gauges);
     PathScene paths = scene.paths(start, options, 1);
     paths.batch_size = batch_size_of_gauges(paths);
@@ -187,21 +206,18 @@ std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gau
     paths.indirect_field = &field;
     const SkyGuide guide(paths, field, monitor.stop);
     paths.sky_guide = &guide;
-    std::vector<Rgb> irradiance;
-    irradiance.reserve(gauges.size());
-    for (const GaugeLight& light :
-         trace_all_gauges(paths, monitor_section(monitor, share_of_records, 1, field.rays() + guide.rays())))
-        irradiance.push_back(light.irradiance);
-    return irradiance;
+    return trace_all_gauges(paths, monitor_section(monitor, share_of_records, 1, field.rays() + guide.rays()));
 }
 
-std::vector<GaugeLight> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
-                                          const PathOptions& options, const Monitor& monitor) {
+std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
+                                                 const PathOptions& options, const Monitor& monitor) {
     const PathStart start = start_at(gauges);
     PathScene paths = scene.paths(start, options, 1);
     paths.batch_size = batch_size_of_gauges(paths);
     paths.is_direct_only = true;
-    return trace_all_gauges(paths, monitor);
+    std::vector<SampledIrradiance> direct;
+    for (const GaugeLight& light : trace_all_gauges(paths, monitor)) direct.push_back(light.direct);
+    return direct;
 }
 
 }  // namespace interflect::detail

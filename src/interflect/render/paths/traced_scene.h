@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -63,19 +64,27 @@ constexpr double hybrid_target = 0.06;
 /// @param stop  If set, some points are missing; may be null.
 std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop);
 
+struct SampledIrradiance {
+    Rgb irradiance;           ///< [as H]
+    float squared_error = 0;  ///< Estimated, of the mean of the channels.
+};
+struct GaugeLight {
+    SampledIrradiance direct;
+    std::array<SampledIrradiance, 2> halves;  ///< `direct` from every other batch, and from the rest.
+    Rgb indirect;                             ///< Interpolated [as H].
+
+    Rgb irradiance() const { return direct.irradiance + indirect; }
+};
+
 /// Irradiance of gauges by hybrid shading, with options.samples paths for each. Without skies and extended sources that
 /// only chance finds, two batches of them if the estimated relative error is below options.until or, without it,
 /// hybrid_target.
 /// @param scene  With interpolated KnownIrradiance.
-/// @return       [as H], per gauge; the same bits for any number of threads. @throws Stopped
-std::vector<Rgb> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges, const PathOptions& options,
-                                   const Monitor& monitor);
-struct GaugeLight {
-    Rgb irradiance;
-    float squared_error = 0;  ///< Estimated, of the mean of the channels.
-};
-/// The direct part.
-std::vector<GaugeLight> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
+/// @return       Per gauge; the same bits for any number of threads. @throws Stopped
+std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
                                           const PathOptions& options, const Monitor& monitor);
+/// The direct part.
+std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
+                                                 const PathOptions& options, const Monitor& monitor);
 
 }  // namespace interflect::detail
