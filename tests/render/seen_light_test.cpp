@@ -83,7 +83,7 @@ TEST(SeenLight, SamplesManySmallPatchesAlike) {
     const TracedScene traced(scene, ray_caster, &known);
     const PathStart start;
     const PathOptions options;
-    const std::vector<SurfacePoint> points = {{{2, 2, 0.01f}, {0, 0, 1}, none, 0.01f}};
+    const std::vector<SurfacePoint> points(100'000, {{2, 2, 0.01f}, {0, 0, 1}, none, 0.01f});
     const KnownLight light = traced.known_light(traced.paths(start, options, 1), points);
     const std::span<const float> powers = light.sampling_powers().subspan(dim);
     const auto [least, most] = std::minmax_element(powers.begin(), powers.end());

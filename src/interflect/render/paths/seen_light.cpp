@@ -18,9 +18,13 @@ namespace {
 /// noise, since directions find them well (Karlik et al. 2019): in a furnace, irradiance of 128 paths then varies
 /// by 2.6% in place of 1.8%.
 constexpr float bright_over_mean = 2;
-constexpr std::size_t rays_to_surfaces = 1 << 14, rays_to_bright_places = 1 << 16, rays_per_task = 1 << 10;
+constexpr std::size_t min_rays = 256, max_rays = 1 << 16;  // of a round
+constexpr std::size_t rays_per_task = 1 << 10;
 
 std::uint64_t key_of(const PathScene& scene) { return mix(scene.options.seed, 0x5ee11); }
+
+/// About one per point, a small part of the rays of its records.
+std::size_t rays_for(std::span<const SurfacePoint> points) { return std::clamp(points.size(), min_rays, max_rays); }
 
 const SurfacePoint& random_one(std::span<const SurfacePoint> points, std::uint32_t word) {
     return points[static_cast<std::size_t>((std::uint64_t{word} * points.size()) >> 32)];
@@ -41,7 +45,8 @@ void trace(const PathScene& scene, std::span<const Ray> rays, const auto& visit)
 
 /// Returns the mean of reflected radiosity over cosine-distributed directions, sum of channels.
 float mean_radiosity(const KnownLight& light, const PathScene& scene, std::span<const SurfacePoint> points) {
-    const auto sum = parallel_sum(rays_to_surfaces, rays_per_task, 0.0, [&](std::size_t begin, std::size_t end) {
+    const std::size_t count = rays_for(points);
+    const auto sum = parallel_sum(count, rays_per_task, 0.0, [&](std::size_t begin, std::size_t end) {
         std::vector<Ray> rays;
         for (std::size_t i = begin; i < end; ++i) {
             const auto words = random_words(key_of(scene), i);
@@ -56,7 +61,7 @@ float mean_radiosity(const KnownLight& light, const PathScene& scene, std::span<
         });
         return found;
     });
-    return static_cast<float>(sum / rays_to_surfaces);
+    return static_cast<float>(sum / static_cast<double>(count));
 }
 
 /// Returns the share of rays to each patch that met it. A patch that got fewer rays than its power suggests faces away
@@ -67,7 +72,7 @@ std::vector<float> seen_shares(const KnownLight& light, const PathScene& scene, 
         std::uint32_t patch = none;
         bool arrives = false;
     };
-    std::vector<Sent> sent(rays_to_bright_places);
+    std::vector<Sent> sent(rays_for(points));
     parallel_for_ranges(sent.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<Ray> rays;
         std::vector<std::size_t> index;  // in `sent`
@@ -95,7 +100,7 @@ std::vector<float> seen_shares(const KnownLight& light, const PathScene& scene, 
     }
     const std::span<const float> powers = light.sampling_powers();
     const double power = std::accumulate(powers.begin(), powers.end(), 0.0);
-    const auto rays_per_power = static_cast<float>(power > 0 ? rays_to_bright_places / power : 0);
+    const auto rays_per_power = static_cast<float>(power > 0 ? static_cast<double>(sent.size()) / power : 0);
     for (std::size_t i = 0; i < share.size(); ++i) share[i] /= 1 + std::max(rays[i], rays_per_power * powers[i]);
     return share;
 }
