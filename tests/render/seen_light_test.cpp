@@ -21,6 +21,18 @@ namespace {
 
 using namespace testing_support;
 
+/// Calls visit(light) with the known light for these points.
+void with_known_light(const Scene& scene, const std::vector<Rgb>& irradiance, const std::vector<SurfacePoint>& points,
+                      const auto& visit) {
+    const RayCaster ray_caster(scene);
+    const ElementForest forest(scene, scene.patches.size());
+    const KnownIrradiance known{forest, irradiance};
+    const TracedScene traced(scene, ray_caster, &known);
+    const PathStart start;
+    const PathOptions options;
+    visit(traced.known_light(traced.paths(start, options, 1), points));
+}
+
 /// A room with a small sunlit spot on its floor and two walls of medium brightness. Outside, their backs are in the
 /// sun.
 struct House {
@@ -46,20 +58,15 @@ struct House {
 
     /// Share of samples that find the spot.
     double share_of_spot() const {
-        const RayCaster ray_caster(scene);
-        const ElementForest forest(scene, scene.patches.size());
-        const KnownIrradiance known{forest, irradiance};
-        const TracedScene traced(scene, ray_caster, &known);
-        const PathStart start;
-        const PathOptions options;
-        const KnownLight light = traced.known_light(traced.paths(start, options, 1), points);
         int found = 0;
-        for (std::uint64_t i = 0; i < points.size(); ++i) {
-            const auto words = random_words(8, i);
-            const KnownLight::Place place = light.sample(points[i].position, points[i].normal, unit_float(words[0]),
-                                                         unit_float(words[1]), unit_float(words[2]));
-            found += place.patch >= spot && place.patch < spot + 4;
-        }
+        with_known_light(scene, irradiance, points, [&](const KnownLight& light) {
+            for (std::uint64_t i = 0; i < points.size(); ++i) {
+                const auto words = random_words(8, i);
+                const KnownLight::Place place = light.sample(points[i].position, points[i].normal, unit_float(words[0]),
+                                                             unit_float(words[1]), unit_float(words[2]));
+                found += place.patch >= spot && place.patch < spot + 4;
+            }
+        });
         return found / static_cast<double>(points.size());
     }
 };
@@ -77,17 +84,12 @@ TEST(SeenLight, SamplesManySmallPatchesAlike) {
     add_rectangle(scene, {1, 1, 2.9f}, {0, 2, 0}, {2, 0, 0}, 0, 400, 400);
     std::vector<Rgb> irradiance(scene.patches.size(), Rgb(100));
     std::fill_n(irradiance.begin(), dim, Rgb(1));
-    const RayCaster ray_caster(scene);
-    const ElementForest forest(scene, scene.patches.size());
-    const KnownIrradiance known{forest, irradiance};
-    const TracedScene traced(scene, ray_caster, &known);
-    const PathStart start;
-    const PathOptions options;
     const std::vector<SurfacePoint> points(100'000, {{2, 2, 0.01f}, {0, 0, 1}, none, 0.01f});
-    const KnownLight light = traced.known_light(traced.paths(start, options, 1), points);
-    const std::span<const float> powers = light.sampling_powers().subspan(dim);
-    const auto [least, most] = std::minmax_element(powers.begin(), powers.end());
-    EXPECT_GT(*least, *most / 20);
+    with_known_light(scene, irradiance, points, [&](const KnownLight& light) {
+        const std::span<const float> powers = light.sampling_powers().subspan(dim);
+        const auto [least, most] = std::minmax_element(powers.begin(), powers.end());
+        EXPECT_GT(*least, *most / 20);
+    });
 }
 
 }  // namespace
