@@ -19,8 +19,10 @@ namespace {
 constexpr std::size_t paths_per_group = 16, min_groups = 8, max_groups = 64;
 /// Groups of a record: groups_per_deviation x sigma / E x reach / spacing, with the standard deviation sigma of a group
 /// and all irradiance E at the record, but at least min_share_of_mean of the mean E. This minimises the squared error
-/// of the picture per ray (Neyman allocation): a record affects all pixels in its reach.
+/// of the picture per ray (Neyman allocation): a record affects all pixels in its reach. Bakes are seen from anywhere:
+/// there the geometric mean keeps a sunlit ground from hiding the noise of rooms, and no error exceeds max_baked_error.
 constexpr float groups_per_deviation = 7, min_share_of_mean = 0.25f;
+constexpr float max_baked_error = 0.1f;  // standard error of a record
 /// Reach of a record, relative to the harmonic mean length of its rays; limits in spacings of the points. With 0.35 and
 /// 512 paths, errors are 1.1 to 1.8 times as large.
 constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
@@ -162,15 +164,15 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
 
 void IndirectField::refine_noisy_records(const PathScene& scene, const std::atomic<bool>* stop) {
     if (records_.empty()) return;
-    double sum = 0;
-    for (const Record& r : records_) sum += r.irradiance;
-    const float min_irradiance = min_share_of_mean * static_cast<float>(sum / static_cast<double>(records_.size()));
+    const bool is_bake = !scene.start->camera;
+    const float min_irradiance = min_share_of_mean * (is_bake ? log_mean_irradiance() : mean_irradiance());
     std::vector<float> needed(records_.size());
     parallel_for_ranges(records_.size(), records_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const Record& r = records_[i];
             const float deviation = std::sqrt(pooled_variance(r)) / std::max(min_irradiance, r.irradiance);
             needed[i] = groups_per_deviation * deviation * r.reach_in_spacings;
+            if (is_bake) needed[i] = std::max(needed[i], (deviation * deviation) / (max_baked_error * max_baked_error));
         }
     });
     // Each round doubles the groups of noisy records.
@@ -181,6 +183,19 @@ void IndirectField::refine_noisy_records(const PathScene& scene, const std::atom
         if (noisy.empty()) return;
         gather(scene, noisy, groups, stop);
     }
+}
+
+float IndirectField::mean_irradiance() const {
+    double sum = 0;
+    for (const Record& r : records_) sum += static_cast<double>(r.irradiance);
+    return static_cast<float>(sum / static_cast<double>(records_.size()));
+}
+
+float IndirectField::log_mean_irradiance() const {
+    double sum = 0, lit = 0;
+    for (const Record& r : records_)
+        if (r.irradiance > 0) sum += std::log(static_cast<double>(r.irradiance)), ++lit;
+    return lit > 0 ? static_cast<float>(std::exp(sum / lit)) : 0;
 }
 
 float IndirectField::pooled_variance(const Record& record) const {

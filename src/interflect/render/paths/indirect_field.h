@@ -31,7 +31,7 @@ struct SurfacePoint {
 class IndirectField {
   public:
     /// Makes records until all points are covered.
-    /// @param scene  With a known solution; its starts and batches are ignored.
+    /// @param scene  With a known solution; its batches are ignored.
     /// If stopped, ends within milliseconds, with fewer records.
     IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor);
 
@@ -85,6 +85,10 @@ class IndirectField {
                 const std::atomic<bool>* stop);
     void add_records(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
     void refine_noisy_records(const PathScene& scene, const std::atomic<bool>* stop);
+    /// Over records, below.
+    float mean_irradiance() const;
+    /// Geometric mean, of lit records.
+    float log_mean_irradiance() const;
     float pooled_variance(const Record& record) const;
     /// At most max_distance.
     float distance_to_contact(const V3f& x, float max_distance) const;
