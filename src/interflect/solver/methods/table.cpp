@@ -17,6 +17,7 @@ namespace detail {
 
 std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state);
 std::unique_ptr<IterationMethod> make_well_distributed_rays(SolverState& state);
+std::unique_ptr<IterationMethod> make_kept_rays(SolverState& state);
 std::unique_ptr<IterationMethod> make_random_walks(SolverState& state);
 std::unique_ptr<IterationMethod> make_linked_elements(SolverState& state);
 std::unique_ptr<IterationMethod> make_global_lines(SolverState& state);
@@ -80,6 +81,16 @@ constexpr std::array rows = {
          .separates_direct = true,
          .follows_dimming = true},
         make_ray_radiosity},
+    Row{{.name = "iwdrs",
+         .source = "wdrs with the importance of Prikryl et al. 2000",
+         .importance = ImportanceUse::full},
+        make_kept_rays},
+    Row{{.name = "ihwdrs",
+         .source = "hwdrs with the importance of Prikryl et al. 2000",
+         .refines = true,
+         .follows_variance = true,
+         .importance = ImportanceUse::full},
+        make_kept_rays},
     Row{{.name = "random-walk", .source = "Pattanaik and Mudur 1992, 1995"}, make_random_walks},
     Row{{.name = "hr",
          .source = "Hanrahan et al. 1991, Smits et al. 1992",

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 #include "interflect/geometry/tangent_frame.h"
 
@@ -103,6 +104,22 @@ void RayMaker::shoot_from_part(std::uint32_t part, std::uint64_t skipped, std::s
     const std::uint64_t used = part < streams_.used_by_parts.size() ? streams_.used_by_parts[part] : 0;
     emission_->shoot(part, streams_.points, stream_key(streams_, Purpose::emission, part), used + skipped, batch.points,
                      std::span(batch.rays).subspan(offset, length));
+}
+
+void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
+    constexpr std::size_t blocks_per_task = 16;
+    streams.used.resize(std::max(streams.used.size(), elements), 0);
+    streams.used_by_parts.resize(std::max(streams.used_by_parts.size(), parts), 0);
+    // A source belongs to one block, hence to one thread.
+    parallel_for_ranges(allocation.block_count(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block)
+            allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
+                std::uint64_t& used = s < elements ? streams.used[s] : streams.used_by_parts[s - elements];
+                used += static_cast<std::uint64_t>(next - first);
+                return true;
+            });
+    });
+    ++streams.allocations;
 }
 
 }  // namespace interflect::detail

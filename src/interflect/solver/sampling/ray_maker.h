@@ -74,4 +74,7 @@ class RayMaker {
     RayAllocation allocation_;
 };
 
+/// Marks the samples of an allocation as used.
+void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts);
+
 }  // namespace interflect::detail

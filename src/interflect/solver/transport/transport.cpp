@@ -33,22 +33,6 @@ constexpr std::size_t batch_rays = 1024;
 /// Hits between prefetch and deposit of a patch, to hide the memory latency.
 constexpr std::size_t prefetch_distance = 32;
 
-void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
-    constexpr std::size_t blocks_per_task = 16;
-    streams.used.resize(std::max(streams.used.size(), elements), 0);
-    streams.used_by_parts.resize(std::max(streams.used_by_parts.size(), parts), 0);
-    // A source belongs to one block, hence to one thread.
-    parallel_for_ranges(allocation.block_count(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t block = begin; block < end; ++block)
-            allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
-                std::uint64_t& used = s < elements ? streams.used[s] : streams.used_by_parts[s - elements];
-                used += static_cast<std::uint64_t>(next - first);
-                return true;
-            });
-    });
-    ++streams.allocations;
-}
-
 /// Returns an upper bound: the expected number, at most 1 / (1 - rho), times a margin for chance and panes. The
 /// expected sum then has 2^49 of the 2^61 units of FixedPoint.
 double max_deposits_per_particle(const Scene& scene) {

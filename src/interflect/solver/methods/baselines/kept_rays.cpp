@@ -1,0 +1,376 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+#include "interflect/raycast/panes.h"
+#include "interflect/solver/deposit/contribution_units.h"
+#include "interflect/solver/error/noise_update.h"
+#include "interflect/solver/iteration/iteration_method.h"
+#include "interflect/solver/iteration/merge.h"
+#include "interflect/solver/iteration/outdoor_targets.h"
+#include "interflect/solver/iteration/run_step.h"
+#include "interflect/solver/methods/importance_transport.h"
+#include "interflect/solver/methods/passes.h"
+#include "interflect/solver/refinement/variance_refinement.h"
+#include "interflect/solver/sampling/ray_maker.h"
+#include "interflect/solver/sampling/ray_plan.h"
+
+namespace interflect::detail {
+
+namespace {
+
+constexpr std::size_t rays_per_task = 4096;
+
+/// Parameters of a patch to 16 bits.
+struct Place {
+    std::uint16_t u = 0, v = 0;
+
+    Place() = default;
+    explicit Place(const Parameters& p) : u(rounded(p.u)), v(rounded(p.v)) {}
+    Parameters parameters() const { return {middle(u), middle(v)}; }
+
+  private:
+    static constexpr float steps = 0x1p16f;
+    static std::uint16_t rounded(float x) { return static_cast<std::uint16_t>(std::clamp(x * steps, 0.0f, steps - 1)); }
+    static float middle(std::uint16_t x) { return (static_cast<float>(x) + 0.5f) / steps; }
+};
+
+struct KeptRay {
+    std::uint32_t source;           // leaf, or luminaire part
+    std::uint32_t receiver = none;  // leaf; none: escaped
+    Place start, end;
+};
+
+/// Rays in the order of their shooting, those behind panes after the others of a step.
+struct RaySet {
+    enum Kind : std::uint8_t { from_leaf = 0, from_part = 1, behind_pane = 2 };  // bits
+
+    std::vector<KeptRay> rays;
+    std::vector<std::uint8_t> kind;
+    std::vector<Rgb> transmittance;  // of panes; empty without
+
+    std::size_t size() const { return rays.size(); }
+    bool is_from_part(std::size_t i) const { return (kind[i] & from_part) != 0; }
+    void resize(std::size_t size) {
+        rays.resize(size);
+        kind.resize(size);
+        if (!transmittance.empty()) transmittance.resize(size);
+    }
+    /// Index of the ray's source in Quotas.
+    std::size_t source(std::size_t i, std::size_t elements) const {
+        return rays[i].source + (is_from_part(i) ? elements : 0);
+    }
+};
+
+std::uint32_t leaf_within(const ElementForest& forest, std::uint32_t e, Place place) {
+    return forest.is_leaf(e) ? e : forest.leaf_below(e, forest.cell(e), place.parameters());
+}
+
+/// Well-distributed rays with importance, the first open end of Prikryl et al. 2000. Every ray is kept as its two ends.
+/// A source with power P_s has a quota n_s of rays, each with the payload P_s / n_s, whenever it was shot (balance
+/// heuristic, Veach and Guibas 1995); parts of a divided leaf share its quota by area. When power or importance change,
+/// iterations shoot the rays that leaves lack.
+class KeptRays : public IterationMethod {
+  public:
+    void prepare(SolverState& state) override;
+    void update_importance(SolverState& state, IterationPlan& plan) override;
+    Estimate trace(SolverState& state, IterationPlan& plan) override;
+    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    void refine(SolverState& state) override {
+        if (refines_by_variance(state.options) && state.noise.is_known()) refine_by_variance(state);
+    }
+    void discard() override { set_.resize(merged_); }
+    void change_views(SolverState& state) override;
+    void archive(StateArchive& archive) override;
+    bool fits(const SolverState& state) const override;
+
+  private:
+    /// Numbers of rays by element (leaves count), then by luminaire part.
+    using Quotas = std::vector<double>;
+
+    void drop_rays_of_parts(const SolverState& state);
+    /// Divides quotas with their leaves, and replaces these in rays.
+    void follow_forest(const ElementForest& forest);
+    void shoot(SolverState& state, const RayPlan& plan);
+    /// Light by the rays from `first` on.
+    Estimate received(SolverState& state, std::size_t first, const Quotas& quotas) const;
+
+    Passes passes_;
+    RaySet set_;
+    std::size_t merged_ = 0;  // rays of complete iterations
+    std::uint32_t elements_ = 0;
+    Quotas quotas_, next_quotas_;        // the latter of the iteration in progress
+    std::vector<Imath::Box3f> targets_;  // of rays from luminaire parts
+    bool needs_importance_ = false;
+};
+
+/// Returns quotas raised to x q, with x such that their sum grows by `rays`.
+std::vector<double> raised(std::vector<double> quotas, const std::vector<float>& q, double rays) {
+    const auto growth = [&](double x) {
+        return parallel_sum(q.size(), elements_per_task, 0.0, [&](std::size_t begin, std::size_t end) {
+            double sum = 0;
+            for (std::size_t s = begin; s < end; ++s) sum += std::max(0.0, x * static_cast<double>(q[s]) - quotas[s]);
+            return sum;
+        });
+    };
+    double low = 0, high = 1;
+    while (growth(high) < rays) low = high, high *= 2;
+    constexpr int bisections = 24;
+    for (int i = 0; i < bisections; ++i) {
+        const double middle = (low + high) / 2;
+        (growth(middle) < rays ? low : high) = middle;
+    }
+    for (std::size_t s = 0; s < q.size(); ++s) quotas[s] = std::max(quotas[s], high * static_cast<double>(q[s]));
+    return quotas;
+}
+
+void KeptRays::prepare(SolverState& state) {
+    passes_.make_first_estimate(state);
+    elements_ = state.forest->size();
+    targets_ = state.targets;
+    quotas_.assign(elements_ + state.emission.part_count(), 0.0);
+}
+
+void KeptRays::update_importance(SolverState& state, IterationPlan& plan) {
+    if (importance_use(state.solution) != ImportanceUse::full) return;
+    const std::int64_t before = state.importance_rays;
+    if (needs_importance_) {
+        transport_importance(state, state.schedule.start_rays());
+        aim_outdoor_light(state);
+        plan.rays_for_new_views = state.importance_rays - before;
+    }
+    plan.importance_rays = std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays));
+    if (plan.importance_rays == 0) return;
+    const RayPlan rays =
+        plan_importance(state.materials, state.solution, importance_of(state.solution), plan.importance_rays);
+    detail::merge(state, state.solution.indirect_importance, run_step(state, TransportStep(rays)).importance, plan);
+    state.importance_rays += plan.importance_rays;
+}
+
+Estimate KeptRays::trace(SolverState& state, IterationPlan& plan) {
+    const ElementForest& forest = *state.forest;
+    const std::int64_t rays = plan.rays - plan.importance_rays;
+    if (rays == 0) return {};
+    if (state.targets != targets_) drop_rays_of_parts(state);
+    follow_forest(forest);
+    const Radiosity light(state.materials, state.solution.irradiance);
+    const ImportanceWeights weights =
+        importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
+    RayPlan next;
+    {
+        PowerPlan power =
+            plan_power(state.materials, state.emission, state.solution, light, weights, /*combined=*/false, rays);
+        state.solution.non_finite += power.non_finite_leaves;
+        if (!(power.power > 0)) return {};
+        next = std::move(power.plan);
+    }
+    // Systematic sampling makes the number of rays of a source equal its quota in the mean, also below 1. To count the
+    // rays that exist would add light: sources below their quota by chance would catch up, those above could not.
+    next_quotas_ = raised(quotas_, next.q, static_cast<double>(rays));
+    for (std::size_t s = 0; s < next.q.size(); ++s) next.q[s] = static_cast<float>(next_quotas_[s] - quotas_[s]);
+    shoot(state, next);
+    state.power_rays += rays;
+    return received(state, merged_, Quotas(next.q.begin(), next.q.end()));
+}
+
+void KeptRays::drop_rays_of_parts(const SolverState& state) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < merged_; ++i) {
+        if (set_.is_from_part(i)) continue;
+        set_.rays[kept] = set_.rays[i];
+        set_.kind[kept] = set_.kind[i];
+        if (!set_.transmittance.empty()) set_.transmittance[kept] = set_.transmittance[i];
+        ++kept;
+    }
+    merged_ = kept;
+    set_.resize(kept);
+    quotas_.resize(elements_);
+    quotas_.resize(elements_ + state.emission.part_count(), 0.0);
+    targets_ = state.targets;
+}
+
+void KeptRays::follow_forest(const ElementForest& forest) {
+    if (forest.size() == elements_) return;
+    const Quotas of_parts(quotas_.begin() + elements_, quotas_.end());
+    quotas_.resize(elements_);
+    for (std::uint32_t e = elements_; e < forest.size(); ++e)
+        quotas_.push_back(quotas_[forest.parent(e)] * forest.area(e) / forest.area(forest.parent(e)));
+    quotas_.insert(quotas_.end(), of_parts.begin(), of_parts.end());
+    elements_ = forest.size();
+    parallel_for_ranges(set_.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            KeptRay& ray = set_.rays[i];
+            if (!set_.is_from_part(i)) ray.source = leaf_within(forest, ray.source, ray.start);
+            if (ray.receiver != none) ray.receiver = leaf_within(forest, ray.receiver, ray.end);
+        }
+    });
+}
+
+void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
+    const ElementForest& forest = *state.forest;
+    const RayMaker maker(forest, state.ray_caster, plan, state.streams);
+    const Panes panes(state.scene, state.ray_caster);
+    const auto count = static_cast<std::size_t>(plan.rays);
+    set_.resize(merged_ + count);
+    struct Behind {
+        KeptRay ray;
+        std::uint8_t kind;
+        Rgb transmittance;
+    };
+    std::vector<std::vector<Behind>> behind((count + rays_per_task - 1) / rays_per_task);
+    const auto kept = [&](const Hit& hit, KeptRay ray, const Ray& traced) {
+        if (hit.patch == none) return ray;
+        const Parameters p = forest.geometry(hit.patch).parameters_of(traced.origin + hit.distance * traced.direction);
+        ray.receiver = forest.leaf_at(hit.patch, Place(p).parameters());
+        ray.end = Place(p);
+        return ray;
+    };
+    parallel_for_ranges(count, rays_per_task, state.stop, [&](std::size_t begin, std::size_t end) {
+        thread_local RayBatch batch;
+        thread_local std::vector<Hit> hits;
+        thread_local std::vector<Panes::HitBehind> hits_behind;
+        maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
+        hits.resize(batch.rays.size());
+        state.ray_caster.trace(batch.rays, hits);
+        panes.trace(batch.rays, hits, hits_behind);
+        auto next = hits_behind.begin();
+        for (const SourceRays& of_source : batch.sources) {
+            const bool is_part = of_source.source >= forest.size();
+            const std::uint8_t kind = is_part ? RaySet::from_part : RaySet::from_leaf;
+            const std::uint32_t source = is_part ? of_source.source - forest.size() : of_source.source;
+            for (std::uint32_t i = of_source.begin; i < of_source.end; ++i) {
+                const KeptRay ray{source, none, is_part ? Place() : Place(batch.origins[i]), {}};
+                set_.rays[merged_ + begin + i] = kept(hits[i], ray, batch.rays[i]);
+                set_.kind[merged_ + begin + i] = kind;
+                for (; next != hits_behind.end() && next->ray == i; ++next)
+                    behind[begin / rays_per_task].push_back({kept(next->hit, ray, batch.rays[i]),
+                                                             static_cast<std::uint8_t>(kind | RaySet::behind_pane),
+                                                             next->transmittance});
+            }
+        }
+    });
+    if (!panes.empty()) set_.transmittance.resize(set_.size(), Rgb(1));
+    for (const std::vector<Behind>& some : behind)
+        for (const Behind& b : some) {
+            set_.rays.push_back(b.ray);
+            set_.kind.push_back(b.kind);
+            set_.transmittance.push_back(b.transmittance);
+        }
+    advance(state.streams, maker.allocation(), forest.size(), plan.part_count());
+}
+
+Estimate KeptRays::received(SolverState& state, std::size_t first, const Quotas& quotas) const {
+    const ElementForest& forest = *state.forest;
+    const Radiosity light(state.materials, state.solution.irradiance);
+    // Of a ray, by source.
+    std::vector<RgbD> payload(quotas.size(), RgbD(0));
+    PayloadTotals totals;
+    for (std::uint32_t s = 0; s < quotas.size(); ++s) {
+        if (!(quotas[s] > 0) || (s < forest.size() && !forest.is_leaf(s))) continue;
+        const RgbD power = s < forest.size() ? RgbD(light.of(forest, s)) * static_cast<double>(forest.area(s))
+                                             : state.emission.power(s - forest.size());
+        payload[s] = power / quotas[s];
+        totals.power += power;
+        totals.square += std::pow(luminance(power), 2) / quotas[s];
+    }
+    constexpr double margin = 0x1p12;  // numbers of rays from parts of divided leaves vary
+    const ContributionUnits units(totals, margin);
+    std::vector<Contribution> contribution(payload.size());
+    for (std::size_t s = 0; s < payload.size(); ++s) contribution[s] = units.contribution_of(payload[s]);
+
+    ContributionSums& sums = state.contributions;
+    sums.begin_step(forest.size());
+    using ScatterBuffer = ContributionSums::ScatterBuffer;
+    PerThread<ScatterBuffer> buffers([&] { return ScatterBuffer(sums); });
+    FixedPoint::Value escaped{};
+    parallel_for_ranges(set_.size() - first, rays_per_task, [&](std::size_t begin, std::size_t end) {
+        ScatterBuffer& buffer = buffers.local();
+        FixedPoint::Value escaped_here{};
+        for (std::size_t i = first + begin; i < first + end; ++i) {
+            const std::size_t source = set_.source(i, forest.size());
+            const Contribution power = (set_.kind[i] & RaySet::behind_pane) != 0
+                                           ? units.contribution_of(payload[source] * RgbD(set_.transmittance[i]))
+                                           : contribution[source];
+            if (set_.rays[i].receiver == none)
+                for (std::size_t c = 0; c < 3; ++c) escaped_here[c] += power[c];
+            else
+                buffer.add(set_.rays[i].receiver, buffer.add_payload(power), ScatterBuffer::Terms::power);
+        }
+        buffer.release_payloads();
+        add_concurrently(escaped, escaped_here);
+    });
+    for (ScatterBuffer& buffer : buffers) buffer.flush_all();
+    Estimate estimate;
+    estimate.irradiance.resize(forest.size());
+    estimate.variance.resize(forest.size());
+    parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            const auto [red, green, blue, square, importance] = sums.take(e);
+            const float area = forest.area(e);
+            estimate.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
+            estimate.variance[e] = static_cast<float>(units.square.to_number(square) / area / area);
+        }
+    });
+    pull(forest, estimate.irradiance), pull_variance(forest, estimate.variance);
+    estimate.escaped_power = units.power.to_colour(escaped) - state.emission.repeated_power();
+    return estimate;
+}
+
+void KeptRays::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
+    state.schedule.count_other_rays(plan.rays_for_new_views);
+    needs_importance_ = false;
+    if (estimate.irradiance.empty()) return;
+    estimate_noise(state, estimate, plan.rays);
+    merged_ = set_.size();
+    quotas_ = std::move(next_quotas_);
+    const Estimate total = received(state, 0, quotas_);
+    state.solution.irradiance = total.irradiance;
+    state.escaped_power = total.escaped_power;
+    update_history(state, plan);
+}
+
+void KeptRays::change_views(SolverState& state) {
+    IterationMethod::change_views(state);
+    const bool has_begun = !state.solution.iterations.empty();  // otherwise, prepare() transports importance
+    needs_importance_ = has_begun && importance_use(state.solution) == ImportanceUse::full;
+}
+
+void KeptRays::archive(StateArchive& archive) {
+    passes_.archive(archive);
+    archive("kept_rays/rays", set_.rays);
+    archive("kept_rays/kind", set_.kind);
+    archive("kept_rays/transmittance", set_.transmittance);
+    archive("kept_rays/merged", merged_);
+    archive("kept_rays/elements", elements_);
+    archive("kept_rays/quotas", quotas_);
+    archive("kept_rays/targets", targets_);
+    archive("kept_rays/needs_importance", needs_importance_);
+}
+
+bool KeptRays::fits(const SolverState& state) const {
+    const std::size_t parts = state.emission.part_count();
+    if (!passes_.fits(state) || elements_ > state.forest->size() || merged_ != set_.size()) return false;
+    if (set_.kind.size() != set_.size()) return false;
+    if (!set_.transmittance.empty() && set_.transmittance.size() != set_.size()) return false;
+    if (elements_ > 0 && targets_ == state.targets && quotas_.size() != elements_ + parts) return false;
+    for (std::size_t i = 0; i < set_.size(); ++i) {
+        const KeptRay& ray = set_.rays[i];
+        if (set_.source(i, elements_) >= quotas_.size() || (!set_.is_from_part(i) && ray.source >= elements_))
+            return false;
+        if (ray.receiver != none && ray.receiver >= elements_) return false;
+        if ((set_.kind[i] & RaySet::behind_pane) != 0 && set_.transmittance.empty()) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::unique_ptr<IterationMethod> make_kept_rays(SolverState&) { return std::make_unique<KeptRays>(); }
+
+}  // namespace interflect::detail
