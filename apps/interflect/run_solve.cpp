@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -97,6 +99,15 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
         need.per_element +=
             MemoryNeed::per_element_of_direct_light * std::max<std::size_t>(1, source_groups(scene).size());
     require_memory(need.with(scene.patches.size()), scene.name);
+    if (options.method.bytes_per_ray > 0) {
+        constexpr std::size_t share = 2;  // the other half is for elements
+        const auto most = static_cast<std::int64_t>(bytes / share / options.method.bytes_per_ray);
+        if (options.limits.rays == std::numeric_limits<std::int64_t>::max()) options.limits.rays = most;
+        if (options.limits.rays > most)
+            throw InputError(
+                fmt::format("--rays {}: {} keeps every ray, expected at most {}, for which there is memory",
+                            options.limits.rays, options.method.name, most));
+    }
     options.refinement.max_elements = std::min(options.refinement.max_elements, elements_within(need, bytes, scene));
     return options;
 }

@@ -44,6 +44,7 @@ struct Method {
     const char* no_importance = nullptr;            ///< Reason why importance is not supported; null if it is.
     bool is_stochastic = true;                      ///< Its noise is measured and decreases with the rays.
     bool takes_luminaires = true;                   ///< Supports light sources that are not surfaces.
+    std::size_t bytes_per_ray = 0;                  ///< Peak of the memory for each ray of a run that is kept.
     bool separates_groups = false;                  ///< Keeps the light of each light group separate.
     bool separates_direct = false;                  ///< Supports SolveOptions::keep_direct.
     bool follows_dimming = false;                   ///< Can continue with dimmed groups, see Solver::set_dimming().

@@ -11,7 +11,7 @@ import unittest
 
 from command import BAD_INPUT, LAMP, CommandTest, methods, room
 
-REFINING = ("hwdrs", "hsrr", "ihsrr", "hr")
+REFINING = ("hwdrs", "ihwdrs", "hsrr", "ihsrr", "hr")
 NARROWEST, WIDEST = 2.4e-7, 2.4e6  # the room is 4.3 times as wide [m]
 WEAKEST, STRONGEST = 1.1e-9, 9.9e9  # [lm/m2]
 

@@ -87,6 +87,12 @@ class LimitedAddressSpace(CommandTest):
         said = self.under(450 * MIB, "solve", "maze:2", "-o", "out.h5", *FINE, "500k", "--epsilon", "1e-12")
         self.assertIn("refinement ended at", said)
 
+    def test_keeps_no_more_rays_than_fit(self):
+        few = ("solve", "maze:2", "-o", "out.h5", "--view", "room-0", "--method", "ihwdrs")
+        self.assertIn("100.0 k rays", self.under(2000 * MIB, *few, "--rays", "100k"))
+        said = self.under(2000 * MIB, *few, "--rays", "1G", exit_code=BAD_INPUT)
+        self.assertRegex(said, r"--rays 1000000000: ihwdrs keeps every ray, expected at most \d+,")
+
     def test_says_what_is_missing(self):
         said = self.under(250 * MIB, "solve", "maze:2", "-o", "out.h5", "--rays", "100k", exit_code=FAILED)
         self.assertRegex(said, r"maze:2 needs \d+ MiB of memory; the limits of this process .* leave \d+ MiB")

@@ -9,7 +9,7 @@ from command import BAD_INPUT, COMMAND, DONE, INTERRUPTED, VIEW, WRONG_USAGE, Co
 
 RUN = ("solve", "room.mgf", "--rays", "1M", "--mesh-size", "0.5")
 METHODS = (("--method", "hsrr"), (*VIEW, "--method", "ihsrr"), ("--method", "hwdrs"), ("--method", "random-walk"))
-METHODS += (("--method", "global-lines"), (*VIEW, "--method", "pr"))
+METHODS += ((*VIEW, "--method", "ihwdrs"), ("--method", "global-lines"), (*VIEW, "--method", "pr"))
 OFTEN = ("--checkpoint", "run.h5", "--every", "0.1s")
 
 

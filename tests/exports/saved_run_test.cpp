@@ -261,8 +261,11 @@ TEST(ChangeOfViews, NeedsFewRaysAfterATurn) {
 
 // In a closed box of grey walls that all emit, H = M / (1 - rho) everywhere, for all previous views. The mean over the
 // walls of 24 runs has a standard error below 0.3%, so an error of 1.8% is detected; false alarm 1e-9.
-TEST(ChangeOfViews, StaysUnbiased) {
-    SolveOptions options{.method = find_method("ihsrr")};
+class UnbiasedChangeOfViews : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Methods, UnbiasedChangeOfViews, testing::Values("ihsrr", "ihwdrs"),
+                         [](const auto& test) { return std::string(test.param); });
+TEST_P(UnbiasedChangeOfViews, InAFurnace) {
+    SolveOptions options{.method = find_method(GetParam())};
     options.limits.rays = 20'000;
     const View views[] = {{"a", {0.3f, 0.4f, 0.5f}, {0.9f, 1.9f, 2.9f}}, {"b", {0.3f, 1.4f, 2.5f}, {0.9f, 0.1f, 0.1f}}};
     const Scene scene = closed_box({1, 2, 3}, 3, {{"wall", Rgb(0.6f), Rgb(2)}});
@@ -288,7 +291,7 @@ TEST(ChangeOfViews, StaysUnbiased) {
 
 TEST(ChangeOfViews, HasTheSameBitsWhenSavedAndOpenedOnTheWay) {
     const TemporaryFolder folder;
-    for (const char* method : {"ihsrr", "isrr", "srr"}) {
+    for (const char* method : {"ihsrr", "isrr", "srr", "ihwdrs"}) {
         Solver once = solver_of_a_view(method), often = solver_of_a_view(method);
         for (Solver* solver : {&once, &often}) {
             solver->set_views({{turned(25)}});

@@ -51,7 +51,8 @@ Scene divided_furnace() {
 const View along{"along", {0.1, 0.5, 0.5}, {2, 0.5, 0.5}, {0, 0, 1}, 40};
 
 class FurnaceWithHoles : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Method, FurnaceWithHoles, testing::Values("srr", "wdrs", "hwdrs", "hsrr", "ihsrr", "pr"),
+INSTANTIATE_TEST_SUITE_P(Method, FurnaceWithHoles,
+                         testing::Values("srr", "wdrs", "hwdrs", "ihwdrs", "hsrr", "ihsrr", "pr"),
                          [](const auto& tested) { return tested.param; });
 
 /// Seen to fail when rays use the mean of the texture, and when elements reflect the whole reflectance.

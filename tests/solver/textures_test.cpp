@@ -29,7 +29,8 @@ Solution solved(const Scene& scene, const char* method, std::int64_t rays = 600'
 }
 
 class TexturesOfMethod : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, TexturesOfMethod, testing::Values("srr", "hsrr", "wdrs", "hwdrs", "random-walk"),
+INSTANTIATE_TEST_SUITE_P(Methods, TexturesOfMethod,
+                         testing::Values("srr", "hsrr", "wdrs", "hwdrs", "ihwdrs", "random-walk"),
                          [](const auto& method) {
                              std::string name = method.param;
                              std::erase(name, '-');

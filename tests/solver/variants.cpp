@@ -74,7 +74,9 @@ std::vector<Variant> variants_of_other_methods() {
     return others;
 }
 
-std::vector<Variant> variants_that_keep_every_ray() { return {plain("wdrs"), plain("hwdrs")}; }
+std::vector<Variant> variants_that_keep_every_ray() {
+    return {plain("wdrs"), plain("hwdrs"), plain("iwdrs"), plain("ihwdrs")};
+}
 
 std::vector<Variant> variants_with_importance() {
     return those([](const Method& method) { return method.importance != ImportanceUse::off; });
@@ -82,7 +84,7 @@ std::vector<Variant> variants_with_importance() {
 
 std::vector<Variant> variants_that_refine() {
     std::vector<Variant> variants = those([](const Method& method) { return method.refines; });
-    variants.push_back(plain("hwdrs"));
+    for (const char* method : {"hwdrs", "ihwdrs"}) variants.push_back(plain(method));
     return variants;
 }
 
@@ -117,7 +119,8 @@ SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {
     options.seed = seed;
     // A kept ray has the colour of its shooting, before any warm-up.
     options.experimental.one_bounce = !keeps_every_ray(variant);
-    options.experimental.warm_up = 12;  // mean reflectances are below 0.55: 0.55^12 < 0.001
+    options.refinement.criterion = RefinementCriterion::power;  // no shrinkage
+    options.experimental.warm_up = 12;                          // mean reflectances are below 0.55: 0.55^12 < 0.001
     options.experimental.iterations = 4;
     options.experimental.rays_per_iteration = 10'000;
     divide_everything(options, options.experimental.defer_refinement ? left_whole : divided_once);

@@ -20,6 +20,7 @@
 #include "interflect/solver/refinement/variance_refinement.h"
 #include "interflect/solver/sampling/ray_maker.h"
 #include "interflect/solver/sampling/ray_plan.h"
+#include "interflect/solver/transport/received.h"
 
 namespace interflect::detail {
 
@@ -43,7 +44,7 @@ struct Place {
 
 struct KeptRay {
     std::uint32_t source;           // leaf, or luminaire part
-    std::uint32_t receiver = none;  // leaf; none: escaped
+    std::uint32_t receiver = none;  // leaf, or `none` if escaped
     Place start, end;
 };
 
@@ -60,7 +61,7 @@ struct RaySet {
     void resize(std::size_t size) {
         rays.resize(size);
         kind.resize(size);
-        if (!transmittance.empty()) transmittance.resize(size);
+        if (!transmittance.empty()) transmittance.resize(size, Rgb(1));
     }
     /// Index of the ray's source in Quotas.
     std::size_t source(std::size_t i, std::size_t elements) const {
@@ -82,9 +83,7 @@ class KeptRays : public IterationMethod {
     void update_importance(SolverState& state, IterationPlan& plan) override;
     Estimate trace(SolverState& state, IterationPlan& plan) override;
     void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
-    void refine(SolverState& state) override {
-        if (refines_by_variance(state.options) && state.noise.is_known()) refine_by_variance(state);
-    }
+    void refine(SolverState& state) override;
     void discard() override { set_.resize(merged_); }
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
@@ -98,14 +97,23 @@ class KeptRays : public IterationMethod {
     /// Divides quotas with their leaves, and replaces these in rays.
     void follow_forest(const ElementForest& forest);
     void shoot(SolverState& state, const RayPlan& plan);
-    /// Light by the rays from `first` on.
+    /// Sets the solution by all rays.
+    void receive_again(SolverState& state);
+    /// Light by the rays from `first` on. They carry the radiosity for which the quotas were planned: a new one may
+    /// exceed it many times on elements with few rays.
     Estimate received(SolverState& state, std::size_t first, const Quotas& quotas) const;
+    /// Adds payloads to state.contributions; returns the escaped power.
+    RgbD scatter(SolverState& state, std::size_t first, const std::vector<RgbD>& payload,
+                 const ContributionUnits& units) const;
+    static Estimate collect(SolverState& state, const ContributionUnits& units);
 
     Passes passes_;
     RaySet set_;
     std::size_t merged_ = 0;  // rays of complete iterations
     std::uint32_t elements_ = 0;
+    std::int64_t all_rays_ = 0;          // of complete iterations
     Quotas quotas_, next_quotas_;        // the latter of the iteration in progress
+    std::vector<Rgb> reflected_;         // irradiance that this iteration reflects
     std::vector<Imath::Box3f> targets_;  // of rays from luminaire parts
     bool needs_importance_ = false;
 };
@@ -159,24 +167,22 @@ Estimate KeptRays::trace(SolverState& state, IterationPlan& plan) {
     if (rays == 0) return {};
     if (state.targets != targets_) drop_rays_of_parts(state);
     follow_forest(forest);
-    const Radiosity light(state.materials, state.solution.irradiance);
+    reflected_ = state.solution.irradiance;
+    const Radiosity light(state.materials, reflected_);
     const ImportanceWeights weights =
         importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
-    RayPlan next;
-    {
-        PowerPlan power =
-            plan_power(state.materials, state.emission, state.solution, light, weights, /*combined=*/false, rays);
-        state.solution.non_finite += power.non_finite_leaves;
-        if (!(power.power > 0)) return {};
-        next = std::move(power.plan);
-    }
+    PowerPlan power =
+        plan_power(state.materials, state.emission, state.solution, light, weights, /*combined=*/false, rays);
+    state.solution.non_finite += power.non_finite_leaves;
+    if (!(power.power > 0)) return {};
+    std::vector<float>& q = power.plan.q;
     // Systematic sampling makes the number of rays of a source equal its quota in the mean, also below 1. To count the
     // rays that exist would add light: sources below their quota by chance would catch up, those above could not.
-    next_quotas_ = raised(quotas_, next.q, static_cast<double>(rays));
-    for (std::size_t s = 0; s < next.q.size(); ++s) next.q[s] = static_cast<float>(next_quotas_[s] - quotas_[s]);
-    shoot(state, next);
+    next_quotas_ = raised(quotas_, q, static_cast<double>(rays));
+    for (std::size_t s = 0; s < q.size(); ++s) q[s] = static_cast<float>(next_quotas_[s] - quotas_[s]);
+    shoot(state, power.plan);
     state.power_rays += rays;
-    return received(state, merged_, Quotas(next.q.begin(), next.q.end()));
+    return received(state, merged_, Quotas(q.begin(), q.end()));
 }
 
 void KeptRays::drop_rays_of_parts(const SolverState& state) {
@@ -202,6 +208,7 @@ void KeptRays::follow_forest(const ElementForest& forest) {
     for (std::uint32_t e = elements_; e < forest.size(); ++e)
         quotas_.push_back(quotas_[forest.parent(e)] * forest.area(e) / forest.area(forest.parent(e)));
     quotas_.insert(quotas_.end(), of_parts.begin(), of_parts.end());
+    inherit(forest, elements_, reflected_);
     elements_ = forest.size();
     parallel_for_ranges(set_.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -263,29 +270,39 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
             set_.transmittance.push_back(b.transmittance);
         }
     advance(state.streams, maker.allocation(), forest.size(), plan.part_count());
+    state.escaped_rays += std::count_if(set_.rays.begin() + static_cast<std::ptrdiff_t>(merged_), set_.rays.end(),
+                                        [](const KeptRay& ray) { return ray.receiver == none; });
 }
 
 Estimate KeptRays::received(SolverState& state, std::size_t first, const Quotas& quotas) const {
     const ElementForest& forest = *state.forest;
-    const Radiosity light(state.materials, state.solution.irradiance);
-    // Of a ray, by source.
-    std::vector<RgbD> payload(quotas.size(), RgbD(0));
+    const Radiosity light(state.materials, reflected_);
+    std::vector<RgbD> payload(quotas.size(), RgbD(0));  // by source
     PayloadTotals totals;
     for (std::uint32_t s = 0; s < quotas.size(); ++s) {
-        if (!(quotas[s] > 0) || (s < forest.size() && !forest.is_leaf(s))) continue;
-        const RgbD power = s < forest.size() ? RgbD(light.of(forest, s)) * static_cast<double>(forest.area(s))
-                                             : state.emission.power(s - forest.size());
+        const bool is_leaf = s < forest.size() && forest.is_leaf(s);
+        if (!(quotas[s] > 0) || (s < forest.size() && !is_leaf)) continue;
+        const RgbD power = is_leaf ? RgbD(light.of(forest, s)) * static_cast<double>(forest.area(s))
+                                   : state.emission.power(s - forest.size());
         payload[s] = power / quotas[s];
         totals.power += power;
         totals.square += std::pow(luminance(power), 2) / quotas[s];
     }
     constexpr double margin = 0x1p12;  // numbers of rays from parts of divided leaves vary
     const ContributionUnits units(totals, margin);
+    const RgbD escaped = scatter(state, first, payload, units);
+    Estimate estimate = collect(state, units);
+    estimate.escaped_power = escaped - state.emission.repeated_power();
+    return estimate;
+}
+
+RgbD KeptRays::scatter(SolverState& state, std::size_t first, const std::vector<RgbD>& payload,
+                       const ContributionUnits& units) const {
+    const std::uint32_t elements = state.forest->size();
     std::vector<Contribution> contribution(payload.size());
     for (std::size_t s = 0; s < payload.size(); ++s) contribution[s] = units.contribution_of(payload[s]);
-
     ContributionSums& sums = state.contributions;
-    sums.begin_step(forest.size());
+    sums.begin_step(elements);
     using ScatterBuffer = ContributionSums::ScatterBuffer;
     PerThread<ScatterBuffer> buffers([&] { return ScatterBuffer(sums); });
     FixedPoint::Value escaped{};
@@ -293,7 +310,7 @@ Estimate KeptRays::received(SolverState& state, std::size_t first, const Quotas&
         ScatterBuffer& buffer = buffers.local();
         FixedPoint::Value escaped_here{};
         for (std::size_t i = first + begin; i < first + end; ++i) {
-            const std::size_t source = set_.source(i, forest.size());
+            const std::size_t source = set_.source(i, elements);
             const Contribution power = (set_.kind[i] & RaySet::behind_pane) != 0
                                            ? units.contribution_of(payload[source] * RgbD(set_.transmittance[i]))
                                            : contribution[source];
@@ -306,19 +323,23 @@ Estimate KeptRays::received(SolverState& state, std::size_t first, const Quotas&
         add_concurrently(escaped, escaped_here);
     });
     for (ScatterBuffer& buffer : buffers) buffer.flush_all();
+    return units.power.to_colour(escaped);
+}
+
+Estimate KeptRays::collect(SolverState& state, const ContributionUnits& units) {
+    const ElementForest& forest = *state.forest;
     Estimate estimate;
     estimate.irradiance.resize(forest.size());
     estimate.variance.resize(forest.size());
     parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            const auto [red, green, blue, square, importance] = sums.take(e);
+            const auto [red, green, blue, square, importance] = state.contributions.take(e);
             const float area = forest.area(e);
             estimate.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
             estimate.variance[e] = static_cast<float>(units.square.to_number(square) / area / area);
         }
     });
     pull(forest, estimate.irradiance), pull_variance(forest, estimate.variance);
-    estimate.escaped_power = units.power.to_colour(escaped) - state.emission.repeated_power();
     return estimate;
 }
 
@@ -329,10 +350,28 @@ void KeptRays::merge(SolverState& state, const Estimate& estimate, const Iterati
     estimate_noise(state, estimate, plan.rays);
     merged_ = set_.size();
     quotas_ = std::move(next_quotas_);
-    const Estimate total = received(state, 0, quotas_);
-    state.solution.irradiance = total.irradiance;
+    all_rays_ += plan.rays;
+    receive_again(state);
+}
+
+void KeptRays::receive_again(SolverState& state) {
+    Estimate total = received(state, 0, quotas_);
+    state.history.assign(state.forest->size(), static_cast<float>(all_rays_));
+    state.noise.set_variance(total.variance, state.history);
+    state.solution.irradiance = std::move(total.irradiance);
     state.escaped_power = total.escaped_power;
-    update_history(state, plan);
+}
+
+void KeptRays::refine(SolverState& state) {
+    constexpr int rounds = 2;
+    if (!refines_by_variance(state.options) || !state.noise.is_known()) return;
+    // Rays give the light of new elements, too.
+    for (int i = 0; i < rounds; ++i) {
+        refine_by_variance(state);
+        if (state.forest->size() == elements_) return;
+        follow_forest(*state.forest);
+        receive_again(state);
+    }
 }
 
 void KeptRays::change_views(SolverState& state) {
@@ -348,6 +387,7 @@ void KeptRays::archive(StateArchive& archive) {
     archive("kept_rays/transmittance", set_.transmittance);
     archive("kept_rays/merged", merged_);
     archive("kept_rays/elements", elements_);
+    archive("kept_rays/all_rays", all_rays_);
     archive("kept_rays/quotas", quotas_);
     archive("kept_rays/targets", targets_);
     archive("kept_rays/needs_importance", needs_importance_);
