@@ -166,33 +166,25 @@ TEST(Targets, AreNoneForAnOpenPlain) {
 
 const View outside{"outside", {-20, -20, 9}, {0, 0, 1}, {0, 0, 1}, 40};
 
-/// The targets follow changes of views during a run.
+/// Rays of a view from outside rarely find the hole; those for a later view inside do. Seen to fail when kept rays aim
+/// at targets of other views, and when the averages of passes keep their weight.
 TEST(Targets, FollowTheViews) {
     const Scene scene = room_in_a_landscape(sources()[1].luminaire);
-    Solver solver(scene, options_of(1));
-    solver.advance({.rays = 200'000});
-    solver.set_views({{outside}});
-    solver.advance({.rays = 100'000});
-    solver.set_views(options_of(1).views);
-    solver.advance({.rays = 400'000});
-    EXPECT_NEAR(power_on_floor(solver.solution()) / sources()[1].expected, 1, 0.3);
-}
-
-/// Seen to fail when rays to targets of other views are kept.
-TEST(Targets, OfOtherViewsLoseTheirKeptRays) {
-    const Scene scene = room_in_a_landscape(sources()[1].luminaire);
-    std::vector<double> found;
-    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-        SolveOptions options = options_of(seed, "ihwdrs");
-        options.views = {{outside}};
-        Solver solver(scene, options);
-        solver.advance({.rays = 300'000});
-        solver.set_views(options_of(seed).views);
-        solver.advance({.rays = 400'000});
-        found.push_back(power_on_floor(solver.solution()) / sources()[1].expected);
+    for (const char* method : {"ihsrr", "ihwdrs"}) {
+        std::vector<double> found;
+        for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+            SolveOptions options = options_of(seed, method);
+            options.views = {{View{"outside", {-20, -20, 9}, {0, 0, 1}, {0, 0, 1}, 40}}};
+            Solver solver(scene, options);
+            solver.advance({.rays = 300'000});
+            solver.set_views(options_of(seed).views);
+            solver.advance({.rays = 400'000});
+            found.push_back(power_on_floor(solver.solution()) / sources()[1].expected);
+        }
+        constexpr double remaining_history = 0.004;  // the least factor is 1 / 256
+        EXPECT_GT(t_test(found, 1, remaining_history), false_alarm) << method;
+        EXPECT_LT(t_test(found, 1.03, remaining_history), false_alarm) << "would notice 3%";
     }
-    EXPECT_GT(t_test(found, 1), false_alarm);
-    EXPECT_LT(t_test(found, 1.02), false_alarm) << "would notice 2%";
 }
 
 }  // namespace

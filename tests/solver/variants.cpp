@@ -74,9 +74,7 @@ std::vector<Variant> variants_of_other_methods() {
     return others;
 }
 
-std::vector<Variant> variants_that_keep_every_ray() {
-    return {plain("wdrs"), plain("hwdrs"), plain("iwdrs"), plain("ihwdrs")};
-}
+std::vector<Variant> variants_that_keep_every_ray() { return {plain("wdrs"), plain("hwdrs"), plain("ihwdrs")}; }
 
 std::vector<Variant> variants_with_importance() {
     return those([](const Method& method) { return method.importance != ImportanceUse::off; });

@@ -247,16 +247,16 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 
 }  // namespace
 
-void aim_outdoor_light(SolverState& state) {
+std::vector<OutdoorLine> aim_outdoor_light(SolverState& state) {
     // Many rays: a small window transmits little importance. `all` is the run's limit.
     constexpr std::int64_t max_rays = 1 << 18, all_over_rays = 32;
-    if (importance_use(state.solution) != ImportanceUse::full) return;
+    if (importance_use(state.solution) != ImportanceUse::full) return {};
     const auto suns = static_cast<std::int64_t>(state.emission.sun_count());
     const std::int64_t sources = suns + (state.emission.has_sky() ? 1 : 0);
-    if (sources == 0) return;
+    if (sources == 0) return {};
     const std::int64_t rays = std::min(max_rays, state.options.limits.rays / all_over_rays) / sources;
-    if (rays == 0) return;
-    const std::vector<OutdoorLine> lines = outdoor_lines(state, rays);
+    if (rays == 0) return {};
+    std::vector<OutdoorLine> lines = outdoor_lines(state, rays);
     std::vector<Imath::Box3f> targets =
         find_targets(lines, weights_of(state.emission, lines), state.emission.scene_box());
     if (!targets.empty() || !state.targets.empty()) {
@@ -264,6 +264,7 @@ void aim_outdoor_light(SolverState& state) {
         if (!lines.empty()) state.part_importance = importance_of_parts(state.emission, lines);
     }
     state.importance_rays += rays * sources;
+    return lines;
 }
 
 }  // namespace interflect::detail

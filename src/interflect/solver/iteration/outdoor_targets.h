@@ -21,6 +21,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
                                        const Imath::Box3f& scene_box);
 
 /// Sets targets and part importance; has no effect without full importance or outdoor light.
-void aim_outdoor_light(SolverState& state);
+/// @return  Lines of outdoor light to important surfaces.
+std::vector<OutdoorLine> aim_outdoor_light(SolverState& state);
 
 }  // namespace interflect::detail

@@ -94,8 +94,8 @@ void Passes::update_importance(SolverState& state, IterationPlan& plan) {
     if (needs_importance_) {
         const std::int64_t rays_before = rays_so_far(state);
         transport_importance(state, state.schedule.start_rays());
-        aim_outdoor_light(state);
-        if (!view_change_.empty()) plan.history_factor = view_change_.history_factor(state);
+        const std::vector<OutdoorLine> outdoor_light = aim_outdoor_light(state);
+        if (!view_change_.empty()) plan.history_factor = view_change_.history_factor(state, outdoor_light);
         plan.rays_for_new_views = rays_so_far(state) - rays_before;
     }
     if (!state.options.experimental.separate_iterations) return;

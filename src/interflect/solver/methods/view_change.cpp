@@ -11,15 +11,6 @@ namespace interflect::detail {
 
 namespace {
 
-std::vector<float> power_sampling(const SolverState& state) {
-    const Radiosity light(state.materials, state.solution.irradiance);
-    const ImportanceWeights weights =
-        importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
-    std::vector<float> q = plan_power(state.materials, state.emission, state.solution, light, weights, false, 0).plan.q;
-    q.resize(state.forest->size());
-    return q;
-}
-
 std::vector<float> patch_importance(const SolverState& state) {
     const Importance psi = importance_of(state.solution);
     std::vector<float> values;
@@ -27,38 +18,78 @@ std::vector<float> patch_importance(const SolverState& state) {
     return values;
 }
 
-/// Returns new over old variance per ray, weighted by importance. Payloads are proportional to power over q.
+/// Variance per ray of old and new sampling, weighted by importance. Payloads are proportional to power over q.
+struct Noise {
+    double before = 0, now = 0;
+
+    float ratio() const {
+        constexpr double largest = 256;
+        return before > 0 ? static_cast<float>(std::clamp(now / before, 1 / largest, largest)) : 1.0f;
+    }
+};
+
 /// @param importance  By patch.
-float noise_ratio(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
-                  const std::vector<float>& new_q) {
-    constexpr double largest = 256;
+Noise noise_of_leaves(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
+                      const std::vector<float>& new_q) {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, state.solution.irradiance);
-    double before = 0, now = 0;
+    Noise noise;
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
         if (!forest.is_leaf(e) || !(old_q[e] > 0) || !(new_q[e] > 0)) continue;
         const double power = static_cast<double>(channel_sum(light.of(forest, e))) * forest.area(e);
         const double weighted_power = power * importance[forest.patch(e)];
-        before += weighted_power * power / old_q[e];
-        now += weighted_power * power / new_q[e];
+        noise.before += weighted_power * power / old_q[e];
+        noise.now += weighted_power * power / new_q[e];
     }
-    return before > 0 ? static_cast<float>(std::clamp(now / before, 1 / largest, largest)) : 1.0f;
+    return noise;
+}
+
+/// The same for outdoor light by one sampling.
+double noise_of_lines(const Emission& emission, const std::vector<float>& part_q, std::span<const OutdoorLine> lines) {
+    double noise = 0;
+    for (const OutdoorLine& line : lines)
+        for (const Emission::PartAlong& along : emission.parts_along(line.light, line.sun)) {
+            const double power = channel_sum(emission.power(along.part)), weighted = line.importance * along.brightness;
+            if (power > 0 && weighted > 0) noise += weighted * power / static_cast<double>(part_q[along.part]);
+        }
+    return noise;
 }
 
 }  // namespace
 
+ViewChange::Sampling ViewChange::sampling_of(const SolverState& state) {
+    const Radiosity light(state.materials, state.solution.irradiance);
+    const ImportanceWeights weights =
+        importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
+    Sampling sampling{plan_power(state.materials, state.emission, state.solution, light, weights, false, 0).plan.q,
+                      {},
+                      state.targets};
+    const auto parts = sampling.q.begin() + state.forest->size();
+    sampling.part_q.assign(parts, sampling.q.end());
+    sampling.q.erase(parts, sampling.q.end());
+    return sampling;
+}
+
 void ViewChange::record(const SolverState& state) {
-    old_q_ = power_sampling(state);
+    old_ = sampling_of(state);
     old_importance_ = patch_importance(state);
 }
 
-std::vector<float> ViewChange::history_factor(const SolverState& state) const {
-    std::vector<float> old_q = old_q_;
+std::vector<float> ViewChange::history_factor(const SolverState& state,
+                                              std::span<const OutdoorLine> outdoor_light) const {
+    std::vector<float> old_q = old_.q;
     for (auto e = static_cast<std::uint32_t>(old_q.size()); e < state.forest->size(); ++e)
         old_q.push_back(old_q[state.forest->parent(e)] / 4);  // elements created since then
-    const std::vector<float> new_q = power_sampling(state), new_psi = patch_importance(state);
-    const float here = noise_ratio(state, new_psi, old_q, new_q);
-    const float there = noise_ratio(state, old_importance_, old_q, new_q);
+    const Sampling now = sampling_of(state);
+    const std::vector<float> new_psi = patch_importance(state);
+    Noise of_new_views = noise_of_leaves(state, new_psi, old_q, now.q);
+    const Emission old_emission(*state.lit, old_.targets);
+    if (old_.part_q.size() == old_emission.part_count()) {
+        of_new_views.before += noise_of_lines(old_emission, old_.part_q, outdoor_light);
+        of_new_views.now += noise_of_lines(state.emission, now.part_q, outdoor_light);
+    }
+    const float here = of_new_views.ratio();
+    const float there = noise_of_leaves(state, old_importance_, old_q, now.q).ratio();
     std::vector<float> ratio(state.forest->patch_count());
     for (std::uint32_t i = 0; i < ratio.size(); ++i) {
         const float both = new_psi[i] + old_importance_[i], share = both > 0 ? new_psi[i] / both : 0.5f;
@@ -68,14 +99,16 @@ std::vector<float> ViewChange::history_factor(const SolverState& state) const {
 }
 
 void ViewChange::archive(StateArchive& archive) {
-    archive("passes/old_q", old_q_);
+    archive("passes/old_q", old_.q);
+    archive("passes/old_part_q", old_.part_q);
+    archive("passes/old_targets", old_.targets);
     archive("passes/old_importance", old_importance_);
 }
 
 bool ViewChange::fits(const SolverState& state) const {
     const std::uint32_t patches = state.forest->patch_count();
-    return old_q_.empty() ||
-           (old_q_.size() >= patches && old_q_.size() <= state.forest->size() && old_importance_.size() == patches);
+    return old_.q.empty() || (old_.q.size() >= patches && old_.q.size() <= state.forest->size() &&
+                              old_.targets.size() <= max_targets && old_importance_.size() == patches);
 }
 
 void scale_history(SolverState& state, const std::vector<float>& factor) {
