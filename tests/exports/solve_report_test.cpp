@@ -25,6 +25,7 @@ SolveOptions unusual_options() {
     o.experimental.rays_per_iteration = 500;
     o.refinement.criterion = RefinementCriterion::power;
     o.experimental.shrinkage = false;
+    o.experimental.clusters = false;
     o.experimental.epsilon = 1e-3;
     o.experimental.epsilon_decay = 0.5;
     o.refinement.min_area = 1e-4;
@@ -57,6 +58,7 @@ TEST(SolveReport, HasEveryOption) {
     EXPECT_EQ(read.experimental.rays_per_iteration, o.experimental.rays_per_iteration);
     EXPECT_EQ(read.refinement.criterion, o.refinement.criterion);
     EXPECT_EQ(read.experimental.shrinkage, o.experimental.shrinkage);
+    EXPECT_EQ(read.experimental.clusters, o.experimental.clusters);
     EXPECT_EQ(read.experimental.epsilon, o.experimental.epsilon);
     EXPECT_EQ(read.experimental.epsilon_decay, o.experimental.epsilon_decay);
     EXPECT_EQ(read.refinement.min_area, o.refinement.min_area);

@@ -13,7 +13,7 @@ LAYERS = [
 # Their own folders, in the same order; files beside these come last.
 INNER_LAYERS = {
     "solver": [
-        "light", "importance", "sampling", "noise", "deposit", "transport", "state", "error", "refinement", "iteration",
+        "light", "clusters", "importance", "sampling", "noise", "deposit", "transport", "state", "shrinkage", "error", "refinement", "iteration",
         "methods", "methods/baselines", ".",
     ],
     "render": ["smooth", "lights", "paths", "pictures", "."],

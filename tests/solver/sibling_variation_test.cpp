@@ -7,7 +7,7 @@
 // instead of the next iteration; differences merged with the tau of the patches; new elements with the full history of
 // their parents; a split criterion without noise, or without signal.
 
-#include "interflect/solver/error/sibling_variation.h"
+#include "interflect/solver/shrinkage/sibling_variation.h"
 
 #include <gtest/gtest.h>
 

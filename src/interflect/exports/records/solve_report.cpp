@@ -133,6 +133,7 @@ void for_each_option(Options& options, const Access& access) {
     access.field("iterations", o.iterations);
     access.field("rays_per_iteration", o.rays_per_iteration);
     access.field("shrinkage", o.shrinkage);
+    access.field("clusters", o.clusters);
     access.field("epsilon", o.epsilon);
     access.field("epsilon_decay", o.epsilon_decay);
     access.field("inherited_weight", o.inherited_weight);

@@ -7,7 +7,8 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/pixel_filter.h"
-#include "interflect/solver/error/sibling_variation.h"
+#include "interflect/solver/shrinkage/cluster_shrinkage.h"
+#include "interflect/solver/shrinkage/sibling_variation.h"
 
 namespace interflect::detail {
 
@@ -19,12 +20,13 @@ constexpr double min_decay = 0.25, max_decay = 0.7;
 
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
-    double noise_of_patches = 0;
+    double noise_of_patches = 0, bias_of_patches = 0;
     double assumed_bias = 0;  // of undivided patches
 
     ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight, noise += o.noise, bias += o.bias;
-        noise_of_patches += o.noise_of_patches, assumed_bias += o.assumed_bias;
+        noise_of_patches += o.noise_of_patches, bias_of_patches += o.bias_of_patches;
+        assumed_bias += o.assumed_bias;
         return *this;
     }
 };
@@ -41,6 +43,7 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             sums.noise += w * errors.noise[e];
             sums.bias += w * errors.bias[e];
             sums.noise_of_patches += w * errors.noise_of_patch[e];
+            sums.bias_of_patches += w * errors.bias[forest.patch(e)];
             if (e >= forest.patch_count()) continue;
             const float variation = assumed_variation * luminance(state.solution.irradiance[e]);
             sums.assumed_bias += w * shown_within(state, measure, e)[0] * variation * variation;
@@ -71,13 +74,17 @@ double squared_error_of_differences(const RiskCheck& check, double noise_of_diff
                                               : std::max(0.0, check.measured / check.weight);
 }
 
-}  // namespace
-
-ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
+void add_errors_of_patches(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {
     const ElementForest& forest = *state.forest;
-    ElementErrors errors;
-    errors.noise.assign(forest.size(), 0);
-    errors.bias.assign(forest.size(), 0);
+    const float weight = 1 / static_cast<float>(state.clusters.size());
+    for (const PatchClusters& clusters : state.clusters) {
+        const std::vector<double> pixels =
+            clusters.sums<double>([&](std::uint32_t p) { return forest.area(p) / pixel_area(state, p); });
+        ClusterShrinkage(state, clusters).add_errors(errors.noise, errors.bias, weight, [&](std::size_t node) {
+            return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(pixels[node]);
+        });
+    }
+    if (!state.clusters.empty()) return;
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto root = static_cast<std::uint32_t>(begin); root < end; ++root) {
             const float shown = shown_of_patch(state, measure, root);
@@ -85,6 +92,16 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
             errors.noise[root] = shown * state.noise.variance(forest, state.solution.irradiance, root, rays);
         }
     });
+}
+
+}  // namespace
+
+ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
+    const ElementForest& forest = *state.forest;
+    ElementErrors errors;
+    errors.noise.assign(forest.size(), 0);
+    errors.bias.assign(forest.size(), 0);
+    add_errors_of_patches(state, measure, errors);
     errors.noise_of_patch = errors.noise;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const SiblingVariation variation = sibling_variation(state, first);
@@ -111,10 +128,10 @@ ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure) {
     const ErrorSums sums = sum_errors(state, measure, element_errors(state, measure));
     if (!(sums.weight > 0)) return {infinity, infinity};
     const double total_weight = measure == ErrorMeasure::surfaces ? sums.weight : 1;
-    const double squared_total =
-        sums.noise_of_patches +
-        squared_error_of_differences(state.risk_check, sums.noise - sums.noise_of_patches, sums.bias) +
-        error_within_leaves(state.risk_check) + sums.assumed_bias;
+    const double squared_total = sums.noise_of_patches + sums.bias_of_patches +
+                                 squared_error_of_differences(state.risk_check, sums.noise - sums.noise_of_patches,
+                                                              sums.bias - sums.bias_of_patches) +
+                                 error_within_leaves(state.risk_check) + sums.assumed_bias;
     const double squared_discretisation = state.options.method.refines ? std::max(0.0, squared_total - sums.noise) : 0;
     // `mean` and `sums` average over pixels with a surface, a share s: over the picture, s mean and s sum.
     const double surface_share = measure == ErrorMeasure::surfaces ? 1 : state.view.surface_share();

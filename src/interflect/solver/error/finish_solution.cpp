@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/error_estimate.h"
-#include "interflect/solver/error/sibling_variation.h"
+#include "interflect/solver/shrinkage/cluster_shrinkage.h"
+#include "interflect/solver/shrinkage/sibling_variation.h"
 
 namespace interflect::detail {
 
@@ -32,6 +35,28 @@ void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) 
         }
 }
 
+/// Averages over the trees of clusters.
+void reduce_patches(const SolverState& state, std::vector<Rgb>& irradiance, GroupLight& groups, GroupLight& direct) {
+    const std::uint32_t patches = state.forest->patch_count();
+    const float weight = 1 / static_cast<float>(state.clusters.size());
+    const auto reduce = [&](std::vector<Rgb>& light, const std::vector<ClusterShrinkage>& shrinkages) {
+        std::vector<Rgb> mean(patches, Rgb(0));
+        for (const ClusterShrinkage& shrinkage : shrinkages) {
+            const std::vector<Rgb> reduced = shrinkage.reduce(light);
+            for (std::uint32_t p = 0; p < patches; ++p) mean[p] += weight * reduced[p];
+        }
+        for (std::uint32_t p = 0; p < patches; ++p) light[p] = mean[p];
+    };
+    if (state.clusters.empty()) return;
+    std::vector<ClusterShrinkage> shrinkages;
+    for (const PatchClusters& clusters : state.clusters) shrinkages.emplace_back(state, clusters);
+    reduce(irradiance, shrinkages);
+    for (Rgb& h : std::span(irradiance).first(patches))
+        for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // rounding
+    for (std::vector<Rgb>& of_group : groups) reduce(of_group, shrinkages);
+    for (std::vector<Rgb>& of_group : direct) reduce(of_group, shrinkages);
+}
+
 }  // namespace
 
 void finish_solution(SolverState& state) {
@@ -49,6 +74,7 @@ void finish_solution(SolverState& state) {
     solution.rays.assign(state.streams.used.begin(), state.streams.used.end());
     std::vector<Rgb> reduced = solution.irradiance;
     GroupLight reduced_groups = solution.groups, reduced_direct = solution.direct;
+    reduce_patches(state, reduced, reduced_groups, reduced_direct);
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const std::uint32_t parent = forest.parent(first);
         const Shrinkage shrinkage = shrinkage_of(state, first, sibling_variation(state, first));

@@ -7,7 +7,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/error_weight.h"
 #include "interflect/solver/error/pixel_filter.h"
-#include "interflect/solver/error/sibling_variation.h"
+#include "interflect/solver/shrinkage/sibling_variation.h"
 
 namespace interflect::detail {
 

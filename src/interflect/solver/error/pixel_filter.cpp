@@ -45,6 +45,11 @@ float shown_of_patch(const SolverState& state, ErrorMeasure measure, std::uint32
     return measure == ErrorMeasure::surfaces ? 1 : shown_of_patch(extents_in_pixels(state, patch));
 }
 
+float shown_of_cluster(double pixels) {
+    const float of_side = shown_of_steps(static_cast<float>(std::sqrt(pixels)));
+    return of_side * of_side;
+}
+
 float shown_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first) {
     return measure == ErrorMeasure::surfaces ? 1 : shown_of_siblings(extents_in_pixels(state, first));
 }

@@ -12,6 +12,8 @@ namespace interflect::detail {
 // Shares of variance that pictures show: pixels are means over their squares. 1 for ErrorMeasure::surfaces.
 
 float shown_of_patch(const SolverState& state, ErrorMeasure measure, std::uint32_t patch);
+/// Of a cluster that covers `pixels` of the pictures.
+float shown_of_cluster(double pixels);
 float shown_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first);
 /// Returns the share for descendants of a leaf, by level. Assumes variation along one side, as at shadow edges.
 std::array<float, finer_levels> shown_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf);

@@ -9,7 +9,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/error_estimate.h"
 #include "interflect/solver/error/error_weight.h"
-#include "interflect/solver/error/sibling_variation.h"
+#include "interflect/solver/shrinkage/sibling_variation.h"
 #include "interflect/solver/importance/importance_weights.h"
 
 namespace interflect::detail {

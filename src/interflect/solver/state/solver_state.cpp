@@ -56,6 +56,8 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
     history.assign(forest->size(), 0.0f);
     solution.emitted_power = radiated_power(*this);
     compute_view_importance(*this);
+    if (o.experimental.shrinkage && o.experimental.clusters && refines_by_variance(o))
+        clusters = cluster_patches(*forest);
 }
 
 void SolverState::begin_work(const Monitor& m) {

@@ -13,6 +13,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/luminaires/emission.h"
 #include "interflect/solution.h"
+#include "interflect/solver/clusters/patch_clusters.h"
 #include "interflect/solver/deposit/contributions.h"
 #include "interflect/solver/importance/importance_weights.h"
 #include "interflect/solver/importance/neighbourhoods.h"
@@ -48,6 +49,7 @@ struct SolverState {
     const std::shared_ptr<ElementForest> forest;
     ViewImportance view;
     ElementFloor floor;
+    std::vector<PatchClusters> clusters;          // empty if differences between patches are not shrunk
     Neighbourhoods neighbourhoods;                // empty without a view
     std::vector<PartImportance> part_importance;  // for the current views
     SampleStreams streams;

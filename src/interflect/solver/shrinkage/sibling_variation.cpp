@@ -1,4 +1,4 @@
-#include "interflect/solver/error/sibling_variation.h"
+#include "interflect/solver/shrinkage/sibling_variation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+/// Tree of clusters: groups of patches that are near each other and face alike, groups of groups, up to the scene.
+class PatchClusters {
+  public:
+    /// Groups of 32 are divided into four of eight.
+    static constexpr std::uint32_t most_parts = 31;
+
+    struct Node {
+        std::uint32_t first_child;  ///< `none`: the node is a patch.
+        std::uint32_t count;        ///< Children; of a patch, its index.
+
+        bool is_patch() const { return first_child == none; }
+    };
+
+    /// @param turn  Angle by which the scene is turned before it is divided [radians].
+    PatchClusters(const ElementForest& forest, float turn);
+
+    std::uint32_t patch_count() const { return patch_count_; }
+    /// Parents first; children of a node are adjacent.
+    std::span<const Node> nodes() const { return nodes_; }
+
+    /// Returns the sum over the patches of each node.
+    template <class T, class OfPatch>
+    std::vector<T> sums(const OfPatch& of_patch) const {
+        std::vector<T> sums(nodes_.size(), T(0));
+        for (std::size_t i = nodes_.size(); i-- > 0;) {
+            const Node& node = nodes_[i];
+            if (node.is_patch())
+                sums[i] = T(of_patch(node.count));
+            else
+                for (std::uint32_t k = 0; k < node.count; ++k) sums[i] += sums[node.first_child + k];
+        }
+        return sums;
+    }
+
+  private:
+    std::uint32_t patch_count_;
+    std::vector<Node> nodes_;
+};
+
+/// Returns trees with different boundaries between clusters, to be averaged.
+std::vector<PatchClusters> cluster_patches(const ElementForest& forest);
+
+}  // namespace interflect::detail

@@ -1,0 +1,143 @@
+#include "interflect/solver/shrinkage/cluster_shrinkage.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "interflect/core.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Contributions of a part at which its measured variance has weight 1/2. Parts that few rays have hit have the
+/// variance that their area and the mean of the cluster suggest: a part without any would seem to be exactly black.
+constexpr double contributions_of_half_weight = 16;
+
+struct Sums {
+    double area = 0, power = 0;  // [m^2], luminance of the received power
+    double variance = 0;         // of the power
+
+    explicit Sums(double a = 0, double p = 0, double v = 0) : area(a), power(p), variance(v) {}
+    Sums& operator+=(const Sums& o) {
+        area += o.area, power += o.power, variance += o.variance;
+        return *this;
+    }
+    double mean() const { return power / area; }
+};
+
+/// Mean square errors of n parts after their differences were multiplied by max(0, 1 - noise / spread): Stein 1981, in
+/// n - 1 dimensions.
+AddedError error_of_parts(std::size_t parts, double spread, double noise, double mean) {
+    const double kept = spread > noise ? 1 - noise / spread : 0, dimensions = static_cast<double>(parts - 1);
+    const double risk =
+        spread > noise ? noise + noise * noise / spread * (4 - dimensions) / dimensions : spread - noise;
+    const double most = dimensions * mean * mean;  // largest variance of non-negative numbers
+    return {static_cast<float>(kept * kept * noise),
+            static_cast<float>(std::clamp(risk - kept * kept * noise, -most, most))};
+}
+
+/// Sets the factors of a cluster's parts. @return  The error that their differences add.
+AddedError shrink(const Sums& cluster, std::span<const Sums> sums, std::span<ClusterPart> parts) {
+    for (std::size_t k = 0; k < parts.size(); ++k) parts[k].share = static_cast<float>(sums[k].area / cluster.area);
+    if (!(cluster.variance > 0)) return {};
+    const double payload = cluster.variance / cluster.power, mean = cluster.mean();
+    const double contributions = cluster.power / payload / static_cast<double>(parts.size()),
+                 measured = contributions / (contributions + contributions_of_half_weight);
+    double spread = 0, noise = 0, mean_variance = 0;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        const double area = sums[k].area, difference = sums[k].mean() - mean, share = parts[k].share;
+        const double variance = measured * sums[k].variance / (area * area) + (1 - measured) * payload * mean / area;
+        parts[k].noise = static_cast<float>(variance);
+        spread += share * difference * difference;
+        noise += share * (1 - share) * variance;
+        mean_variance += share * variance;
+    }
+    const auto kept = static_cast<float>(spread > noise ? 1 - noise / spread : 0);
+    float remaining = 0;
+    for (ClusterPart& part : parts) {
+        const float relative = part.noise / static_cast<float>(mean_variance);
+        part.kept = kept > 0 ? kept / (kept + (1 - kept) * relative) : 0;
+        part.noise = kept > 0 ? relative * part.kept : 1;
+        remaining += part.share * part.noise;
+    }
+    for (ClusterPart& part : parts) part.noise = remaining > 0 ? part.noise / remaining : 1;
+    return error_of_parts(parts.size(), spread, noise, mean);
+}
+
+}  // namespace
+
+ClusterShrinkage::ClusterShrinkage(const SolverState& state, const PatchClusters& clusters)
+    : clusters_(&clusters),
+      parts_(clusters.nodes().size()),
+      added_(clusters.nodes().size()),
+      limit_(clusters.nodes().size()) {
+    const ElementForest& forest = *state.forest;
+    const std::vector<Rgb>& irradiance = state.solution.irradiance;
+    const std::vector<Sums> sums = clusters.sums<Sums>([&](std::uint32_t p) {
+        const double area = forest.area(p);
+        const float variance = state.noise.variance(forest, irradiance, p, std::max(state.history[p], 1.0f));
+        return Sums(area, area * luminance(irradiance[p]), area * area * variance);
+    });
+    noise_of_scene_ = static_cast<float>(sums[0].variance / (sums[0].area * sums[0].area));
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const PatchClusters::Node& cluster = clusters.nodes()[i];
+        if (cluster.is_patch()) continue;
+        const std::span<const Sums> of_parts = std::span(sums).subspan(cluster.first_child, cluster.count);
+        added_[i] = shrink(sums[i], of_parts, std::span(parts_).subspan(cluster.first_child, cluster.count));
+    }
+    reduced(irradiance, [&](std::size_t i, const Rgb& mean, std::span<const Rgb> differences) {
+        limit_[i] = Rgb(1);
+        for (int c = 0; c < 3; ++c) {
+            float lowest = 0;
+            for (const Rgb& difference : differences) lowest = std::min(lowest, difference[c]);
+            if (-lowest > mean[c]) limit_[i][c] = mean[c] / -lowest;
+        }
+        return limit_[i];
+    });
+}
+
+template <class LimitOf>
+std::vector<Rgb> ClusterShrinkage::reduced(std::span<const Rgb> irradiance, const LimitOf& limit_of) const {
+    const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
+    const std::vector<RgbD> before = means(irradiance);
+    std::vector<Rgb> after(nodes.size()), of_patch(clusters_->patch_count());
+    after[0] = Rgb(before[0]);
+    std::array<Rgb, PatchClusters::most_parts> differences;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const auto [first, count] = nodes[i];
+        if (nodes[i].is_patch()) {
+            of_patch[count] = after[i];
+            continue;
+        }
+        Rgb sum(0);
+        for (std::uint32_t k = 0; k < count; ++k) {
+            differences[k] = parts_[first + k].kept * Rgb(before[first + k] - before[i]);
+            sum += parts_[first + k].share * differences[k];
+        }
+        for (std::uint32_t k = 0; k < count; ++k) differences[k] -= parts_[first + k].noise * sum;
+        const Rgb limit = limit_of(i, after[i], std::span(differences).first(count));
+        for (std::uint32_t k = 0; k < count; ++k) after[first + k] = after[i] + limit * differences[k];
+    }
+    return of_patch;
+}
+
+std::vector<RgbD> ClusterShrinkage::means(std::span<const Rgb> irradiance) const {
+    const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
+    std::vector<RgbD> means(nodes.size(), RgbD(0));
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+        const auto [first, count] = nodes[i];
+        if (nodes[i].is_patch())
+            means[i] = RgbD(irradiance[count]);
+        else
+            for (std::uint32_t k = 0; k < count; ++k)
+                means[i] += static_cast<double>(parts_[first + k].share) * means[first + k];
+    }
+    return means;
+}
+
+std::vector<Rgb> ClusterShrinkage::reduce(std::span<const Rgb> irradiance) const {
+    return reduced(irradiance, [&](std::size_t i, const Rgb&, std::span<const Rgb>) { return limit_[i]; });
+}
+
+}  // namespace interflect::detail
