@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
-#include <utility>
-#include <vector>
 
 #include "interflect/core.h"
 #include "interflect/geometry/add_face.h"
@@ -103,24 +100,22 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
     return split;
 }
 
-float median_area(std::vector<float> areas) {
-    std::sort(areas.begin(), areas.end());
-    const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
-    double below = 0;
-    for (const float area : areas)
-        if ((below += area) >= all / 2) return area;
-    return 0;
-}
-
 double default_element_size(const Scene& scene) {
     constexpr double largest = 0.005;  // [m]
     constexpr double typical_side_over_size = 1000;
-    if (scene.patches.empty()) return largest;
     std::vector<float> areas;
     areas.reserve(scene.patches.size());
-    for (const Patch& patch : scene.patches) areas.push_back(patch_area(scene, patch));
-    const double side = std::sqrt(static_cast<double>(median_area(std::move(areas))));
-    return std::min(largest, side / typical_side_over_size);
+    double all = 0;
+    for (const Patch& patch : scene.patches) {
+        areas.push_back(patch_area(scene, patch));
+        all += areas.back();
+    }
+    std::sort(areas.begin(), areas.end());
+    double below = 0;
+    for (const float area : areas)
+        if ((below += area) >= all / 2)
+            return std::min(largest, std::sqrt(static_cast<double>(area)) / typical_side_over_size);
+    return largest;
 }
 
 float default_mesh_size(const Scene& scene) {

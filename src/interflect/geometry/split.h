@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
 #include "interflect/scene.h"
 
 namespace interflect::detail {
@@ -14,9 +11,6 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
 
 /// Returns an edge length [m]: 1/48 of the diagonal of core_bounds(), or more for at most about 200,000 patches.
 float default_mesh_size(const Scene& scene);
-
-/// Returns the area above which faces have half of the total area [m^2]; 0 without faces.
-float median_area(std::vector<float> areas);
 
 /// Returns a minimum element side [m]: 5 mm, at most a thousandth of the area-weighted median patch side.
 double default_element_size(const Scene& scene);

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>
 
 #include "interflect/base/parallel.h"
-#include "interflect/geometry/split.h"
 
 namespace interflect::detail {
 
@@ -18,23 +18,44 @@ namespace {
 
 constexpr std::size_t trees = 4;
 
-/// Position in units of the typical side of a surface, and normal: at this distance, irradiance changes about as much
-/// as from one direction to the opposite.
-using Place = std::array<float, 6>;
+using Place = std::array<float, 6>;  // position and normal
 using Range = std::span<std::uint32_t>;
 
-std::vector<Place> places(const ElementForest& forest, float turn) {
-    std::vector<float> areas(forest.patch_count());
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) areas[p] = forest.area(p);
-    const auto side = static_cast<float>(std::sqrt(median_area(std::move(areas))));
+V3f centre(const PatchGeometry& geometry) { return geometry.point(Cell().centre(geometry.is_triangle())); }
+
+/// Returns the median distance from surfaces to those opposite, which does not depend on their tessellation [m].
+float distance_of_surfaces(const ElementForest& forest, const RayCaster& ray_caster) {
+    constexpr int rays = 1024;
+    double area = 0;
+    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) area += forest.area(p);
+    std::vector<Ray> normals;
+    double below = 0;
+    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+        below += forest.area(p);
+        const PatchGeometry& geometry = forest.geometry(p);
+        const Ray ray{centre(geometry) + geometry.normal() * ray_caster.ray_offset(p), geometry.normal()};
+        while (normals.size() < rays && (static_cast<double>(normals.size()) + 0.5) * area < below * rays)
+            normals.push_back(ray);
+    }
+    std::vector<Hit> hits(normals.size());
+    ray_caster.trace(normals, hits);
+    std::vector<float> distances;
+    for (const Hit& hit : hits)
+        if (hit.patch != none) distances.push_back(hit.distance);
+    if (distances.empty()) return static_cast<float>(std::sqrt(area));
+    const auto median = distances.begin() + std::ssize(distances) / 2;
+    std::nth_element(distances.begin(), median, distances.end());
+    return *median;
+}
+
+std::vector<Place> places(const ElementForest& forest, float length, float turn) {
     Imath::M44f rotation;
     rotation.setAxisAngle(V3f(1, 1, 1).normalized(), turn);
     std::vector<Place> places(forest.patch_count());
     for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
-        const PatchGeometry& geometry = forest.geometry(p);
         V3f position, normal;
-        rotation.multDirMatrix(geometry.point(Cell().centre(geometry.is_triangle())) / side, position);
-        rotation.multDirMatrix(geometry.normal(), normal);
+        rotation.multDirMatrix(centre(forest.geometry(p)) / length, position);
+        rotation.multDirMatrix(forest.geometry(p).normal(), normal);
         places[p] = {position.x, position.y, position.z, normal.x, normal.y, normal.z};
     }
     return places;
@@ -65,8 +86,9 @@ void divide(Range patches, int halvings, const std::vector<Place>& places, std::
 
 }  // namespace
 
-PatchClusters::PatchClusters(const ElementForest& forest, float turn) : patch_count_(forest.patch_count()) {
-    const std::vector<Place> of_patch = places(forest, turn);
+PatchClusters::PatchClusters(const ElementForest& forest, float length, float turn)
+    : patch_count_(forest.patch_count()) {
+    const std::vector<Place> of_patch = places(forest, length, turn);
     std::vector<std::uint32_t> patches(patch_count_);
     std::iota(patches.begin(), patches.end(), 0u);
     std::vector<Range> ranges{patches};  // of the nodes
@@ -85,12 +107,13 @@ PatchClusters::PatchClusters(const ElementForest& forest, float turn) : patch_co
     }
 }
 
-std::vector<PatchClusters> cluster_patches(const ElementForest& forest) {
+std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster) {
+    const float length = distance_of_surfaces(forest, ray_caster);
     // A turn of 120 degrees about (1, 1, 1) would exchange the axes.
     std::vector<std::vector<PatchClusters>> made(trees);
     parallel_for_ranges(trees, 1, [&](std::size_t tree, std::size_t) {
         const float turn = static_cast<float>(tree) / trees * 2 * std::numbers::pi_v<float> / 3;
-        made[tree].emplace_back(forest, turn);
+        made[tree].emplace_back(forest, length, turn);
     });
     std::vector<PatchClusters> all;
     for (std::vector<PatchClusters>& tree : made) all.push_back(std::move(tree.front()));

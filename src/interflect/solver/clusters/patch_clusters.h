@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
+#include "interflect/ray_caster.h"
 
 namespace interflect::detail {
 
@@ -22,8 +23,9 @@ class PatchClusters {
         bool is_patch() const { return first_child == none; }
     };
 
+    /// @param length  Distance over which irradiance changes about as much as from one direction to the opposite [m].
     /// @param turn  Angle by which the scene is turned before it is divided [radians].
-    PatchClusters(const ElementForest& forest, float turn);
+    PatchClusters(const ElementForest& forest, float length, float turn);
 
     std::uint32_t patch_count() const { return patch_count_; }
     /// Parents first; children of a node are adjacent.
@@ -49,6 +51,6 @@ class PatchClusters {
 };
 
 /// Returns trees with different boundaries between clusters, to be averaged.
-std::vector<PatchClusters> cluster_patches(const ElementForest& forest);
+std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster);
 
 }  // namespace interflect::detail

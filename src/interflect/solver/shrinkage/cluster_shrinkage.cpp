@@ -10,9 +10,12 @@ namespace interflect::detail {
 
 namespace {
 
-/// Contributions of a part at which its measured variance has weight 1/2. Parts that few rays have hit have the
-/// variance that their area and the mean of the cluster suggest: a part without any would seem to be exactly black.
+/// Contributions of a part, found or expected, at which its measured variance has weight 1/2. With fewer, parts tend to
+/// the variance that their area and the mean of the cluster suggest: one without any would seem to be exactly black.
 constexpr double contributions_of_half_weight = 16;
+
+/// In a region of the pictures that keeps its mean. Fewer would bring noise of the unreduced light back.
+constexpr double fewest_camera_rays = 1024;
 
 struct Sums {
     double area = 0, power = 0;  // [m^2], luminance of the received power
@@ -24,6 +27,7 @@ struct Sums {
         return *this;
     }
     double mean() const { return power / area; }
+    double contributions() const { return variance > 0 ? power * power / variance : 0; }
 };
 
 /// Mean square errors of n parts after their differences were multiplied by max(0, 1 - noise / spread): Stein 1981, in
@@ -42,12 +46,13 @@ AddedError shrink(const Sums& cluster, std::span<const Sums> sums, std::span<Clu
     for (std::size_t k = 0; k < parts.size(); ++k) parts[k].share = static_cast<float>(sums[k].area / cluster.area);
     if (!(cluster.variance > 0)) return {};
     const double payload = cluster.variance / cluster.power, mean = cluster.mean();
-    const double contributions = cluster.power / payload / static_cast<double>(parts.size()),
-                 measured = contributions / (contributions + contributions_of_half_weight);
     double spread = 0, noise = 0, mean_variance = 0;
     for (std::size_t k = 0; k < parts.size(); ++k) {
-        const double area = sums[k].area, difference = sums[k].mean() - mean, share = parts[k].share;
-        const double variance = measured * sums[k].variance / (area * area) + (1 - measured) * payload * mean / area;
+        const Sums& part = sums[k];
+        const double difference = part.mean() - mean, share = parts[k].share;
+        const double expected = mean * part.area / payload, contributions = std::max(part.contributions(), expected),
+                     measured = contributions / (contributions + contributions_of_half_weight);
+        const double variance = (measured * part.variance / part.area + (1 - measured) * payload * mean) / part.area;
         parts[k].noise = static_cast<float>(variance);
         spread += share * difference * difference;
         noise += share * (1 - share) * variance;
@@ -71,7 +76,8 @@ ClusterShrinkage::ClusterShrinkage(const SolverState& state, const PatchClusters
     : clusters_(&clusters),
       parts_(clusters.nodes().size()),
       added_(clusters.nodes().size()),
-      limit_(clusters.nodes().size()) {
+      limit_(clusters.nodes().size()),
+      restored_(clusters.patch_count(), Rgb(1)) {
     const ElementForest& forest = *state.forest;
     const std::vector<Rgb>& irradiance = state.solution.irradiance;
     const std::vector<Sums> sums = clusters.sums<Sums>([&](std::uint32_t p) {
@@ -86,15 +92,49 @@ ClusterShrinkage::ClusterShrinkage(const SolverState& state, const PatchClusters
         const std::span<const Sums> of_parts = std::span(sums).subspan(cluster.first_child, cluster.count);
         added_[i] = shrink(sums[i], of_parts, std::span(parts_).subspan(cluster.first_child, cluster.count));
     }
-    reduced(irradiance, [&](std::size_t i, const Rgb& mean, std::span<const Rgb> differences) {
-        limit_[i] = Rgb(1);
-        for (int c = 0; c < 3; ++c) {
-            float lowest = 0;
-            for (const Rgb& difference : differences) lowest = std::min(lowest, difference[c]);
-            if (-lowest > mean[c]) limit_[i][c] = mean[c] / -lowest;
+    const std::vector<Rgb> all =
+        reduced(irradiance, [&](std::size_t i, const Rgb& mean, std::span<const Rgb> differences) {
+            limit_[i] = Rgb(1);
+            for (int c = 0; c < 3; ++c) {
+                float lowest = 0;
+                for (const Rgb& difference : differences) lowest = std::min(lowest, difference[c]);
+                if (-lowest > mean[c]) limit_[i][c] = mean[c] / -lowest;
+            }
+            return limit_[i];
+        });
+    keep_means_of_pictures(state, all);
+}
+
+void ClusterShrinkage::keep_means_of_pictures(const SolverState& state, std::span<const Rgb> reduced) {
+    const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
+    const std::vector<float>& seen = state.solution.view_importance;
+    if (seen.empty()) return;
+    const std::vector<double> shares =
+        clusters_->sums<double>([&](std::uint32_t p) { return seen[p] * state.forest->area(p); });
+    const double fewest = fewest_camera_rays / static_cast<double>(state.view.rays());
+    struct Region {
+        double share = 0;
+        RgbD before{0, 0, 0}, after{0, 0, 0};
+    };
+    std::vector<Region> regions(nodes.size());
+    std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(clusters_->patch_count());
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+        const auto [first, count] = nodes[i];
+        if (shares[i] >= fewest) region[i] = i;
+        if (!nodes[i].is_patch()) {
+            std::fill_n(region.begin() + first, count, region[i]);
+            continue;
         }
-        return limit_[i];
-    });
+        Region& of_patch = regions[region_of_patch[count] = region[i]];
+        of_patch.share += shares[i];
+        of_patch.before += shares[i] * RgbD(state.solution.irradiance[count]);
+        of_patch.after += shares[i] * RgbD(reduced[count]);
+    }
+    for (std::uint32_t p = 0; p < restored_.size(); ++p) {
+        const auto& [share, before, after] = regions[region_of_patch[p]];
+        for (int c = 0; c < 3; ++c)
+            if (share >= fewest && after[c] > 0) restored_[p][c] = static_cast<float>(before[c] / after[c]);
+    }
 }
 
 template <class LimitOf>
@@ -107,7 +147,7 @@ std::vector<Rgb> ClusterShrinkage::reduced(std::span<const Rgb> irradiance, cons
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto [first, count] = nodes[i];
         if (nodes[i].is_patch()) {
-            of_patch[count] = after[i];
+            of_patch[count] = restored_[count] * after[i];
             continue;
         }
         Rgb sum(0);

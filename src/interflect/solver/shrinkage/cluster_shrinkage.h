@@ -38,10 +38,14 @@ class ClusterShrinkage {
     template <class LimitOf>
     std::vector<Rgb> reduced(std::span<const Rgb> irradiance, const LimitOf& limit_of) const;
 
+    /// Clusters preserve the means of areas. Pictures show parts of them, which may be brighter than what is hidden.
+    void keep_means_of_pictures(const SolverState& state, std::span<const Rgb> reduced);
+
     const PatchClusters* clusters_;
     std::vector<ClusterPart> parts_;  // by node
     std::vector<AddedError> added_;   // by node, of its parts
     std::vector<Rgb> limit_;          // by node: keeps irradiance non-negative
+    std::vector<Rgb> restored_;       // by patch: keeps the means of what pictures show
     float noise_of_scene_ = 0;
 };
 

@@ -57,7 +57,7 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
     solution.emitted_power = radiated_power(*this);
     compute_view_importance(*this);
     if (o.experimental.shrinkage && o.experimental.clusters && refines_by_variance(o))
-        clusters = cluster_patches(*forest);
+        clusters = cluster_patches(*forest, ray_caster);
 }
 
 void SolverState::begin_work(const Monitor& m) {

@@ -1,0 +1,227 @@
+// Clusters of patches: the trees, and the differences between patches that they reduce, on simulated estimates with
+// known truth and noise. Statistical tests have fixed seeds; the probability of a false alarm is 0.001 each
+// (statistics.h).
+//
+// Seen to fail (scripts/mutation-test): differences that are never reduced; noise by the measured variance alone;
+// an error without its bias; parts that do not share the loss of their mean.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <set>
+
+#include "interflect/elements/forest.h"
+#include "interflect/solver/clusters/patch_clusters.h"
+#include "interflect/solver/error/finish_solution.h"
+#include "interflect/solver/shrinkage/cluster_shrinkage.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace interflect {
+
+using namespace detail;
+namespace {
+
+using namespace testing_support;
+
+/// A box of 600 patches, of which each receives `payload` by a Poisson number of rays.
+struct Box {
+    static constexpr float payload = 0.004f;  // [lm]
+
+    float size;
+    Scene scene = closed_box({size, size, size}, 10, {{"wall", Rgb(0.5f), Rgb(1)}});
+    RayCaster ray_caster{scene};
+    SolverState state{scene, ray_caster, {.method = find_method("hsrr")}};
+    std::mt19937_64 random{1};
+
+    explicit Box(float s = 1) : size(s) {}
+    std::uint32_t patches() const { return state.forest->patch_count(); }
+    float area(std::uint32_t p) const { return state.forest->area(p); }
+
+    /// Returns 0 to 5.
+    int wall(std::uint32_t p) const {
+        const V3f n = state.forest->geometry(p).normal();
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::abs(n[axis]) > 0.5f) return 2 * axis + (n[axis] > 0 ? 1 : 0);
+        return -1;
+    }
+
+    void receive(const std::function<float(std::uint32_t)>& truth) {
+        std::vector<float> variance(patches());
+        state.history.assign(patches(), 1.0f);
+        for (std::uint32_t p = 0; p < patches(); ++p) {
+            std::poisson_distribution<int> rays(static_cast<double>(truth(p) * area(p) / payload));
+            const auto hits = static_cast<float>(rays(random));
+            state.solution.irradiance[p] = Rgb(hits * payload / area(p));
+            variance[p] = hits * payload * payload / (area(p) * area(p));
+        }
+        state.noise.set_variance(variance, state.history);
+    }
+
+    double squared_error(const std::vector<Rgb>& irradiance, const std::function<float(std::uint32_t)>& truth) const {
+        double sum = 0;
+        for (std::uint32_t p = 0; p < patches(); ++p)
+            sum += static_cast<double>(area(p)) * std::pow(luminance(irradiance[p]) - truth(p), 2);
+        return sum / (6 * size * size);
+    }
+    double mean(const std::vector<Rgb>& irradiance) const {
+        double sum = 0;
+        for (std::uint32_t p = 0; p < patches(); ++p) sum += static_cast<double>(area(p) * luminance(irradiance[p]));
+        return sum / (6 * size * size);
+    }
+};
+
+TEST(PatchClusters, ContainEveryPatchOnceInGroupsOfTwoToThirtyOne) {
+    const Box box;
+    for (const PatchClusters& clusters : box.state.clusters) {
+        std::multiset<std::uint32_t> found;
+        for (std::size_t i = 0; i < clusters.nodes().size(); ++i) {
+            const PatchClusters::Node& node = clusters.nodes()[i];
+            if (node.is_patch()) {
+                found.insert(node.count);
+                continue;
+            }
+            EXPECT_GT(node.first_child, i) << "parents come first";
+            EXPECT_GE(node.count, 2u);
+            EXPECT_LE(node.count, PatchClusters::most_parts);
+        }
+        ASSERT_EQ(found.size(), 600u);
+        EXPECT_EQ(std::set<std::uint32_t>(found.begin(), found.end()).size(), 600u);
+    }
+}
+
+TEST(PatchClusters, SeparateDirections) {
+    const Box box;
+    const PatchClusters& clusters = box.state.clusters.front();
+    int mixed = 0, all = 0;
+    for (const PatchClusters::Node& node : clusters.nodes()) {
+        if (node.is_patch() || !clusters.nodes()[node.first_child].is_patch()) continue;
+        std::set<int> walls;
+        for (std::uint32_t k = 0; k < node.count; ++k)
+            walls.insert(box.wall(clusters.nodes()[node.first_child + k].count));
+        ++all, mixed += walls.size() > 1;
+    }
+    EXPECT_LE(mixed, all / 4) << "of the smallest clusters";
+}
+
+TEST(PatchClusters, AreTheSameInAnyUnitOfLength) {
+    const Box metres(1), kilometres(1024);
+    for (std::size_t tree = 0; tree < metres.state.clusters.size(); ++tree) {
+        const auto a = metres.state.clusters[tree].nodes(), b = kilometres.state.clusters[tree].nodes();
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t i = 0; i < a.size(); ++i)
+            ASSERT_EQ(a[i].count, b[i].count) << "tree " << tree << ", node " << i;
+    }
+}
+
+TEST(PatchClusters, AreNotMadeWithoutShrinkage) {
+    const Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(1)}});
+    const RayCaster ray_caster(scene);
+    for (const char* method : {"hsrr", "srr"}) {
+        SolveOptions options{.method = find_method(method)};
+        options.experimental.clusters = false;
+        EXPECT_TRUE(SolverState(scene, ray_caster, options).clusters.empty());
+    }
+    EXPECT_TRUE(SolverState(scene, ray_caster, {.method = find_method("srr")}).clusters.empty());
+}
+
+TEST(ClusterShrinkage, RemovesNearlyAllNoiseFromEqualPatches) {
+    Box box;
+    const auto truth = [](std::uint32_t) { return 2.0f; };  // five rays on each patch
+    box.receive(truth);
+    const double before = box.squared_error(box.state.solution.irradiance, truth),
+                 mean = box.mean(box.state.solution.irradiance);
+    finish_solution(box.state);
+    EXPECT_LT(box.squared_error(box.state.solution.irradiance, truth), before / 10);
+    EXPECT_NEAR(box.mean(box.state.solution.irradiance) / mean, 1, 1e-5) << "no light is lost";
+    for (const Rgb& h : box.state.solution.irradiance) ASSERT_GE(h.x, 0);
+}
+
+TEST(ClusterShrinkage, KeepsShadowsDark) {
+    Box box;
+    const auto truth = [&](std::uint32_t p) { return box.wall(p) == 2 ? 0.0f : 200.0f; };  // 500 rays
+    box.receive(truth);
+    finish_solution(box.state);
+    for (std::uint32_t p = 0; p < box.patches(); ++p) {
+        if (box.wall(p) == 2) {
+            EXPECT_LT(box.state.solution.irradiance[p].x, 1) << p;
+        }
+    }
+}
+
+TEST(ClusterShrinkage, LightsPatchesThatNoRayHasHit) {
+    Box box;
+    const auto truth = [](std::uint32_t) { return 0.4f; };  // one ray on each patch
+    box.receive(truth);
+    const auto is_black = [](const Rgb& h) { return h.x == 0; };
+    ASSERT_GT(std::ranges::count_if(box.state.solution.irradiance, is_black), 150);
+    finish_solution(box.state);
+    for (const Rgb& h : box.state.solution.irradiance) ASSERT_GT(h.x, 0.1f);
+}
+
+class ClusterRisk : public testing::TestWithParam<float> {};
+INSTANTIATE_TEST_SUITE_P(Contrast, ClusterRisk, testing::Values(0.0f, 0.2f, 0.5f, 1.0f));
+
+TEST_P(ClusterRisk, IsTheMeanSquareErrorThatIsLeft) {
+    Box box;
+    const auto truth = [&](std::uint32_t p) {  // 25 rays a patch; varies over each wall
+        const PatchGeometry& geometry = box.state.forest->geometry(p);
+        return 10 *
+               (1 + GetParam() * std::sin(6 * geometry.point({0.5f, 0.5f}).x + 4 * geometry.point({0.5f, 0.5f}).y));
+    };
+    std::vector<double> differences, without_bias;
+    for (int trial = 0; trial < 60; ++trial) {
+        box.receive(truth);
+        const ClusterShrinkage shrinkage(box.state, box.state.clusters.front());
+        std::vector<float> noise(box.patches(), 0.0f), bias(box.patches(), 0.0f);
+        shrinkage.add_errors(noise, bias, 1, [](std::size_t) { return 1.0f; });
+        double of_noise = 0, of_bias = 0;
+        for (std::uint32_t p = 0; p < box.patches(); ++p)
+            of_noise += static_cast<double>(box.area(p) * noise[p]) / 6,
+                of_bias += static_cast<double>(box.area(p) * bias[p]) / 6;
+        const double error = box.squared_error(shrinkage.reduce(box.state.solution.irradiance), truth);
+        differences.push_back((of_noise + of_bias) / error - 1);
+        without_bias.push_back(of_noise / error - 1);
+    }
+    EXPECT_GT(t_test(differences, 0, 0.15), false_alarm);
+    EXPECT_LT(t_test(without_bias, 0, 0.15), false_alarm) << "would notice missing bias";
+}
+
+TEST(ClusterShrinkage, KeepsTheMeanOfPicturesThatShowTheBrightPatches) {
+    Box box;
+    box.state.view = ViewImportance({{{"", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}}}}, 1);
+    compute_view_importance(box.state);
+    std::vector<float>& seen = box.state.solution.view_importance;
+    for (std::uint32_t p = 0; p < box.patches(); ++p) seen[p] = p % 2 == 0 ? 1 / 3.0f : 0;
+    const auto truth = [](std::uint32_t p) { return p % 2 == 0 ? 2.2f : 1.8f; };  // five rays on each patch
+    box.receive(truth);
+    const auto mean_seen = [&] {
+        double sum = 0;
+        for (std::uint32_t p = 0; p < box.patches(); ++p)
+            sum += static_cast<double>(seen[p] * box.area(p) * luminance(box.state.solution.irradiance[p]));
+        return sum;
+    };
+    const double before = mean_seen(), error = box.squared_error(box.state.solution.irradiance, truth);
+    finish_solution(box.state);
+    EXPECT_NEAR(mean_seen() / before, 1, 0.01);
+    EXPECT_LT(box.squared_error(box.state.solution.irradiance, truth), error / 4);
+}
+
+TEST(ClusterShrinkage, KeepsTheSumOfLightGroups) {
+    Scene scene = closed_box({1, 1, 1}, 10, {{"wall", Rgb(0.5f), Rgb(1)}});
+    scene.light_groups = {{"lamps", "wall"}};
+    const RayCaster ray_caster(scene);
+    SolveOptions options{.method = find_method("hsrr"), .limits = {.rays = 3000}};
+    const Solution solution = solve(scene, ray_caster, options);
+    for (std::size_t e = 0; e < solution.irradiance.size(); ++e) {
+        Rgb sum(0);
+        for (const std::vector<Rgb>& of_group : solution.groups) sum += of_group[e];
+        ASSERT_NEAR(sum.x, solution.irradiance[e].x, 1e-4f * solution.irradiance[e].x + 1e-6f);
+    }
+}
+
+}  // namespace
+}  // namespace interflect
