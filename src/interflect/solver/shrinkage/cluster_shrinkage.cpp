@@ -30,12 +30,11 @@ struct Sums {
     double contributions() const { return variance > 0 ? power * power / variance : 0; }
 };
 
-/// Mean square errors of n parts after their differences were multiplied by max(0, 1 - noise / spread): Stein 1981, in
-/// n - 1 dimensions.
-AddedError error_of_parts(std::size_t parts, double spread, double noise, double mean) {
-    const double kept = spread > noise ? 1 - noise / spread : 0, dimensions = static_cast<double>(parts - 1);
-    const double risk =
-        spread > noise ? noise + noise * noise / spread * (4 - dimensions) / dimensions : spread - noise;
+/// Returns the mean square errors that the differences of n parts add (Stein 1981, in n - 1 dimensions).
+/// @param kept  Factor of the differences.
+AddedError error_of_parts(std::size_t parts, double spread, double noise, double kept, double mean) {
+    const auto dimensions = static_cast<double>(parts - 1);
+    const double risk = kept > 0 ? noise + noise * noise / spread * (4 - dimensions) / dimensions : spread - noise;
     const double most = dimensions * mean * mean;  // largest variance of non-negative numbers
     return {static_cast<float>(kept * kept * noise),
             static_cast<float>(std::clamp(risk - kept * kept * noise, -most, most))};
@@ -58,7 +57,7 @@ AddedError shrink(const Sums& cluster, std::span<const Sums> sums, std::span<Clu
         noise += share * (1 - share) * variance;
         mean_variance += share * variance;
     }
-    const auto kept = static_cast<float>(spread > noise ? 1 - noise / spread : 0);
+    const float kept = spread > noise ? static_cast<float>(1 - noise / spread) : 0;
     float remaining = 0;
     for (ClusterPart& part : parts) {
         const float relative = part.noise / static_cast<float>(mean_variance);
@@ -67,7 +66,7 @@ AddedError shrink(const Sums& cluster, std::span<const Sums> sums, std::span<Clu
         remaining += part.share * part.noise;
     }
     for (ClusterPart& part : parts) part.noise = remaining > 0 ? part.noise / remaining : 1;
-    return error_of_parts(parts.size(), spread, noise, mean);
+    return error_of_parts(parts.size(), spread, noise, static_cast<double>(kept), mean);
 }
 
 }  // namespace
