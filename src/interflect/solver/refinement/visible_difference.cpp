@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/image/visual_adaptation.h"
-#include "interflect/solver/error/error_weight.h"
 #include "interflect/solver/error/sibling_variation.h"
 
 namespace interflect::detail {
@@ -15,7 +15,7 @@ namespace {
 
 // The display: white of tone_map() by default, black with a contrast of 200 in a lit room [cd/m^2].
 constexpr float white = 100, black = 0.5f;
-/// Mean of a picture relative to white, as in automatic_exposure().
+/// Logarithmic mean of a picture relative to white, as in automatic_exposure().
 constexpr float key = 0.2f;
 /// The observer of FLIP (docs/metrics.md).
 constexpr float pixels_per_degree = 67.02f;
@@ -24,6 +24,28 @@ constexpr double best_frequency = 8;
 /// JND of a steadily viewed edge relative to cone_threshold(), which is for brief flashes. Chosen by measurement
 /// (docs/results.md).
 constexpr float jnd_of_edge = 0.2f;
+
+/// Returns the logarithmic mean of reflected light in the pictures [lm/m^2 or W/m^2]; 0 if they are dark.
+double logarithmic_mean(const SolverState& state) {
+    struct Sums {
+        double stops = 0, weight = 0;
+        Sums& operator+=(const Sums& o) { return stops += o.stops, weight += o.weight, *this; }
+    };
+    const ElementForest& forest = *state.forest;
+    const Sums sums = parallel_sum(forest.size(), elements_per_task, Sums(), [&](std::size_t begin, std::size_t end) {
+        Sums sum;
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            const Rgb rho = state.materials.surface(forest.patch(e), e).reflectance;
+            const float light = luminance(Rgb(rho * state.solution.irradiance[e]));
+            if (!forest.is_leaf(e) || !(light > 0)) continue;
+            const double weight = static_cast<double>(forest.area(e)) * state.solution.view_importance[e];
+            sum.stops += weight * std::log2(static_cast<double>(light));
+            sum.weight += weight;
+        }
+        return sum;
+    });
+    return sums.weight > 0 ? std::exp2(sums.stops / sums.weight) : 0;
+}
 
 /// Edges contain all higher frequencies, so large elements are not less visible.
 float relative_sensitivity(double cycles_per_degree) {
@@ -50,7 +72,7 @@ float threshold_elevation(float contrast) {
 }
 
 VisibleDifference::VisibleDifference(const SolverState& state) : state_(state) {
-    const double mean = error_reference(state, ErrorMeasure::pictures);
+    const double mean = logarithmic_mean(state);
     if (mean > 0) exposure_ = static_cast<float>(static_cast<double>(key * white) / mean);
     const double contrast = jnd_of_edge * cone_threshold(key * white) / (key * white);
     share_of_light_ = contrast * share_of_square_degree(state.options.views);
