@@ -1,9 +1,10 @@
 // Visible differences: each factor of the threshold on elements that differ in one respect, and its share of
 // refinement.
 //
-// Seen to fail: adaptation to the mean of the picture, to the leaf alone or without limits; no spatial frequency, or
-// that of a single child; no masking by texture or by light, masking with a third of the exponent; a square degree that
-// ignores the weights of the views; black or hidden leaves that count as visible.
+// Seen to fail: adaptation to the mean of the picture or to the leaf alone; exposure by the arithmetic mean; no spatial
+// frequency, or the period of a single child; no masking, or another exponent; no rho; a square degree that ignores the
+// weights of the views; refinement of all visible leaves, of none, or
+// with the variance's limit for shifted light.
 
 #include "interflect/solver/refinement/visible_difference.h"
 
@@ -11,6 +12,7 @@
 
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -45,7 +47,7 @@ SolveOptions perceptual(const std::vector<WeightedView>& views = {view_of_patche
     return options;
 }
 
-/// Irradiance 1 everywhere, all surfaces equally important, nothing measured.
+/// State with an irradiance of 1, equal importance of all surfaces, and no rays.
 struct Setting {
     Scene scene;
     RayCaster ray_caster;
@@ -130,7 +132,7 @@ TEST(VisibleDifference, SparesSmallElements) {
     }
 }
 
-/// Daly 1993: none below the threshold of the masker, then the power 0.7.
+/// Daly 1993: maskers below the threshold have no effect, others raise it with exponent 0.7.
 TEST(VisibleDifference, IsRaisedByMaskers) {
     EXPECT_EQ(threshold_elevation(0), 1);
     EXPECT_NEAR(threshold_elevation(0.1f), 1, 0.001f);
@@ -176,6 +178,25 @@ TEST(VisibleDifference, OfOtherSurfacesIsThatOfASquareDegree) {
     EXPECT_NEAR(VisibleDifference(two.state).share_of_light(), contrast * square_degree * 8 / 9, 1e-9);
 }
 
+/// The children of two patches differ by more and by less than the threshold, without noise.
+TEST(PerceptualRefinement, SplitsVisibleDifferences) {
+    Setting s;
+    const std::uint32_t clear = s.divide(12, 1), faint = s.divide(13, 1);
+    std::fill(s.state.solution.indirect_importance.begin(), s.state.solution.indirect_importance.end(), 0.0f);
+    const float threshold = s.threshold(clear);
+    s.state.history.assign(s.state.forest->size(), 1000);
+    const auto differ = [&](std::uint32_t first, float signal) {
+        const float difference = signal / std::sqrt(0.3f);  // falls to 0.3 of the square within the children
+        for (const std::uint32_t k : {0u, 1u}) s.set(first + k, 1 + difference), s.set(first + 2 + k, 1 - difference);
+    };
+    differ(clear, 1.3f * threshold), differ(faint, 0.8f * threshold);
+    refine_by_variance(s.state);
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        EXPECT_FALSE(s.state.forest->is_leaf(clear + k));
+        EXPECT_TRUE(s.state.forest->is_leaf(faint + k));
+    }
+}
+
 /// The view shows a part of the floor; variance resolves the light on the other surfaces, too.
 Solution solved(RefinementCriterion criterion, std::uint64_t seed = 1) {
     const Scene scene = half_dark_floor(Halves::reflect);
@@ -201,7 +222,7 @@ TEST(PerceptualRefinement, HasTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(on_threads(1).irradiance, on_threads(2).irradiance);
 }
 
-/// Without importance there are no pictures to compare.
+/// The criterion refers to pictures, so it needs full importance.
 TEST(PerceptualRefinement, IsRefusedWithoutPictures) {
     const Scene scene = cube();
     const auto refuses = [&](const auto& change) {

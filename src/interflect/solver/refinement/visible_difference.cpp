@@ -106,7 +106,7 @@ float VisibleDifference::threshold(std::uint32_t leaf) const {
     const float shown = exposure_ * luminance(rho);  // display luminance per irradiance
     if (!(state_.solution.view_importance[leaf] > 0 && shown > 0)) return infinity;
     const float pixels = state_.forest->area(leaf) / pixel_area(state_, leaf);
-    const float period = std::sqrt(std::max(1.0f, pixels));  // of two children; those of a pixel do not exist
+    const float period = std::sqrt(std::max(1.0f, pixels));  // of two children, in pixels
     const float unmasked = jnd_of_edge * cone_threshold(adapted_luminance(leaf, pixels)) /
                            relative_sensitivity(static_cast<double>(pixels_per_degree / period));
     const float visible = unmasked * threshold_elevation(masking_contrast(leaf) / unmasked);

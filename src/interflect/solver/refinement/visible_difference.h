@@ -13,7 +13,7 @@ class VisibleDifference {
     explicit VisibleDifference(const SolverState& state);
 
     /// Returns the smallest mean squared difference of a leaf's children that is visible directly [(lm/m^2)^2 or
-    /// (W/m^2)^2]. Infinite for black leaves and those that no view shows.
+    /// (W/m^2)^2]. Infinite for black leaves and for leaves outside all views.
     float threshold(std::uint32_t leaf) const;
 
     /// Returns the smallest misplaced power, times importance, that is visible in the light of other surfaces, relative
