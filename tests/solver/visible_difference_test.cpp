@@ -3,8 +3,8 @@
 //
 // Seen to fail: adaptation to the mean of the picture or to the leaf alone; exposure by the arithmetic mean; no spatial
 // frequency, or the period of a single child; no masking, or another exponent; no rho; a square degree that ignores the
-// weights of the views; refinement of all visible leaves, of none, or
-// with the variance's limit for shifted light.
+// weights of the views; refinement of all visible leaves, of none, or with the limit of the variance criterion for
+// shifted light.
 
 #include "interflect/solver/refinement/visible_difference.h"
 
