@@ -327,8 +327,11 @@ void SolverOptions::add_refinement(CLI::App& app) {
     RefinementOptions& refinement = solve_.refinement;
     group(add_choice<RefinementCriterion>(
               app, "--refinement-criterion", refinement.criterion,
-              {{"variance", RefinementCriterion::variance}, {"power", RefinementCriterion::power}},
-              "Elements are split by what rays tell of them, or pairs by power (Eq. 14, 15)")
+              {{"variance", RefinementCriterion::variance},
+               {"perceptual", RefinementCriterion::perceptual},
+               {"power", RefinementCriterion::power}},
+              "Elements are split by the differences that rays measure, by visible differences only, or pairs by power "
+              "(Eq. 14, 15)")
               ->default_str("variance"));
     group(
         app.add_option("--min-area", refinement.min_area,

@@ -31,7 +31,10 @@ enum class ImportanceUse {
 /// Refinement criterion of the mesh. See refine_by_variance() and Oracle.
 enum class RefinementCriterion {
     variance,  ///< Splits elements whose children are expected to differ by more than their noise.
-    power,     ///< Splits pairs of elements by the power exchanged between them (Eq. 14, 15), as in the paper.
+    /// Splits elements whose children are expected to differ visibly, and by more than their noise. Needs views and
+    /// full importance.
+    perceptual,
+    power,  ///< Splits pairs of elements by the power exchanged between them (Eq. 14, 15), as in the paper.
 };
 
 /// Properties of a solution method, for choosing one. All are listed in solver/methods/table.cpp.
@@ -39,7 +42,7 @@ struct Method {
     const char* name = "";
     const char* source = "";                        ///< Author and year.
     bool refines = false;                           ///< Hierarchical: creates elements below the patches.
-    bool follows_variance = false;                  ///< Supports RefinementCriterion::variance; others refine by power.
+    bool follows_variance = false;                  ///< Supports RefinementCriterion::variance and perceptual.
     ImportanceUse importance = ImportanceUse::off;  ///< Treated as `off` without views.
     const char* no_importance = nullptr;            ///< Reason why importance is not supported; null if it is.
     bool is_stochastic = true;                      ///< Its noise is measured and decreases with the rays.
@@ -75,6 +78,7 @@ struct Limits {
 /// Mesh refinement (Method::refines).
 struct RefinementOptions {
     /// For methods with Method::follows_variance, unless ExperimentalOptions::one_bounce; others refine by power.
+    /// Without a visible surface, `perceptual` is the same as `variance`.
     RefinementCriterion criterion = RefinementCriterion::variance;
     /// Smallest element area [m^2]; >= 0. If 0: the area covered by a pixel, for visible elements; for others at most
     /// (5 mm)^2, depending on the scene's size.

@@ -69,7 +69,7 @@ class WrongUsage(CommandTest):
     def test_words(self):
         self.assert_wrong([*SOLVE, "--method", "guess"], "--method", "srr")
         self.assert_wrong([*SOLVE, "--importance", "some"], "--importance", "off", "direct", "full")
-        self.assert_wrong([*SOLVE, "--refinement-criterion", "taste"], "--refinement-criterion", "variance", "power")
+        self.assert_wrong([*SOLVE, "--refinement-criterion", "taste"], "--refinement-criterion", "variance", "perceptual", "power")
         self.assert_wrong([*RENDER, "--show", "all"], "--show", "importance", "level", "mesh")
         self.assert_wrong([*SOLVE, "--up-axis", "up"], "--up-axis", "-y")
         self.assert_wrong([*SOLVE, "--points", "grid"], "--points", "sobol", "random")

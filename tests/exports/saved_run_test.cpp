@@ -96,6 +96,7 @@ std::vector<Case> cases() {
         o.views = {{into_the_room}};
     });
     add("ihsrr_si", "ihsrr", [](SolveOptions& o) { o.experimental.separate_iterations = true; });
+    add("ihsrr_perceptual", "ihsrr", [](SolveOptions& o) { o.refinement.criterion = RefinementCriterion::perceptual; });
     add("ihsrr_by_power", "ihsrr", [](SolveOptions& o) { o.refinement.criterion = RefinementCriterion::power; });
     add("ihsrr_one_bounce", "ihsrr", [](SolveOptions& o) {
         o.experimental.one_bounce = true;
@@ -328,7 +329,8 @@ Solution changed_after(int iterations, RefinementCriterion criterion, const fs::
 // Seen to fail when Passes does not archive the ray distribution before the change.
 TEST(ChangeOfViews, HasTheSameBitsWhenSavedAfterwards) {
     const TemporaryFolder folder;
-    for (const RefinementCriterion criterion : {RefinementCriterion::variance, RefinementCriterion::power})
+    for (const RefinementCriterion criterion :
+         {RefinementCriterion::variance, RefinementCriterion::perceptual, RefinementCriterion::power})
         for (int iterations = 0; iterations < 4; ++iterations)
             expect_same(changed_after(iterations, criterion, folder.path() / "run.h5"),
                         changed_after(iterations, criterion, {}));

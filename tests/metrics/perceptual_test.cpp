@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "interflect/core.h"
+#include "interflect/image/visual_adaptation.h"
 
 namespace interflect {
 

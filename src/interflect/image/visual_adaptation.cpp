@@ -60,4 +60,9 @@ float rod_threshold(float adapted) {
     return std::pow(10.0f, y);
 }
 
+double contrast_sensitivity(double cycles_per_degree) {
+    const double f = 0.114 * cycles_per_degree;
+    return 2.6 * (0.0192 + f) * std::exp(-std::pow(f, 1.1));
+}
+
 }  // namespace interflect::detail

@@ -37,6 +37,10 @@ class FerwerdaOperator {
 float cone_threshold(float adapted);
 float rod_threshold(float adapted);
 
+/// Returns A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
+/// @param cycles_per_degree  f >= 0.
+double contrast_sensitivity(double cycles_per_degree);
+
 /// [scotopic cd/m^2] of a Rec. 709 radiance, by Larson et al. 1997 at the primaries.
 constexpr float scotopic_luminance(const Rgb& c) { return 0.085f * c.x + 1.969f * c.y + 0.519f * c.z; }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "interflect/core.h"
+#include "interflect/image/visual_adaptation.h"
 
 namespace interflect::detail {
 
@@ -70,11 +71,6 @@ double weighted_power(const std::vector<Complex>& rows, std::size_t width, doubl
 }
 
 }  // namespace
-
-double contrast_sensitivity(double cycles_per_degree) {
-    const double f = 0.114 * cycles_per_degree;
-    return 2.6 * (0.0192 + f) * std::exp(-std::pow(f, 1.1));
-}
 
 double perceptual_distance(const Image& image, const Image& reference, double field_of_view) {
     require_same_size(image, reference);

@@ -4,10 +4,6 @@
 
 namespace interflect::detail {
 
-/// Returns A(f) = 2.6 (0.0192 + 0.114 f) exp(-(0.114 f)^1.1), Mannos and Sakrison 1974.
-/// @param cycles_per_degree  f >= 0.
-double contrast_sensitivity(double cycles_per_degree);
-
 /// Computes the first model of Rushmeier et al. 1995 (docs/metrics.md) from luminances, clamped to >= 0. A black
 /// reference gives 0 for a black image, otherwise infinity.
 /// @param field_of_view  Full vertical angle [degrees], in (0, 180).

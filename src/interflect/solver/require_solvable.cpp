@@ -45,6 +45,12 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
     require(!o.method.no_importance || o.method.importance == ImportanceUse::off,
             fmt::format("importance: {} cannot be steered by it, since {}", o.method.name,
                         o.method.no_importance ? o.method.no_importance : ""));
+    require(o.refinement.criterion != RefinementCriterion::perceptual ||
+                (o.method.follows_variance && o.method.importance == ImportanceUse::full && !o.views.empty() &&
+                 !o.experimental.one_bounce),
+            fmt::format("refinement_criterion: perceptual is not for {} with these settings; expected ihsrr or ihwdrs "
+                        "with a view, full importance and passes over all bounces",
+                        o.method.name));
     require(o.method.takes_luminaires || scene.luminaires.empty(),
             fmt::format("lights that are no surfaces: {} knows only surfaces that emit; choose another method",
                         o.method.name));

@@ -19,8 +19,9 @@ template <class Value, std::size_t count>
 using Choices = std::array<std::pair<const char*, Value>, count>;
 
 constexpr Choices<PointSet, 2> point_sets{{{"sobol", PointSet::sobol}, {"random", PointSet::random}}};
-constexpr Choices<RefinementCriterion, 2> criteria{
-    {{"variance", RefinementCriterion::variance}, {"power", RefinementCriterion::power}}};
+constexpr Choices<RefinementCriterion, 3> criteria{{{"variance", RefinementCriterion::variance},
+                                                    {"perceptual", RefinementCriterion::perceptual},
+                                                    {"power", RefinementCriterion::power}}};
 constexpr Choices<ImportanceUse, 3> uses_of_importance{
     {{"off", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}}};
 

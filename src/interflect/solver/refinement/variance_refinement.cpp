@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "interflect/solver/error/error_weight.h"
 #include "interflect/solver/shrinkage/sibling_variation.h"
 #include "interflect/solver/importance/importance_weights.h"
+#include "interflect/solver/refinement/visible_difference.h"
 
 namespace interflect::detail {
 
@@ -43,7 +45,9 @@ class VarianceOracle {
                    ? std::span<const float>(state.solution.indirect_importance)
                    : std::span<const float>()) {
         const double reference = reference_power();
-        min_misplaced_power_ = negligible_misplacement * reference;
+        if (state.options.refinement.criterion == RefinementCriterion::perceptual && !psi_.empty())
+            visible_.emplace(state);
+        min_misplaced_power_ = (visible_ ? visible_->share_of_light() : negligible_misplacement) * reference;
         max_misplaced_power_ = tolerable_misplacement * reference;
     }
 
@@ -57,7 +61,8 @@ class VarianceOracle {
         const auto [signal, noise] = expected_children(leaf);
         if (!(signal > min_signal * noise)) return false;
         const bool blurs =
-            weight(leaf) * static_cast<double>(signal) > min_gain && forest_.area(leaf) >= 4 * min_area(state_, leaf);
+            forest_.area(leaf) >= 4 * min_area(state_, leaf) &&
+            (visible_ ? signal > visible_->threshold(leaf) : weight(leaf) * static_cast<double>(signal) > min_gain);
         const bool misplaces = misplaced_power(leaf, signal) > min_misplaced_power_ &&
                                forest_.area(leaf) >= 4 * state_.floor.default_min_area();
         return blurs || misplaces;
@@ -116,6 +121,7 @@ class VarianceOracle {
     const SolverState& state_;
     const ElementForest& forest_;
     ErrorMeasure measure_;
+    std::optional<VisibleDifference> visible_;                  // if it decides
     std::span<const float> psi_;                                // indirect importance, if used
     double min_misplaced_power_ = 0, max_misplaced_power_ = 0;  // [lm or W, times importance]
 };

@@ -114,7 +114,7 @@ RgbD radiated_power(const SolverState& state) {
 
 bool refines_by_variance(const SolveOptions& o) {
     return o.method.refines && o.method.follows_variance && !o.experimental.one_bounce &&
-           o.refinement.criterion == RefinementCriterion::variance;
+           o.refinement.criterion != RefinementCriterion::power;
 }
 
 float min_area(const SolverState& state, std::uint32_t element) {

@@ -1,0 +1,116 @@
+#include "interflect/solver/refinement/visible_difference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+#include "interflect/image/visual_adaptation.h"
+#include "interflect/solver/error/sibling_variation.h"
+
+namespace interflect::detail {
+
+namespace {
+
+// The display: white of tone_map() by default, black with a contrast of 200 in a lit room [cd/m^2].
+constexpr float white = 100, black = 0.5f;
+/// Logarithmic mean of a picture relative to white, as in automatic_exposure().
+constexpr float key = 0.2f;
+/// The observer of FLIP (docs/metrics.md).
+constexpr float pixels_per_degree = 67.02f;
+/// Cycles per degree of the greatest sensitivity.
+constexpr double best_frequency = 8;
+/// JND of a steadily viewed edge relative to cone_threshold(), which is for brief flashes. Chosen by measurement
+/// (docs/results.md).
+constexpr float jnd_of_edge = 0.2f;
+
+/// Returns the logarithmic mean of reflected light in the pictures [lm/m^2 or W/m^2]; 0 if they are dark.
+double logarithmic_mean(const SolverState& state) {
+    struct Sums {
+        double stops = 0, weight = 0;
+        Sums& operator+=(const Sums& o) { return stops += o.stops, weight += o.weight, *this; }
+    };
+    const ElementForest& forest = *state.forest;
+    const Sums sums = parallel_sum(forest.size(), elements_per_task, Sums(), [&](std::size_t begin, std::size_t end) {
+        Sums sum;
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            const Rgb rho = state.materials.surface(forest.patch(e), e).reflectance;
+            const float light = luminance(Rgb(rho * state.solution.irradiance[e]));
+            if (!forest.is_leaf(e) || !(light > 0)) continue;
+            const double weight = static_cast<double>(forest.area(e)) * state.solution.view_importance[e];
+            sum.stops += weight * std::log2(static_cast<double>(light));
+            sum.weight += weight;
+        }
+        return sum;
+    });
+    return sums.weight > 0 ? std::exp2(sums.stops / sums.weight) : 0;
+}
+
+/// Edges contain all higher frequencies, so large elements are not less visible.
+float relative_sensitivity(double cycles_per_degree) {
+    return static_cast<float>(contrast_sensitivity(std::max(best_frequency, cycles_per_degree)) /
+                              contrast_sensitivity(best_frequency));
+}
+
+/// Returns the largest share of all pictures that a square degree covers.
+double share_of_square_degree(const std::vector<WeightedView>& views) {
+    double weight = 0, largest = 0;
+    for (const WeightedView& v : views) {
+        const double pixels = static_cast<double>(v.aspect) * v.pixel_rows * v.pixel_rows;
+        weight += v.weight;
+        largest = std::max(largest, v.weight * pixels_per_degree * pixels_per_degree / pixels);
+    }
+    return largest / weight;
+}
+
+}  // namespace
+
+float threshold_elevation(float contrast) {
+    const float response = 0.0153f * std::pow(392.5f * contrast, 0.7f);
+    return std::pow(1 + std::pow(response, 4.0f), 0.25f);
+}
+
+VisibleDifference::VisibleDifference(const SolverState& state) : state_(state) {
+    const double mean = logarithmic_mean(state);
+    if (mean > 0) exposure_ = static_cast<float>(static_cast<double>(key * white) / mean);
+    const double contrast = jnd_of_edge * cone_threshold(key * white) / (key * white);
+    share_of_light_ = contrast * share_of_square_degree(state.options.views);
+}
+
+/// Returns the mean of the smallest ancestor that covers a square degree, or else of the patch [cd/m^2].
+float VisibleDifference::adapted_luminance(std::uint32_t leaf, float pixels) const {
+    const ElementForest& forest = *state_.forest;
+    const std::uint32_t patch = forest.patch(leaf);
+    std::uint32_t e = leaf;
+    for (; e != patch && pixels < pixels_per_degree * pixels_per_degree; pixels *= 4) e = forest.parent(e);
+    const Rgb rho = state_.materials.surface(patch, e).reflectance;
+    return std::clamp(exposure_ * luminance(Rgb(rho * state_.solution.irradiance[e])), black, white);
+}
+
+/// Returns the root mean square difference of the leaf and its siblings caused by texture [cd/m^2].
+float VisibleDifference::masking_contrast(std::uint32_t leaf) const {
+    const ElementForest& forest = *state_.forest;
+    const std::uint32_t patch = forest.patch(leaf);
+    if (leaf == patch) return 0;
+    const std::uint32_t first = first_sibling(forest, leaf), parent = forest.parent(leaf);
+    const auto rho = [&](std::uint32_t e) { return luminance(state_.materials.surface(patch, e).reflectance); };
+    float mean_square = 0;
+    for (std::uint32_t e = first; e < first + 4; ++e) mean_square += std::pow(rho(e) - rho(parent), 2.0f) / 4;
+    return exposure_ * std::sqrt(mean_square) * std::max(0.0f, luminance(state_.solution.irradiance[parent]));
+}
+
+float VisibleDifference::threshold(std::uint32_t leaf) const {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    const Rgb rho = state_.materials.surface(state_.forest->patch(leaf), leaf).reflectance;
+    const float shown = exposure_ * luminance(rho);  // display luminance per irradiance
+    if (!(state_.solution.view_importance[leaf] > 0 && shown > 0)) return infinity;
+    const float pixels = state_.forest->area(leaf) / pixel_area(state_, leaf);
+    const float period = std::sqrt(std::max(1.0f, pixels));  // of two children, in pixels
+    const float unmasked = jnd_of_edge * cone_threshold(adapted_luminance(leaf, pixels)) /
+                           relative_sensitivity(static_cast<double>(pixels_per_degree / period));
+    const float visible = unmasked * threshold_elevation(masking_contrast(leaf) / unmasked);
+    return std::pow(visible / shown, 2.0f);
+}
+
+}  // namespace interflect::detail
