@@ -170,6 +170,13 @@ class PathBatch {
         }
     }
 
+    /// Identifies a source, whatever the mesh.
+    std::uint64_t number_of(std::uint32_t source) const {
+        if (source >= elements_) return source - elements_ + forest_.patch_count();
+        if (source < forest_.patch_count()) return source;
+        return static_cast<std::uint64_t>(forest_.path(source)) << 32 | forest_.patch(source);
+    }
+
     /// A path of source s carries W_s / (N q_s).
     void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
         w.particles.resize(static_cast<std::size_t>(end - begin));
@@ -182,7 +189,7 @@ class PathBatch {
             const std::uint32_t patch = s < elements_ ? forest_.patch(s) : none;
             const Particle particle{s, patch, {}, Rgb(RgbD(payload_.emitted[s]) * share)};
             std::fill_n(&w.particles[offset], count, particle);
-            const std::uint64_t key = sub_key(key_, WalkPurpose::emission, s);
+            const std::uint64_t key = sub_key(key_, WalkPurpose::emission, number_of(s));
             const auto first_sample = static_cast<std::uint64_t>(from - first);
             const std::span<Ray> rays = std::span(w.rays).subspan(offset, count);
             if (s < elements_)
@@ -194,11 +201,11 @@ class PathBatch {
         allocation_->for_each_source(begin, end, emit_some);
     }
 
-    struct Place {
+    struct HitPlace {
         std::uint32_t leaf;
         Parameters at;
     };
-    Place place_of(const Ray& ray, const Hit& hit) const {
+    HitPlace hit_place(const Ray& ray, const Hit& hit) const {
         if (!payload_.starts_at_hits && forest_.is_leaf(hit.patch)) return {hit.patch, {}};
         const Parameters at = forest_.geometry(hit.patch).parameters_of(ray.origin + hit.distance * ray.direction);
         return {forest_.leaf_at(hit.patch, at), at};
@@ -216,7 +223,7 @@ class PathBatch {
                 ++escaped_rays;
                 return;
             }
-            const auto [leaf, at] = place_of(w.rays[i], hit);
+            const auto [leaf, at] = hit_place(w.rays[i], hit);
             add_concurrently(sums_.received[leaf], term);
             if (payload_.starts_at_hits)
                 sums_.hits[leaf].add_concurrent(static_cast<double>(channel_sum(power)) /

@@ -1,4 +1,7 @@
+#include "interflect/solver/methods/particles/photon_mesh.h"
+
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -24,27 +27,6 @@ constexpr double fewest_hits_of_quarter = 5;
 constexpr double significant = 7.815;
 /// Root mean square difference of the quarters from their mean, relative to it, that cannot be seen (Weber).
 constexpr double invisible_difference = 0.02;
-
-/// Whether the hits of the quarters `first` ... `first` + 3 of an element indicate uneven light.
-bool quarters_differ(const ElementForest& forest, const std::vector<HitSum>& hits, std::uint32_t first) {
-    double area = 0, smallest_area = forest.area(first);
-    HitSum all;
-    for (std::uint32_t k = first; k < first + 4; ++k) {
-        area += forest.area(k), smallest_area = std::min<double>(smallest_area, forest.area(k));
-        all += hits[k];
-    }
-    if (!(all.sum() > 0)) return false;
-    const double effective_hits = all.sum() * all.sum() / all.squares();
-    if (effective_hits * smallest_area < fewest_hits_of_quarter * area) return false;
-    double chi_squared = 0;
-    for (std::uint32_t k = first; k < first + 4; ++k) {
-        const double share = forest.area(k) / area, difference = hits[k].sum() - share * all.sum();
-        chi_squared += difference * difference / (share * all.squares());
-    }
-    constexpr double degrees_of_freedom = 3;
-    const double square = (chi_squared - degrees_of_freedom) / effective_hits;  // of the relative differences
-    return chi_squared > significant && square > invisible_difference * invisible_difference;
-}
 
 /// Adaptive subdivision by particles (Heckbert 1990; Tobler, Wilkie, Feda and Purgathofer 1997). Particles as in
 /// RandomWalks, but a reflected one starts where it hit. The leaves of the forest are quarters of the elements of the
@@ -115,9 +97,14 @@ bool PhotonMesh::has_quarters_to_divide(const SolverState& state, std::uint32_t 
     const ElementForest& forest = *state.forest;
     const std::uint32_t first = forest.first_child(e);
     if (first == none) return false;
-    for (std::uint32_t k = first; k < first + 4; ++k)
-        if (!forest.is_leaf(k) || forest.area(k) < 4 * min_area(state, k)) return false;
-    return quarters_differ(forest, hits_, first);
+    std::array<HitSum, 4> hits;
+    std::array<float, 4> areas{};
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        const std::uint32_t quarter = first + k;
+        hits[k] = hits_[quarter], areas[k] = forest.area(quarter);
+        if (!forest.is_leaf(quarter) || areas[k] < 4 * min_area(state, quarter)) return false;
+    }
+    return quarters_differ(hits, areas);
 }
 
 void PhotonMesh::refine(SolverState& state) {
@@ -150,6 +137,23 @@ void PhotonMesh::archive(StateArchive& archive) {
 }
 
 }  // namespace
+
+bool quarters_differ(const std::array<HitSum, 4>& hits, const std::array<float, 4>& areas) {
+    double area = 0;
+    HitSum all;
+    for (std::size_t k = 0; k < 4; ++k) area += areas[k], all += hits[k];
+    if (!(all.sum() > 0)) return false;
+    const double effective_hits = all.sum() * all.sum() / all.squares();  // equal ones with the same relative noise
+    if (effective_hits * *std::min_element(areas.begin(), areas.end()) < fewest_hits_of_quarter * area) return false;
+    double chi_squared = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double share = areas[k] / area, difference = hits[k].sum() - share * all.sum();
+        chi_squared += difference * difference / (share * all.squares());
+    }
+    constexpr double degrees_of_freedom = 3;
+    const double square = (chi_squared - degrees_of_freedom) / effective_hits;  // of the relative differences
+    return chi_squared > significant && square > invisible_difference * invisible_difference;
+}
 
 std::unique_ptr<IterationMethod> make_photon_mesh(SolverState& state) { return std::make_unique<PhotonMesh>(state); }
 
