@@ -101,7 +101,7 @@ struct PathSums {
 /// Power about to leave a leaf or luminaire part.
 struct Particle {
     std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part.
-    std::uint32_t patch;   ///< Of the leaf.
+    std::uint32_t patch;   ///< Patch of the leaf; none for luminaires.
     Parameters at;         ///< Where the patch was hit, if WalkSource::starts_at_hits.
     Rgb power;
 };

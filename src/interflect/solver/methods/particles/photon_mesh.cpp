@@ -55,7 +55,7 @@ class PhotonMesh final : public IterationMethod {
     std::vector<HitSum> hits_;
 };
 
-/// Divides the patches, so that they count from the first hit.
+/// Divides the patches: their quarters count all hits.
 void PhotonMesh::prepare(SolverState& state) {
     before_ = current_;
     std::vector<std::uint8_t> splits(state.forest->size());
