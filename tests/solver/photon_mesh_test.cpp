@@ -173,8 +173,7 @@ TEST(PhotonMesh, RarelyDividesEvenlyLitPatches) {
     EXPECT_GT(binomial_test(divided, side * side, 0.05), false_alarm) << divided;
 }
 
-/// A room of 1 x 2 x 3 m with one patch per wall, lit by a lamp. Walls emit nothing, so paths ignore
-/// elements.
+/// A room of 1 x 2 x 3 m with one patch per wall, lit by a lamp. Walls emit nothing, so paths ignore elements.
 Scene lamp_in_a_room() {
     Scene scene = closed_box({1, 2, 3}, 1, {{"wall", Rgb(0.6f, 0.4f, 0.5f), Rgb(0)}});
     scene.luminaires = {{"", 0, PointLight{{0.3f, 0.4f, 2.1f}, {20, 30, 20}}}};
@@ -194,6 +193,13 @@ TEST(PhotonMesh, KeepsTheLightOfPatchesWhereverItDividesThem) {
     for (std::size_t i = 0; i < scene.patches.size(); ++i)
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(divided.irradiance[i][c] / whole.irradiance[i][c], 1, 1e-5) << "patch " << i;
+}
+
+// A lamp in the middle lights all quarters of the floor alike.
+TEST(PhotonMesh, DividesSymmetricLight) {
+    LitFloor floor;
+    floor.scene.luminaires = {{"", 0, PointLight{{1, 0.5f, LitFloor::height}, Rgb(LitFloor::intensity)}}};
+    EXPECT_GT(solve(floor.scene, RayCaster(floor.scene), mesh_options(200'000)).forest->size(), 200u);
 }
 
 // The wall x = 1.5 divides a room, but not its floor and ceiling, which a small number of rays divides hardly.
@@ -226,19 +232,19 @@ TEST(PhotonMesh, KeepsEnergy) {
     }
 }
 
-// All quarters of the floor differ after one iteration, and theirs after the second, which discards the hits of the
-// first. Smaller elements are not allowed. So a quarter of four equal iterations is lost.
+// The floor begins with 16 parts. Their quarters exist after one iteration and all differ after the second, which
+// discards the hits of the first. Smaller elements are not allowed. So a quarter of four equal iterations is lost.
 TEST(PhotonMesh, CountsDiscardedHits) {
     const LitFloor floor;
     SolveOptions options = mesh_options(1'000'000);
     options.experimental.rays_per_iteration = 50'000;
     options.experimental.iterations = 4;
-    options.refinement.min_area = 0.1;  // the third level has 12 / 64 m^2
+    options.refinement.min_area = 0.04;  // the fourth level has 12 / 256 m^2
     const Solution s = solve(floor.scene, RayCaster(floor.scene), options);
-    EXPECT_EQ(s.forest->size(), 1u + 4 + 16 + 64);
+    EXPECT_EQ(s.forest->size(), 1u + 4 + 16 + 64 + 256);
     EXPECT_EQ(s.iterations[0].discarded_hits, 0);
     EXPECT_NEAR(s.iterations.back().discarded_hits, 0.25, 0.005);
-    options.refinement.min_area = 0.4;
+    options.refinement.min_area = 0.1;
     EXPECT_EQ(solve(floor.scene, RayCaster(floor.scene), options).iterations.back().discarded_hits, 0)
         << "nothing is divided twice";
 }

@@ -27,6 +27,8 @@ constexpr double fewest_hits_of_quarter = 5;
 constexpr double significant = 7.815;
 /// Root mean square difference of the quarters from their mean, relative to it, that cannot be seen (Weber).
 constexpr double invisible_difference = 0.02;
+/// Patches above this share of all area are divided twice at first; at most 1000 are, into 16,000 elements.
+constexpr double large_share = 1e-3;
 
 /// Adaptive subdivision by particles (Heckbert 1990; Tobler, Wilkie, Feda and Purgathofer 1997). Particles as in
 /// RandomWalks, but a reflected one starts where it hit. The leaves of the forest are quarters of the elements of the
@@ -55,12 +57,20 @@ class PhotonMesh final : public IterationMethod {
     std::vector<HitSum> hits_;
 };
 
-/// Divides the patches: their quarters count all hits.
+/// Divides the patches: their quarters count all hits. Symmetric light may be equal on the quarters of a large patch,
+/// so these are divided, too.
 void PhotonMesh::prepare(SolverState& state) {
     before_ = current_;
-    std::vector<std::uint8_t> splits(state.forest->size());
-    for (std::uint32_t i = 0; i < splits.size(); ++i) splits[i] = state.forest->area(i) >= 4 * min_area(state, i);
-    divide_leaves(state, splits);
+    const ElementForest& forest = *state.forest;
+    double total_area = 0;
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) total_area += forest.area(i);
+    for (const double least_area : {0.0, large_share * total_area}) {
+        std::vector<std::uint8_t> splits(forest.size());
+        for (std::uint32_t e = 0; e < splits.size(); ++e)
+            splits[e] = forest.is_leaf(e) && forest.area(e) >= 4 * min_area(state, e) &&
+                        forest.area(forest.patch(e)) > least_area;
+        divide_leaves(state, splits);
+    }
     hits_.assign(state.forest->size(), {});
 }
 
