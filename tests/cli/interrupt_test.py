@@ -15,7 +15,7 @@ ENDLESS = ("--rays", "10T", "--mesh-size", "0.5")
 SHORT_ITERATIONS = ("--rays-per-iteration", "20k")
 ONE_LONG_ITERATION = ("--rays-per-iteration", "100G")
 GATHERED = ("--lightmap", "--shading", "gather", "--texels-per-metre", "4")
-METHODS = ("ihsrr", "ihsrr --one-bounce", "hwdrs", "random-walk", "global-lines", "pr")
+METHODS = ("ihsrr", "ihsrr --one-bounce", "hwdrs", "random-walk", "photon-mesh", "global-lines", "pr")
 SOON = 30  # [s]
 A_MOMENT = 10  # [s], on a busy machine with a sanitizer
 

@@ -2,7 +2,7 @@
 
 Each run has 300,000 rays (global-lines: 3 million) and at most 30 s. The totals are compared twice:
 
-- On equal elements, one for each face, all methods but hsrr and ihsrr solve the same equations. Results differ by
+- On equal elements, one for each face, all methods but hsrr, ihsrr and photon-mesh solve the same equations. Results differ by
   noise. The few lines of sight of hr add an error.
 - With default options, methods choose their elements. Results also differ by the error of constant light on large
   elements.
@@ -25,7 +25,7 @@ from command import BAD_INPUT, ROOT, CommandTest, methods
 SHARED = Path(os.environ.get("INTERFLECT_SCENES", ROOT.parent / "shared" / "scenes"))
 EQUAL_ELEMENTS = ("--mesh-size", "none", "--min-area", "1e9")
 STEERED = ("isrr", "ihsrr", "pr")  # by the view
-SUBDIVIDING = ("hsrr", "ihsrr")  # rays start at the points of received light, so light on an element is not constant
+SUBDIVIDING = ("hsrr", "ihsrr", "photon-mesh")  # rays start at the points of received light, so light on an element is not constant
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 

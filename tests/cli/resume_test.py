@@ -8,7 +8,7 @@ import unittest
 from command import BAD_INPUT, COMMAND, DONE, INTERRUPTED, VIEW, WRONG_USAGE, CommandTest, room
 
 RUN = ("solve", "room.mgf", "--rays", "1M", "--mesh-size", "0.5")
-METHODS = (("--method", "hsrr"), (*VIEW, "--method", "ihsrr"), ("--method", "hwdrs"), ("--method", "random-walk"))
+METHODS = (("--method", "hsrr"), (*VIEW, "--method", "ihsrr"), ("--method", "hwdrs"), ("--method", "random-walk"), ("--method", "photon-mesh"))
 METHODS += ((*VIEW, "--method", "ihwdrs"), ("--method", "global-lines"), (*VIEW, "--method", "pr"))
 OFTEN = ("--checkpoint", "run.h5", "--every", "0.1s")
 

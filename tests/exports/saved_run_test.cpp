@@ -135,6 +135,7 @@ void expect_same(const Solution& s, const Solution& expected) {
         EXPECT_EQ(s.iterations[i].escaped_power, expected.iterations[i].escaped_power);
         EXPECT_EQ(s.iterations[i].error_estimate, expected.iterations[i].error_estimate);
         EXPECT_EQ(s.iterations[i].high_payload, expected.iterations[i].high_payload);
+        EXPECT_EQ(s.iterations[i].discarded_hits, expected.iterations[i].discarded_hits);
     }
     ASSERT_EQ(s.forest->subdivided(), expected.forest->subdivided());
     EXPECT_EQ(s.irradiance, expected.irradiance);

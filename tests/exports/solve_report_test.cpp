@@ -92,14 +92,15 @@ TEST(SolveReport, HasNullForLimitsThatWereNotGiven) {
 }
 
 TEST(SolveReport, HasTheIterationWithoutItsTime) {
-    const IterationReport report{7,    1.5,  1000, 800, 200, 30, 44, 33, {1, 2, 3}, {0.1, 0.2, 0.3},
-                                 0.05, 0.04, 0.03, 2.0, 1.5};
+    const IterationReport report{7,    1.5,  1000, 800, 200, 30,  44, 33, {1, 2, 3}, {0.1, 0.2, 0.3},
+                                 0.05, 0.04, 0.03, 2.0, 1.5, 0.25};
     const Json json = json_of(report);
     EXPECT_FALSE(json.contains("seconds"));
     const IterationReport read = report_of(json);
     EXPECT_EQ(json_of(read), json);
     EXPECT_EQ(read.escaped_rays, 30);
     EXPECT_EQ(read.noise_estimate, 0.04);
+    EXPECT_EQ(read.discarded_hits, 0.25);
     EXPECT_EQ(read.escaped_power, report.escaped_power);
 }
 

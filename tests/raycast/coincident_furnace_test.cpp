@@ -89,7 +89,7 @@ TEST_P(DoubledWalls, OfAFurnaceEmitOnce) {
     for (const bool copies_first : {false, true}) {
         if (copies_first) std::reverse(scene.patches.begin(), scene.patches.end());
         const RayCaster ray_caster(scene);
-        for (const char* method : {"srr", "wdrs", "random-walk"})
+        for (const char* method : {"srr", "wdrs", "random-walk", "photon-mesh"})
             for (std::uint64_t seed = 1; seed <= 4; ++seed) {
                 SolveOptions options = furnace_options(seed);
                 options.method = find_method(method);

@@ -83,7 +83,7 @@ TEST_P(WarpedWall, LeavesTheOtherRoomDark) {
     const Scene scene = two_rooms(GetParam());
     const RayCaster ray_caster(scene);
     Solution solution;
-    for (const char* method : {"srr", "random-walk", "global-lines", "hsrr"}) {
+    for (const char* method : {"srr", "random-walk", "photon-mesh", "global-lines", "hsrr"}) {
         // One global line through that strip has a large contribution, so several are needed.
         const std::int64_t rays = std::string(method) == "global-lines" ? 400'000 : 100'000;
         solution = solve(scene, ray_caster, {.method = find_method(method), .limits = {.rays = rays}});

@@ -141,7 +141,8 @@ struct SourceAndMethod {
 std::vector<SourceAndMethod> all_pairs() {
     std::vector<SourceAndMethod> pairs;
     for (const Source& source : sources())
-        for (const char* method : {"srr", "ihsrr", "wdrs", "ihwdrs", "random-walk"}) pairs.push_back({source, method});
+        for (const char* method : {"srr", "ihsrr", "wdrs", "ihwdrs", "random-walk", "photon-mesh"})
+            pairs.push_back({source, method});
     return pairs;
 }
 

@@ -179,7 +179,7 @@ TEST(Solve, ReportsEveryIterationInOrder) {
 // the elements made by a step are kept, or if no batch checks for the request.
 TEST(Solve, IsAsBeforeTheIterationThatWasCutShort) {
     const Scene scene = furnished_room();
-    for (const char* name : {"ihsrr", "hwdrs", "random-walk", "global-lines", "pr"})
+    for (const char* name : {"ihsrr", "hwdrs", "random-walk", "photon-mesh", "global-lines", "pr"})
         for (const bool one_bounce : {false, true}) {
             SolveOptions options = with_rays(std::numeric_limits<std::int64_t>::max());
             options.method = find_method(name);

@@ -30,7 +30,7 @@ Solution solved(const Scene& scene, const char* method, std::int64_t rays = 600'
 
 class TexturesOfMethod : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, TexturesOfMethod,
-                         testing::Values("srr", "hsrr", "wdrs", "hwdrs", "ihwdrs", "random-walk"),
+                         testing::Values("srr", "hsrr", "wdrs", "hwdrs", "ihwdrs", "random-walk", "photon-mesh"),
                          [](const auto& method) {
                              std::string name = method.param;
                              std::erase(name, '-');
@@ -90,7 +90,7 @@ class HalfDarkFloor : public testing::TestWithParam<std::tuple<const char*, Halv
     Halves halves() const { return std::get<1>(GetParam()); }
 };
 INSTANTIATE_TEST_SUITE_P(MethodsThatRefine, HalfDarkFloor,
-                         testing::Combine(testing::Values("hsrr", "hwdrs", "hr"),
+                         testing::Combine(testing::Values("hsrr", "hwdrs", "hr", "photon-mesh"),
                                           testing::Values(Halves::reflect, Halves::emit)));
 
 /// The dark half of the floor is under no lamp, or is dark itself. If the mean covered both halves, or the lit half

@@ -283,7 +283,7 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
 
 constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
 /// Increase whenever an array of the state changes.
-constexpr int state_version = 4;
+constexpr int state_version = 5;
 
 std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {
     Json arrays = Json::array();

@@ -203,12 +203,14 @@ void read_options(const Json& stored, SolveOptions& options) {
 Json json_of(const IterationReport& report) {
     Json json = Json::object();
     for_each_number(report, Writer{json});
+    json["discarded_hits"] = report.discarded_hits;
     return json;
 }
 
 IterationReport report_of(const Json& json) {
     IterationReport report;
     for_each_number(report, Reader{json});
+    report.discarded_hits = json.value("discarded_hits", 0.0);
     return report;
 }
 

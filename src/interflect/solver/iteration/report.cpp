@@ -39,6 +39,7 @@ void append_report(SolverState& state, int iteration) {
     constexpr double share_with_more = 0.001;
     r.largest_payload = state.payloads.largest_over_mean();
     r.high_payload = state.payloads.quantile_over_mean(share_with_more);
+    r.discarded_hits = state.discarded_hits;
     state.solution.iterations.push_back(r);
     if (state.monitor.on_progress)
         state.monitor.on_progress({.rays = r.rays,

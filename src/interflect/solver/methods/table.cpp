@@ -19,6 +19,7 @@ std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state);
 std::unique_ptr<IterationMethod> make_well_distributed_rays(SolverState& state);
 std::unique_ptr<IterationMethod> make_kept_rays(SolverState& state);
 std::unique_ptr<IterationMethod> make_random_walks(SolverState& state);
+std::unique_ptr<IterationMethod> make_photon_mesh(SolverState& state);
 std::unique_ptr<IterationMethod> make_linked_elements(SolverState& state);
 std::unique_ptr<IterationMethod> make_global_lines(SolverState& state);
 std::unique_ptr<IterationMethod> make_progressive_refinement(SolverState& state);
@@ -31,6 +32,7 @@ namespace {
 
 constexpr const char* equal_power = "it keeps every ray, which needs rays of equal power";
 constexpr std::size_t bytes_of_kept_ray = 60;  // 17, three times while the arrays grow; a few have crossed glass
+constexpr const char* counted_particles = "it counts particles, which need equal power";
 constexpr const char* uniform_lines = "its lines are spread evenly, whatever they meet";
 
 using Make = std::unique_ptr<IterationMethod>(SolverState& state);
@@ -95,6 +97,12 @@ constexpr std::array rows = {
          .bytes_per_ray = bytes_of_kept_ray},
         make_kept_rays},
     Row{{.name = "random-walk", .source = "Pattanaik and Mudur 1992, 1995"}, make_random_walks},
+    Row{{.name = "photon-mesh",
+         .source = "Heckbert 1990, Tobler et al. 1997",
+         .refines = true,
+         .follows_variance = true,
+         .no_importance = counted_particles},
+        make_photon_mesh},
     Row{{.name = "hr",
          .source = "Hanrahan et al. 1991, Smits et al. 1992",
          .refines = true,

@@ -10,9 +10,10 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/error_estimate.h"
 #include "interflect/solver/error/error_weight.h"
-#include "interflect/solver/shrinkage/sibling_variation.h"
 #include "interflect/solver/importance/importance_weights.h"
+#include "interflect/solver/refinement/divide_leaves.h"
 #include "interflect/solver/refinement/visible_difference.h"
+#include "interflect/solver/shrinkage/sibling_variation.h"
 
 namespace interflect::detail {
 
@@ -140,21 +141,15 @@ std::vector<std::uint8_t> leaves_reflecting_where_received(const SolverState& st
 }
 
 void refine_by_variance(SolverState& state) {
-    ElementForest& forest = *state.forest;
-    const std::uint32_t before = forest.size();
+    const ElementForest& forest = *state.forest;
     const VarianceOracle oracle(state);
     const double min_gain = oracle.min_gain();
-    std::vector<std::uint8_t> splits(before, 0);
-    parallel_for_ranges(before, elements_per_task, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint8_t> splits(forest.size(), 0);
+    parallel_for_ranges(splits.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
             splits[e] = forest.is_leaf(e) && state.history[e] > 0 && oracle.splits(e, min_gain);
     });
-    for (std::uint32_t e = 0; e < before && forest.size() + 4 <= state.options.refinement.max_elements; ++e)
-        if (splits[e]) forest.subdivide(e);
-    if (forest.size() == before) return;
-    forest.put_in_order(before);
-    grow_with_forest(state, before);
-    std::fill(state.history.begin() + before, state.history.end(), 0.0f);
+    divide_leaves(state, splits);
 }
 
 }  // namespace interflect::detail

@@ -7,7 +7,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/image/visual_adaptation.h"
-#include "interflect/solver/error/sibling_variation.h"
+#include "interflect/solver/shrinkage/sibling_variation.h"
 
 namespace interflect::detail {
 

@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-using ReportNumbers = std::array<double, 19>;
+using ReportNumbers = std::array<double, 20>;
 
 ReportNumbers numbers_of(const IterationReport& r) {
     return {static_cast<double>(r.iteration),
@@ -34,7 +34,8 @@ ReportNumbers numbers_of(const IterationReport& r) {
             r.noise_estimate,
             r.discretisation_estimate,
             r.largest_payload,
-            r.high_payload};
+            r.high_payload,
+            r.discarded_hits};
 }
 
 IterationReport report_of(const ReportNumbers& n) {
@@ -52,7 +53,8 @@ IterationReport report_of(const ReportNumbers& n) {
             .noise_estimate = n[15],
             .discretisation_estimate = n[16],
             .largest_payload = n[17],
-            .high_payload = n[18]};
+            .high_payload = n[18],
+            .discarded_hits = n[19]};
 }
 
 void require(bool holds, const char* what) {

@@ -63,6 +63,7 @@ struct SolverState {
     std::int64_t rays_of_other_views = 0;  // averaged before the views changed
     RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
     double escaped_power_rays = 0;         // rays in this mean
+    double discarded_hits = 0;             // see IterationReport
 
     // The work in progress:
     Monitor monitor;

@@ -1,4 +1,4 @@
-#include "interflect/solver/methods/baselines/random_walk.h"
+#include "interflect/solver/methods/particles/random_walk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,35 +8,11 @@
 #include "interflect/solver/error/noise_update.h"
 #include "interflect/solver/importance/importance_weights.h"
 #include "interflect/solver/light/materials.h"
-#include "interflect/solver/methods/baselines/path_batch.h"
+#include "interflect/solver/methods/particles/path_series.h"
 
 namespace interflect::detail {
 
 namespace {
-
-/// Paths of the pilot; minimum rays of a batch per pilot path.
-constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
-
-struct BatchResult {
-    std::vector<Rgb> irradiance;  ///< By patch; or importance per area.
-    RgbD escaped{0, 0, 0};
-    std::int64_t rays = 0;
-};
-
-BatchResult follow_paths(SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key) {
-    PathBatch batch(state, payload, paths, key);
-    const PathSums& sums = batch.follow();
-    state.escaped_rays += sums.escaped_rays;
-    state.streams.used.resize(sums.started.size(), 0);
-    BatchResult arrived;
-    for (std::uint32_t i = 0; i < sums.received.size(); ++i) {
-        arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / state.forest->area(i));
-        state.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
-    }
-    arrived.escaped = sums.unit.to_colour(sums.escaped);
-    arrived.rays = sums.rays;
-    return arrived;
-}
 
 /// Assumes equal, independent contributions.
 Estimate independent_contributions(const SolverState& state, const BatchResult& batch) {
@@ -46,21 +22,6 @@ Estimate independent_contributions(const SolverState& state, const BatchResult& 
         estimate.variance.push_back(static_cast<float>(luminance(batch.irradiance[i]) * power /
                                                        (static_cast<double>(batch.rays) * state.forest->area(i))));
     return estimate;
-}
-
-BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t rays, PathSeries& series) {
-    if (series.pilot_rays == 0) {  // discarded: a batch must not choose its own size
-        const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
-        series.pilot_rays = follow_paths(state, payload, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
-        series.rays_per_path = static_cast<double>(series.pilot_rays) / static_cast<double>(paths);
-    }
-    const auto paths = std::llround(static_cast<double>(rays) / std::max(1.0, series.rays_per_path));
-    const std::int64_t at_least_one = std::max<std::int64_t>(1, paths);
-    BatchResult arrived =
-        follow_paths(state, payload, at_least_one, sub_key(series.key, WalkPurpose::batch, series.batches));
-    series.rays_per_path = static_cast<double>(arrived.rays) / static_cast<double>(at_least_one);
-    if (series.batches++ == 0) arrived.rays += series.pilot_rays;
-    return arrived;
 }
 
 /// Returns psi of Eq. 10, or of Eq. 9 on request.
@@ -92,16 +53,10 @@ std::vector<float> particle_density(const Solution& so_far, const std::vector<Rg
 }
 
 WalkSource light(const SolverState& state) {
-    WalkSource payload;
-    for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) {
-        payload.emitted.push_back(state.materials.exitance(i) * state.forest->area(i));
-        payload.reflectance.push_back(state.materials.reflectance(i));
-    }
-    payload.density = particle_density(state.solution, payload.emitted);
-    for (std::size_t i = 0; i < state.emission.part_count(); ++i) {
-        payload.emitted.emplace_back(state.emission.power(i));
-        payload.density.push_back(1);  // the mean: importance is unknown
-    }
+    WalkSource payload = light_source(state);
+    const std::vector<Rgb> of_patches(payload.emitted.begin(), payload.emitted.begin() + state.forest->patch_count());
+    const std::vector<float> density = particle_density(state.solution, of_patches);
+    std::copy(density.begin(), density.end(), payload.density.begin());  // parts keep the mean: importance is unknown
     return payload;
 }
 

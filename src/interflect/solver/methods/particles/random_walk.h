@@ -4,15 +4,9 @@
 
 #include "interflect/base/state_archive.h"
 #include "interflect/solver/iteration/iteration_method.h"
+#include "interflect/solver/methods/particles/path_series.h"
 
 namespace interflect::detail {
-
-struct PathSeries {
-    std::uint64_t key = 0;
-    std::uint64_t batches = 0;
-    std::int64_t pilot_rays = 0;
-    double rays_per_path = 0;  ///< In the last batch or the pilot; 0: unknown.
-};
 
 /// Random walks that solve Eq. 1, Prikryl et al. 2000 (Pattanaik and Mudur 1992). A particle deposits its power at
 /// every hit patch and continues from a uniform point on it, with the reflectance as probability.

@@ -42,27 +42,53 @@ constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uin
     return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
 }
 
-/// Source of particles: light, or importance (Eq. 7). Entries by patch; `emitted` and `density` continue with luminaire
-/// parts (Emission).
+/// Source of particles: light, or importance (Eq. 7). Entries by element, used for leaves; `emitted` and `density`
+/// continue with luminaire parts (Emission).
 struct WalkSource {
     std::vector<Rgb> emitted;      ///< W [lm or W], or reflected view importance rho V.
     std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
     std::vector<float> density;    ///< Particles per unit of leaving power, up to a factor; >= 0.
     bool is_grey = false;          ///< Panes transmit the mean of their channels.
+    /// Reflected particles start where they hit, else uniformly on the leaf. Also counts the hits.
+    bool starts_at_hits = false;
 };
 
+/// Number of hits. Behind panes, a hit counts as the share of its particle's power that they transmit.
+class HitSum {
+  public:
+    void add_concurrent(double share) {
+        add_concurrently(sum_, std::llround(share / unit));
+        add_concurrently(squares_, std::llround(share * share / unit));
+    }
+    HitSum& operator+=(const HitSum& other) {
+        sum_ += other.sum_, squares_ += other.squares_;
+        return *this;
+    }
+    double sum() const { return static_cast<double>(sum_) * unit; }
+    /// Sum of the squares: the variance of sum().
+    double squares() const { return static_cast<double>(squares_) * unit; }
+
+  private:
+    static constexpr double unit = 0x1p-16;  // fixed point, for sums independent of order
+
+    std::int64_t sum_ = 0, squares_ = 0;
+};
+
+/// Sums by leaf.
 struct PathSums {
     FixedPoint unit;
     std::vector<FixedPoint::Value> received;
     FixedPoint::Value escaped{};
-    std::vector<std::int64_t> started;  ///< Rays that left each patch.
+    std::vector<std::int64_t> started;  ///< Rays that left each leaf.
+    std::vector<HitSum> hits;           ///< Empty unless the source counts them.
     std::int64_t rays = 0, escaped_rays = 0;
 
-    /// @param hits  Maximum per ray; more than 1 with panes.
-    PathSums(const WalkSource& payload, double hits)
-        : unit(sum_headroom * hits * max_expected(payload)),
+    /// @param most_hits  Maximum per ray; more than 1 with panes.
+    PathSums(const WalkSource& payload, double most_hits)
+        : unit(sum_headroom * most_hits * max_expected(payload)),
           received(payload.reflectance.size()),
-          started(payload.reflectance.size(), 0) {}
+          started(payload.reflectance.size(), 0),
+          hits(payload.starts_at_hits ? payload.reflectance.size() : 0) {}
 
     static double max_expected(const WalkSource& payload) {
         double power = 0, rho = 0;
@@ -72,9 +98,11 @@ struct PathSums {
     }
 };
 
-/// Power about to leave a patch or luminaire part.
+/// Power about to leave a leaf or luminaire part.
 struct Particle {
-    std::uint32_t patch;
+    std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part.
+    std::uint32_t patch;   ///< Patch of the leaf; none for luminaires.
+    Parameters at;         ///< Where the patch was hit, if WalkSource::starts_at_hits.
     Rgb power;
 };
 
@@ -98,6 +126,7 @@ class PathBatch {
   public:
     PathBatch(const SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key)
         : forest_(*state.forest),
+          elements_(forest_.size()),
           emission_(state.emission),
           ray_caster_(state.ray_caster),
           panes_(state.scene, state.ray_caster),
@@ -141,6 +170,13 @@ class PathBatch {
         }
     }
 
+    /// Identifies a source, whatever the mesh.
+    std::uint64_t number_of(std::uint32_t source) const {
+        if (source >= elements_) return source - elements_ + forest_.patch_count();
+        if (source < forest_.patch_count()) return source;
+        return static_cast<std::uint64_t>(forest_.path(source)) << 32 | forest_.patch(source);
+    }
+
     /// A path of source s carries W_s / (N q_s).
     void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
         w.particles.resize(static_cast<std::size_t>(end - begin));
@@ -150,41 +186,58 @@ class PathBatch {
             const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
             const double share =
                 unit_power_ / payload_.density[s] / static_cast<double>(channel_sum(payload_.emitted[s]));
-            std::fill_n(&w.particles[offset], count, Particle{s, Rgb(RgbD(payload_.emitted[s]) * share)});
-            const std::uint64_t key = sub_key(key_, WalkPurpose::emission, s);
+            const std::uint32_t patch = s < elements_ ? forest_.patch(s) : none;
+            const Particle particle{s, patch, {}, Rgb(RgbD(payload_.emitted[s]) * share)};
+            std::fill_n(&w.particles[offset], count, particle);
+            const std::uint64_t key = sub_key(key_, WalkPurpose::emission, number_of(s));
             const auto first_sample = static_cast<std::uint64_t>(from - first);
             const std::span<Ray> rays = std::span(w.rays).subspan(offset, count);
-            if (s < forest_.patch_count())
-                shoot_rays(forest_.geometry(s), Cell(), ray_caster_.ray_offset(s), first_points_, key, first_sample,
-                           w.points, rays, std::span(w.origins).subspan(offset, count));
+            if (s < elements_)
+                shoot_rays(forest_.geometry(patch), forest_.cell(s), ray_caster_.ray_offset(patch), first_points_, key,
+                           first_sample, w.points, rays, std::span(w.origins).subspan(offset, count));
             else
-                emission_.shoot(s - forest_.patch_count(), first_points_, key, first_sample, w.points, rays);
+                emission_.shoot(s - elements_, first_points_, key, first_sample, w.points, rays);
         };
         allocation_->for_each_source(begin, end, emit_some);
+    }
+
+    struct HitPlace {
+        std::uint32_t leaf;
+        Parameters at;
+    };
+    HitPlace hit_place(const Ray& ray, const Hit& hit) const {
+        if (!payload_.starts_at_hits && forest_.is_leaf(hit.patch)) return {hit.patch, {}};
+        const Parameters at = forest_.geometry(hit.patch).parameters_of(ray.origin + hit.distance * ray.direction);
+        return {forest_.leaf_at(hit.patch, at), at};
     }
 
     void score(Wavefront& w) {
         FixedPoint::Value escaped{};
         std::int64_t escaped_rays = 0;
         w.reflected.clear();
-        const auto arrive = [&](std::uint32_t patch, const Rgb& power) {
+        const auto arrive = [&](std::size_t i, const Hit& hit, const Rgb& transmittance) {
+            const Rgb power = w.particles[i].power * transmittance;
             const FixedPoint::Value term = sums_.unit.from(RgbD(power));
-            if (patch == none) {
+            if (hit.patch == none) {
                 for (std::size_t c = 0; c < 3; ++c) escaped[c] += term[c];
                 ++escaped_rays;
                 return;
             }
-            add_concurrently(sums_.received[patch], term);
-            w.reflected.push_back({patch, payload_.reflectance[patch] * power});
+            const auto [leaf, at] = hit_place(w.rays[i], hit);
+            add_concurrently(sums_.received[leaf], term);
+            if (payload_.starts_at_hits)
+                sums_.hits[leaf].add_concurrent(static_cast<double>(channel_sum(power)) /
+                                                static_cast<double>(channel_sum(w.particles[i].power)));
+            w.reflected.push_back({leaf, hit.patch, at, payload_.reflectance[leaf] * power});
         };
         auto behind = w.behind.begin();
         for (std::size_t i = 0; i < w.particles.size(); ++i) {
-            const auto& [source, power] = w.particles[i];
+            const std::uint32_t source = w.particles[i].source;
             if (source < sums_.started.size()) add_concurrently(sums_.started[source], 1);
-            arrive(w.hits[i].patch, power);
+            arrive(i, w.hits[i], Rgb(1));
             for (; behind != w.behind.end() && behind->ray == i; ++behind) {
                 const Rgb& t = behind->transmittance;
-                arrive(behind->hit.patch, power * (payload_.is_grey ? Rgb(channel_sum(t) / 3) : t));
+                arrive(i, behind->hit, payload_.is_grey ? Rgb(channel_sum(t) / 3) : t);
             }
         }
         add_concurrently(sums_.escaped, escaped);
@@ -197,25 +250,32 @@ class PathBatch {
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;
-        for (const auto& [patch, power] : w.reflected) {
-            const double n =
-                std::min(max_copies, static_cast<double>(channel_sum(power)) * payload_.density[patch] / unit_power_);
+        for (const Particle& p : w.reflected) {
+            const double n = std::min(
+                max_copies, static_cast<double>(channel_sum(p.power)) * payload_.density[p.source] / unit_power_);
             const double before = std::floor(cumulative);
             cumulative += n;
             const auto copies = static_cast<std::size_t>(std::floor(cumulative) - before);
-            if (copies > 0) w.particles.insert(w.particles.end(), copies, {patch, power * static_cast<float>(1 / n)});
+            if (copies > 0)
+                w.particles.insert(w.particles.end(), copies,
+                                   {p.source, p.patch, p.at, p.power * static_cast<float>(1 / n)});
         }
     }
 
     void reflect(std::uint64_t key, Wavefront& w) const {
         w.make_room_for_rays();
-        for (std::size_t i = 0; i < w.particles.size(); ++i)
-            shoot_rays(forest_.geometry(w.particles[i].patch), Cell(), ray_caster_.ray_offset(w.particles[i].patch),
-                       PointSet::random, key, i, w.points, std::span(w.rays).subspan(i, 1),
-                       std::span(w.origins).subspan(i, 1));
+        for (std::size_t i = 0; i < w.particles.size(); ++i) {
+            const Particle& p = w.particles[i];
+            const PatchGeometry& geometry = forest_.geometry(p.patch);
+            const float offset = ray_caster_.ray_offset(p.patch);
+            shoot_rays(geometry, forest_.cell(p.source), offset, PointSet::random, key, i, w.points,
+                       std::span(w.rays).subspan(i, 1), std::span(w.origins).subspan(i, 1));
+            if (payload_.starts_at_hits) w.rays[i].origin = geometry.point(p.at) + geometry.normal() * offset;
+        }
     }
 
     const ElementForest& forest_;
+    const std::uint32_t elements_;
     const Emission& emission_;
     const RayCaster& ray_caster_;
     const Panes panes_;

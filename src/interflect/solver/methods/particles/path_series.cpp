@@ -1,0 +1,64 @@
+#include "interflect/solver/methods/particles/path_series.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "interflect/elements/forest.h"
+#include "interflect/solver/light/materials.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Paths of the pilot; minimum rays of a batch per pilot path.
+constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
+
+BatchResult follow_paths(SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key) {
+    PathBatch batch(state, payload, paths, key);
+    PathSums sums = batch.follow();
+    state.escaped_rays += sums.escaped_rays;
+    state.streams.used.resize(sums.started.size(), 0);
+    BatchResult arrived;
+    for (std::uint32_t i = 0; i < sums.received.size(); ++i) {
+        arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / state.forest->area(i));
+        state.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
+    }
+    pull(*state.forest, arrived.irradiance);
+    arrived.hits = std::move(sums.hits);
+    arrived.escaped = sums.unit.to_colour(sums.escaped);
+    arrived.rays = sums.rays;
+    return arrived;
+}
+
+}  // namespace
+
+BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t rays, PathSeries& series) {
+    if (series.pilot_rays == 0) {  // discarded: a batch must not choose its own size
+        const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
+        series.pilot_rays = follow_paths(state, payload, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
+        series.rays_per_path = static_cast<double>(series.pilot_rays) / static_cast<double>(paths);
+    }
+    const auto paths = std::llround(static_cast<double>(rays) / std::max(1.0, series.rays_per_path));
+    const std::int64_t at_least_one = std::max<std::int64_t>(1, paths);
+    BatchResult arrived =
+        follow_paths(state, payload, at_least_one, sub_key(series.key, WalkPurpose::batch, series.batches));
+    series.rays_per_path = static_cast<double>(arrived.rays) / static_cast<double>(at_least_one);
+    if (series.batches++ == 0) arrived.rays += series.pilot_rays;
+    return arrived;
+}
+
+WalkSource light_source(const SolverState& state) {
+    const ElementForest& forest = *state.forest;
+    WalkSource payload;
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        const MeanSurface surface = state.materials.surface(forest.patch(e), e);
+        payload.emitted.push_back(forest.is_leaf(e) ? surface.exitance * forest.area(e) : Rgb(0));
+        payload.reflectance.push_back(surface.reflectance);
+    }
+    for (std::size_t i = 0; i < state.emission.part_count(); ++i) payload.emitted.emplace_back(state.emission.power(i));
+    payload.density.assign(payload.emitted.size(), 1.0f);
+    return payload;
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/solver/methods/particles/path_batch.h"
+#include "interflect/solver/state/solver_state.h"
+
+namespace interflect::detail {
+
+/// Batches of paths, each sized by the length of the paths before.
+struct PathSeries {
+    std::uint64_t key = 0;
+    std::uint64_t batches = 0;
+    std::int64_t pilot_rays = 0;
+    double rays_per_path = 0;  ///< In the last batch or the pilot; 0: unknown.
+};
+
+struct BatchResult {
+    /// By element; inner elements have the mean of their children. Or importance per area.
+    std::vector<Rgb> irradiance;
+    std::vector<HitSum> hits;  ///< By leaf; empty unless WalkSource::starts_at_hits.
+    RgbD escaped{0, 0, 0};
+    std::int64_t rays = 0;
+};
+
+/// Follows one batch of about `rays` rays. @throws Interrupted; `series` may then have changed.
+BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t rays, PathSeries& series);
+
+/// Returns the emission of leaves and luminaires, with density 1.
+WalkSource light_source(const SolverState& state);
+
+}  // namespace interflect::detail

@@ -1,0 +1,170 @@
+#include "interflect/solver/methods/particles/photon_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "interflect/base/parallel.h"
+#include "interflect/base/state_archive.h"
+#include "interflect/elements/forest.h"
+#include "interflect/solver/error/noise_update.h"
+#include "interflect/solver/iteration/iteration_method.h"
+#include "interflect/solver/iteration/merge.h"
+#include "interflect/solver/methods/particles/path_series.h"
+#include "interflect/solver/refinement/divide_leaves.h"
+#include "interflect/solver/transport/received.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// The distribution of chi-squared needs five expected hits per quarter (Cochran 1954).
+constexpr double fewest_hits_of_quarter = 5;
+/// Chi-squared of three degrees of freedom that 5% of evenly lit elements exceed.
+constexpr double significant = 7.815;
+/// Root mean square difference of the quarters from their mean, relative to it, that cannot be seen (Weber).
+constexpr double invisible_difference = 0.02;
+/// Patches above this share of all area are divided twice at first; at most 1000 are, into 16,000 elements.
+constexpr double large_share = 1e-3;
+
+/// Adaptive subdivision by particles (Heckbert 1990; Tobler, Wilkie, Feda and Purgathofer 1997). Particles as in
+/// RandomWalks, but a reflected one starts where it hit. The leaves of the forest are quarters of the elements of the
+/// paper: an element is divided once its quarters' hits differ, which makes the quarters elements with quarters of
+/// their own (docs/method.md).
+class PhotonMesh final : public IterationMethod {
+  public:
+    explicit PhotonMesh(const SolverState& state) : current_{sub_key(state.options.seed, WalkPurpose::light)} {}
+
+    void prepare(SolverState& state) override;
+    void update_importance(SolverState&, IterationPlan&) override { before_ = current_; }
+    Estimate trace(SolverState& state, IterationPlan& plan) override;
+    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    void refine(SolverState& state) override;
+    void discard() override { current_ = before_; }
+    void archive(StateArchive& archive) override;
+    bool fits(const SolverState& state) const override { return hits_.size() == state.forest->size(); }
+
+  private:
+    bool has_quarters_to_divide(const SolverState& state, std::uint32_t e) const;
+    double discarded_share(const ElementForest& forest) const;
+
+    PathSeries current_, before_;
+    std::vector<HitSum> fresh_hits_;  // of the iteration, by leaf
+    /// By element, since its creation; of inner elements, before their division.
+    std::vector<HitSum> hits_;
+};
+
+/// Divides the patches: their quarters count all hits. Symmetric light may be equal on the quarters of a large patch,
+/// so these are divided, too.
+void PhotonMesh::prepare(SolverState& state) {
+    before_ = current_;
+    const ElementForest& forest = *state.forest;
+    double total_area = 0;
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) total_area += forest.area(i);
+    for (const double least_area : {0.0, large_share * total_area}) {
+        std::vector<std::uint8_t> splits(forest.size());
+        for (std::uint32_t e = 0; e < splits.size(); ++e)
+            splits[e] = forest.is_leaf(e) && forest.area(e) >= 4 * min_area(state, e) &&
+                        forest.area(forest.patch(e)) > least_area;
+        divide_leaves(state, splits);
+    }
+    hits_.assign(state.forest->size(), {});
+}
+
+Estimate PhotonMesh::trace(SolverState& state, IterationPlan& plan) {
+    WalkSource light = light_source(state);
+    light.starts_at_hits = true;
+    BatchResult batch = walk(state, light, plan.rays, current_);
+    state.power_rays += batch.rays;
+    if (batch.rays > 0) plan.traced = batch.rays;
+    fresh_hits_ = std::move(batch.hits);
+    const ElementForest& forest = *state.forest;
+    Estimate estimate{.irradiance = std::move(batch.irradiance), .escaped_power = batch.escaped};
+    estimate.variance.assign(forest.size(), 0.0f);
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        if (!(fresh_hits_[e].sum() > 0)) continue;
+        const double per_hit = luminance(estimate.irradiance[e]) / fresh_hits_[e].sum();
+        estimate.variance[e] = static_cast<float>(per_hit * per_hit * fresh_hits_[e].squares());
+    }
+    pull_variance(forest, estimate.variance);
+    return estimate;
+}
+
+/// Weighted by planned rays, as in RandomWalks.
+void PhotonMesh::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
+    const bool shows_error = plan.rays >= state.schedule.start_rays();  // a remainder is too small
+    if (shows_error) estimate_noise(state, estimate, plan.rays);
+    merge_independent(state, state.solution.irradiance, estimate.irradiance, plan);
+    merge_escaped_power(state, estimate.escaped_power, plan);
+    update_history(state, plan);
+    for (std::size_t e = 0; e < hits_.size(); ++e) hits_[e] += fresh_hits_[e];
+}
+
+bool PhotonMesh::has_quarters_to_divide(const SolverState& state, std::uint32_t e) const {
+    const ElementForest& forest = *state.forest;
+    const std::uint32_t first = forest.first_child(e);
+    if (first == none) return false;
+    std::array<HitSum, 4> hits;
+    std::array<float, 4> areas{};
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        const std::uint32_t quarter = first + k;
+        hits[k] = hits_[quarter], areas[k] = forest.area(quarter);
+        if (!forest.is_leaf(quarter) || areas[k] < 4 * min_area(state, quarter)) return false;
+    }
+    return quarters_differ(hits, areas);
+}
+
+void PhotonMesh::refine(SolverState& state) {
+    const ElementForest& forest = *state.forest;
+    std::vector<std::uint8_t> splits(forest.size(), 0);
+    parallel_for_ranges(splits.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
+        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
+            if (has_quarters_to_divide(state, e)) std::fill_n(&splits[forest.first_child(e)], 4, std::uint8_t{1});
+    });
+    divide_leaves(state, splits);
+    hits_.resize(forest.size());
+    state.discarded_hits = discarded_share(forest);
+}
+
+/// An element's hits before its division are in its mean, but not among its quarters. They are lost when the quarters
+/// become elements.
+double PhotonMesh::discarded_share(const ElementForest& forest) const {
+    double discarded = 0, all = 0;
+    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+        all += hits_[e].sum();
+        const std::uint32_t first = forest.first_child(e);
+        if (first != none && !forest.is_leaf(first)) discarded += hits_[e].sum();
+    }
+    return all > 0 ? discarded / all : 0;
+}
+
+void PhotonMesh::archive(StateArchive& archive) {
+    archive("photon_mesh/series", current_);
+    archive("photon_mesh/hits", hits_);
+}
+
+}  // namespace
+
+bool quarters_differ(const std::array<HitSum, 4>& hits, const std::array<float, 4>& areas) {
+    double area = 0;
+    HitSum all;
+    for (std::size_t k = 0; k < 4; ++k) area += areas[k], all += hits[k];
+    if (!(all.sum() > 0)) return false;
+    const double effective_hits = all.sum() * all.sum() / all.squares();  // equal ones with the same relative noise
+    if (effective_hits * *std::min_element(areas.begin(), areas.end()) < fewest_hits_of_quarter * area) return false;
+    double chi_squared = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const double share = areas[k] / area, difference = hits[k].sum() - share * all.sum();
+        chi_squared += difference * difference / (share * all.squares());
+    }
+    constexpr double degrees_of_freedom = 3;
+    const double square = (chi_squared - degrees_of_freedom) / effective_hits;  // of the relative differences
+    return chi_squared > significant && square > invisible_difference * invisible_difference;
+}
+
+std::unique_ptr<IterationMethod> make_photon_mesh(SolverState& state) { return std::make_unique<PhotonMesh>(state); }
+
+}  // namespace interflect::detail

@@ -1,0 +1,20 @@
+#include "interflect/solver/refinement/divide_leaves.h"
+
+#include <algorithm>
+
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+void divide_leaves(SolverState& state, const std::vector<std::uint8_t>& splits) {
+    ElementForest& forest = *state.forest;
+    const std::uint32_t before = forest.size();
+    for (std::uint32_t e = 0; e < before && forest.size() + 4 <= state.options.refinement.max_elements; ++e)
+        if (splits[e]) forest.subdivide(e);
+    if (forest.size() == before) return;
+    forest.put_in_order(before);
+    grow_with_forest(state, before);
+    std::fill(state.history.begin() + before, state.history.end(), 0.0f);
+}
+
+}  // namespace interflect::detail
