@@ -42,8 +42,8 @@ CONSTANTS = {
     "state/schedule.cpp": "growth first_rays_per_patch fewest_first_rays budget_over_first_rays rays_of_a_moment",
     "noise/noise_model.cpp": "spread_decay largest_scale contributions_of_half_weight",
     "error/error_estimate.cpp": "min_decay max_decay",
-    "error/sibling_variation.cpp": "under_sampled highest_expected_decay",
-    "error/sibling_variation.h": "assumed_variation",
+    "shrinkage/sibling_variation.cpp": "under_sampled highest_expected_decay",
+    "shrinkage/sibling_variation.h": "assumed_variation",
     "error/noise_update.cpp": "long_enough",
     "refinement/oracle_threshold.cpp": "rays_at_epsilon",
     "refinement/variance_refinement.cpp": "expected_decay assumed_square min_signal negligible_gain negligible_misplacement "
