@@ -546,7 +546,7 @@ void add_render(CLI::App& app, int& exit_code) {
                     "Random walks from the light sources that leave virtual lights, for each batch of samples "
                     "(--shading instant)")
         ->capture_default_str()
-        ->check(CLI::Range(1, 1 << 20))
+        ->check(CLI::Range(1, 1 << 18))
         ->group(path_group);
     options->path.add_to(command);
     add_tone_options(command, *options);

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t walks_per_task = 1 << 10;
 
 /// Bound of the geometric term times the area per light.
-constexpr float bound_per_density = 0.25f;
+constexpr float bound_per_density = 1;
 
 /// Splits [0, total) into consecutive intervals of these sizes, and calls visit(i, n) with the number n of points
 /// uniform + 0, 1, 2, ... in interval i. Its expected value is the size (systematic sampling).
