@@ -38,6 +38,7 @@
 #include "interflect/render.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/pictures/outlines.h"
+#include "interflect/render/pictures/path_picture.h"
 #include "interflect/scene/view.h"
 #include "interflect/solution.h"
 
@@ -157,7 +158,7 @@ PathOptions path_options(const RenderArguments& options) {
     result.width = options.size.width;
     result.height = options.rows();
     constexpr int gathered_samples = 16, hybrid_samples = 32;  // enough for a filtered picture
-    const int usual = makes_no_solution(options.shading)           ? result.samples
+    const int usual = makes_no_solution(options.shading)          ? result.samples
                       : options.shading == PictureShading::hybrid ? hybrid_samples
                                                                   : gathered_samples;
     result.samples = options.samples.value_or(usual);
@@ -190,7 +191,8 @@ PathShading path_shading(const Scene& scene, const Solution* solution, const Ray
         case PictureShading::path:
             return {"path tracing", from_scene(trace_paths), false};
         case PictureShading::instant:
-            return {"instant radiosity", from_scene(render_instant), false};
+            return {"instant radiosity", from_scene(render_instant), false,
+                    static_cast<std::size_t>(arguments.light_walks) * bytes_per_light_walk};
         case PictureShading::gather:
             return {"final gathering", from_solution(gather), true};
         default:
@@ -203,8 +205,8 @@ Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster
                    const RenderArguments& options, double time = PathOptions().time) {
     PathOptions tracing = path_options(options);
     tracing.time = time;
-    PathTracing traced = run_path_tracer(scene, path_shading(scene, solution, ray_caster, view, options), view, tracing,
-                                         options.path);
+    PathTracing traced =
+        run_path_tracer(scene, path_shading(scene, solution, ray_caster, view, options), view, tracing, options.path);
     Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
     picture.traced = std::move(traced);
     return picture;
@@ -527,7 +529,9 @@ void add_render(CLI::App& app, int& exit_code) {
     add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
         ->type_name("WxH")
         ->default_str("1280x720");
-    command.add_option("--samples", options->samples, "Camera rays a pixel (default: hybrid 32, path and instant 64, else 16)")
+    command
+        .add_option("--samples", options->samples,
+                    "Camera rays a pixel (default: hybrid 32, path and instant 64, else 16)")
         ->check(CLI::Range(1, 65536));
     add_choice<PictureShading>(
         command, "--shading", options->shading,

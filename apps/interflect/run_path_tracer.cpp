@@ -115,15 +115,14 @@ PathTracing run_path_tracer(const Scene& scene, const PathShading& shading, cons
     options.max_samples = arguments.max_samples;
     options.mirrors = arguments.mirrors;
     require_free_memory(scene.patches.size() * path_bytes_per_patch +
-                            Size{options.width, options.height}.pixels() * path_bytes_per_pixel,
+                            Size{options.width, options.height}.pixels() * path_bytes_per_pixel + shading.memory,
                         fmt::format("tracing paths in {}", scene.name),
-                        "a smaller --size, and a scene of fewer faces, need less");
+                        "a smaller --size, fewer --light-walks, and a scene of fewer faces, need less");
     std::optional<PendingFile> error_image;
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
     PathTracing traced;
     stop_on_signal();
-    const double seconds =
-        with_path_progress([&](const Monitor& monitor) { traced = shading.draw(options, monitor); });
+    const double seconds = with_path_progress([&](const Monitor& monitor) { traced = shading.draw(options, monitor); });
     if (shading.has_solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
         spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -41,7 +42,8 @@ std::vector<ImageLayer> layers_of(const PathTracing& traced);
 struct PathShading {
     std::string name;
     std::function<PathTracing(const PathOptions&, const Monitor&)> draw;
-    bool has_solution;  ///< Smooth shading can replace it.
+    bool has_solution;       ///< Smooth shading can replace it.
+    std::size_t memory = 0;  ///< Beside that of the pixels and patches [bytes].
 };
 
 /// @throws std::runtime_error if a gathered or path-traced picture does not fit into memory.

@@ -96,8 +96,8 @@ TEST_P(InstantFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
     const Scene box = closed_box(V3f(1, 2, 3), 2, {{"wall", rho, exitance}});
     const RgbD expected = RgbD(exitance) / (RgbD(1, 1, 1) - RgbD(rho)) / pi;
     for (const int walks : {16, 1024}) {
-        const auto seen = pictures(render_instant, box, corner,
-                                   {.width = 6, .height = 4, .samples = 64, .light_walks = walks}, 24);
+        const auto seen =
+            pictures(render_instant, box, corner, {.width = 6, .height = 4, .samples = 64, .light_walks = walks}, 24);
         EXPECT_GT(p_value(seen, expected), false_alarm) << walks;
         EXPECT_LT(p_value(seen, expected * 1.02), false_alarm) << walks;
         for (const PathTracing& run : seen) EXPECT_EQ(run.escaped_rays, 0);
@@ -111,6 +111,18 @@ TEST(Instant, IsUnbiasedWithTextures) {
         pictures(render_instant, box, corner, {.width = 6, .height = 4, .samples = 64, .light_walks = 256}, 24);
     EXPECT_GT(p_value(seen, RgbD(radiosity) / pi), false_alarm);
     EXPECT_LT(p_value(seen, RgbD(radiosity) * (1.02 / pi)), false_alarm);
+}
+
+/// The furnace with a pane close to a wall. It emits what it absorbs, (1 - rho - tau) B for the radiosity B = 2.
+TEST(Instant, IsUnbiasedThroughPanes) {
+    Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.5f), Rgb(1)}});
+    const auto glass = add_material(box, Rgb(0.2f), Rgb(0.6f));
+    box.materials[glass].transmittance = Rgb(0.5f);
+    add_rectangle(box, V3f(0.1f, 1.9f, 0.1f), V3f(0, 0, 2.8f), V3f(0.8f, 0, 0), glass, 1, 1, true);
+    const auto seen =
+        pictures(render_instant, box, corner, {.width = 6, .height = 4, .samples = 64, .light_walks = 64}, 24);
+    EXPECT_GT(p_value(seen, RgbD(2 / pi)), false_alarm);
+    EXPECT_LT(p_value(seen, RgbD(1.02 * 2 / pi)), false_alarm);
 }
 
 /// The reflected flux of a closed box is that of the lamps times rho + rho^2 + ...

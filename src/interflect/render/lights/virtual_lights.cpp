@@ -78,8 +78,8 @@ void VirtualLights::renew(std::uint32_t number) {
     lights.reserve(lights_.size());
     for (std::uint32_t i = 0; i < lights_.size(); ++i) {
         const Light& light = lights_[i];
-        lights.push_back({i, channel_sum(light.flux), {light.position, light.position},
-                          {geometry_[light.patch].normal(), 1}});
+        lights.push_back(
+            {i, channel_sum(light.flux), {light.position, light.position}, {geometry_[light.patch].normal(), 1}});
     }
     tree_.emplace(std::move(lights), lights_.size());
 }

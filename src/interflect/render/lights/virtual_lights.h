@@ -40,14 +40,14 @@ class VirtualLights {
     /// Samples a light for point x on a surface with normal n, in proportion to its estimated unoccluded irradiance.
     LightTree::Choice choose(const V3f& x, const V3f& n, double uniform) const;
 
-    /// Bound of the geometric term cos cos / distance^2 for the lights of a patch, below which they represent all of its
-    /// reflected light (Kollig and Keller 2004 use a constant). Does not depend on the lights in use [1/m^2].
+    /// Bound of the geometric term cos cos / distance^2 for the lights of a patch, below which they represent all of
+    /// its reflected light (Kollig and Keller 2004 use a constant). Does not depend on the lights in use [1/m^2].
     float bound(std::uint32_t patch) const { return bounds_[patch]; }
 
   private:
     struct Walk {
         Ray ray;
-        Rgb flux;  // [lm or W]
+        Rgb flux;                    // [lm or W]
         std::uint32_t patch = none;  // that reflected it; none after a pane
     };
     std::vector<Walk> start(std::uint64_t key) const;
