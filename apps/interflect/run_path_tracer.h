@@ -43,7 +43,7 @@ struct PathShading {
     std::string name;
     std::function<PathTracing(const PathOptions&, const Monitor&)> draw;
     bool has_solution;       ///< Smooth shading can replace it.
-    std::size_t memory = 0;  ///< Beside that of the pixels and patches [bytes].
+    std::size_t memory = 0;  ///< Of virtual lights [bytes].
 };
 
 /// @throws std::runtime_error if a gathered or path-traced picture does not fit into memory.

@@ -162,11 +162,11 @@ PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const V
 
 /// Instant radiosity (Keller 1997) without bias (Kollig and Keller 2004): direct light as by trace_paths(), indirect
 /// light by shadow rays to virtual lights, which random walks from the light sources leave at their reflections. Paths
-/// find the light of near virtual lights, whose contributions are bounded. The expected value is that of trace_paths()
+/// find the light of near virtual lights, whose contributions are bounded. The expected value equals trace_paths()
 /// unless a one-sided face is between a source and a lit surface.
-/// @return  The standard error includes that of the lights: each batch of a pixel has another set of them.
+/// @return  The standard error includes the error of the lights: each batch of a pixel has another set.
 /// @throws InputError as trace_paths() does, and for options.light_walks below 1.
-/// Cost: as trace_paths(), with three more shadow rays at the first vertex and fewer bounces; 0.5 to 3 kB a walk.
+/// Cost: as trace_paths(), with three more shadow rays at the first vertex and fewer bounces; 0.5 to 4 kB a walk.
 PathTracing render_instant(const Scene& scene, const RayCaster& ray_caster, const View& view,
                            const PathOptions& options = {}, const Monitor& monitor = {});
 

@@ -164,8 +164,9 @@ std::vector<VirtualLights::Walk> VirtualLights::meet_surfaces(std::span<const Wa
     return met;
 }
 
-/// Russian roulette by systematic sampling: walks continue in proportion to their flux, at most that of a start. The
-/// number of survivors hence varies by at most 1, as in Keller's fraction of walks, and lights are about equal.
+/// Russian roulette by systematic sampling: a walk survives with the probability flux / starting flux, at most 1. The
+/// number of survivors hence varies by at most 1, like Keller's fraction of walks, and all lights have about equal
+/// flux.
 std::vector<VirtualLights::Walk> VirtualLights::survivors(std::vector<Walk> walks, double uniform) const {
     const double starting_flux = total_power_ / static_cast<double>(walks_);
     const auto survival = [&](std::size_t i) {

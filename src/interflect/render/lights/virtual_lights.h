@@ -35,7 +35,7 @@ class VirtualLights {
     /// Replaces the lights by an independent set; the same number always gives the same bits.
     void renew(std::uint32_t number);
     std::span<const Light> lights() const { return lights_; }
-    std::int64_t rays() const { return rays_; }  ///< Of all walks since construction.
+    std::int64_t rays() const { return rays_; }  ///< Total over all sets.
 
     /// Samples a light for point x on a surface with normal n, in proportion to its estimated unoccluded irradiance.
     LightTree::Choice choose(const V3f& x, const V3f& n, double uniform) const;
@@ -48,12 +48,12 @@ class VirtualLights {
     struct Walk {
         Ray ray;
         Rgb flux;                    // [lm or W]
-        std::uint32_t patch = none;  // that reflected it; none after a pane
+        std::uint32_t patch = none;  // start of the ray; none after a pane
     };
     std::vector<Walk> start(std::uint64_t key) const;
     void start_at_patch(std::uint32_t patch, std::uint64_t key, std::span<Walk> walks) const;
     void start_at_luminaire(std::size_t part, std::uint64_t key, std::span<Walk> walks) const;
-    /// Traces the walks to their next surfaces. Returns what they reflect and transmit there.
+    /// Traces the walks to their next surfaces. Returns their reflected and transmitted parts.
     std::vector<Walk> meet_surfaces(std::span<const Walk> walks);
     std::vector<Walk> survivors(std::vector<Walk> walks, double uniform) const;
     /// Adds the lights of reflected walks and samples their directions.
