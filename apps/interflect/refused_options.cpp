@@ -40,12 +40,12 @@ void refuse_options(const CLI::App& command, Names refused, const std::string& r
 
 void refuse_solver_options(const CLI::App& command) {
     constexpr std::array<std::string_view, 3> of_paths = {"--seed", "--until", "--contact-cuts"};
-    refuse_options(command, options_of_solving({"--show"}), "--shading path makes no solution", of_paths);
+    refuse_options(command, options_of_solving({"--show"}), "--shading path and instant make no solution", of_paths);
 }
 
 void refuse_path_options(const CLI::App& command) {
     constexpr std::array<std::string_view, 1> of_paths = {path_group};
-    refuse_options(command, of_paths, "only --shading gather and path take it");
+    refuse_options(command, of_paths, "only --shading hybrid, gather, path and instant take it");
 }
 
 void refuse_scene_options(const CLI::App& command, const std::filesystem::path& scene, bool traces_paths) {

@@ -38,6 +38,7 @@
 #include "interflect/render.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/pictures/outlines.h"
+#include "interflect/render/pictures/path_picture.h"
 #include "interflect/scene/view.h"
 #include "interflect/solution.h"
 
@@ -52,11 +53,16 @@ enum class PictureShading {
     gather,  ///< Final gathering from a solution.
     smooth,  ///< The solution itself, see Shading.
     flat,
-    path,  ///< Path tracing without a solution.
+    path,     ///< Path tracing without a solution.
+    instant,  ///< Virtual lights without a solution, see render_instant().
 };
 
+bool makes_no_solution(PictureShading shading) {
+    return shading == PictureShading::path || shading == PictureShading::instant;
+}
+
 bool traces_paths(PictureShading shading) {
-    return shading == PictureShading::hybrid || shading == PictureShading::gather || shading == PictureShading::path;
+    return shading == PictureShading::hybrid || shading == PictureShading::gather || makes_no_solution(shading);
 }
 
 struct RenderArguments {
@@ -71,6 +77,7 @@ struct RenderArguments {
     Size size;
     PictureShading shading = PictureShading::hybrid;
     std::optional<int> samples;
+    int light_walks = PathOptions().light_walks;
     RenderOptions render;
     Exposure exposure;
     Tonemap tonemap = Tonemap::srgb;
@@ -151,12 +158,13 @@ PathOptions path_options(const RenderArguments& options) {
     result.width = options.size.width;
     result.height = options.rows();
     constexpr int gathered_samples = 16, hybrid_samples = 32;  // enough for a filtered picture
-    const int usual = options.shading == PictureShading::path     ? result.samples
+    const int usual = makes_no_solution(options.shading)          ? result.samples
                       : options.shading == PictureShading::hybrid ? hybrid_samples
                                                                   : gathered_samples;
     result.samples = options.samples.value_or(usual);
     result.until = options.solver.until();
     result.seed = options.solver.seed();
+    result.light_walks = options.light_walks;
     if (options.shows_irradiance()) result.quantity = PathQuantity::irradiance;
     return result;
 }
@@ -165,12 +173,40 @@ Tracer tracer_of(const RenderArguments& options) {
     return options.shading == PictureShading::hybrid ? render_hybrid : gather;
 }
 
-/// @param solution  Null for path tracing. @param time  As PathOptions::time.
+/// @param solution  Null for shading without one.
+PathShading path_shading(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
+                         const RenderArguments& arguments) {
+    using Draw = std::function<PathTracing(const PathOptions&, const Monitor&)>;
+    const auto from_scene = [&](auto draw) -> Draw {
+        return [&, draw](const auto& options, const auto& monitor) {
+            return draw(scene, ray_caster, view, options, monitor);
+        };
+    };
+    const auto from_solution = [&](Tracer draw) -> Draw {
+        return [&, solution, draw](const auto& options, const auto& monitor) {
+            return draw(scene, *solution, ray_caster, view, options, monitor);
+        };
+    };
+    switch (arguments.shading) {
+        case PictureShading::path:
+            return {"path tracing", from_scene(trace_paths), false};
+        case PictureShading::instant:
+            return {"instant radiosity", from_scene(render_instant), false,
+                    static_cast<std::size_t>(arguments.light_walks) * bytes_per_light_walk};
+        case PictureShading::gather:
+            return {"final gathering", from_solution(gather), true};
+        default:
+            return {"hybrid shading", from_solution(render_hybrid), true};
+    }
+}
+
+/// @param solution  As of path_shading(). @param time  As PathOptions::time.
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options, double time = PathOptions().time) {
     PathOptions tracing = path_options(options);
     tracing.time = time;
-    PathTracing traced = run_path_tracer(scene, solution, tracer_of(options), ray_caster, view, tracing, options.path);
+    PathTracing traced =
+        run_path_tracer(scene, path_shading(scene, solution, ray_caster, view, options), view, tracing, options.path);
     Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
     picture.traced = std::move(traced);
     return picture;
@@ -357,7 +393,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     if (!solved_before) stats.write(solved.scene, solved.solution);
 }
 
-/// Draws the light by path tracing; uses only the scene of a solution file.
+/// Draws the light by paths without a solution; uses only the scene of a solution file.
 void run_paths(const RenderArguments& options, PendingFile& output) {
     Scene scene = read_scene_or_solution(options.scene, options.dimming).scene;
     require_no_scene_files(scene, outputs_of(options));
@@ -408,12 +444,14 @@ void check_false_colours(const RenderArguments& options) {
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
     check_option("--output", [&] { return require_image_format(options.output); });
-    if (options.shown != Shown::light && traces_paths(options.shading) && options.shading != PictureShading::path)
+    if (options.shown != Shown::light && traces_paths(options.shading) && !makes_no_solution(options.shading))
         options.shading = PictureShading::smooth;  // shows elements
-    if (options.shading == PictureShading::path)
+    if (makes_no_solution(options.shading))
         refuse_solver_options(command);
     else if (!traces_paths(options.shading))
         refuse_path_options(command);
+    if (options.shading != PictureShading::instant && command.get_option("--light-walks")->count() > 0)
+        throw UsageError("--light-walks", "only --shading instant takes it");
     if (options.path.layers && require_image_format(options.output) != ImageFormat::exr)
         throw UsageError("--layers", "layers need a picture in OpenEXR: expected an --output that ends in .exr");
     if (require_image_format(options.output) == ImageFormat::png &&
@@ -430,7 +468,7 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     options.view.check();
     if (options.view.count() > 1) throw UsageError("--view", "a picture has one view, but several were given");
     options.dimming.require_solution(options.scene.path);
-    if (options.shading != PictureShading::path && command.get_option("--denoise")->count() == 0)
+    if (!makes_no_solution(options.shading) && command.get_option("--denoise")->count() == 0)
         options.path.denoise = is_for_people(options);
     check_tone_options(options, command);
     check_false_colours(options);
@@ -444,7 +482,7 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     else
         require_memory_for_elements(options.size);
     PendingFile output(options.output);
-    if (options.shading == PictureShading::path)
+    if (makes_no_solution(options.shading))
         run_paths(options, output);
     else
         run_solution(options, output);
@@ -491,7 +529,9 @@ void add_render(CLI::App& app, int& exit_code) {
     add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
         ->type_name("WxH")
         ->default_str("1280x720");
-    command.add_option("--samples", options->samples, "Camera rays a pixel (default: hybrid 32, path 64, else 16)")
+    command
+        .add_option("--samples", options->samples,
+                    "Camera rays a pixel (default: hybrid 32, path and instant 64, else 16)")
         ->check(CLI::Range(1, 65536));
     add_choice<PictureShading>(
         command, "--shading", options->shading,
@@ -499,11 +539,19 @@ void add_render(CLI::App& app, int& exit_code) {
          {"gather", PictureShading::gather},
          {"smooth", PictureShading::smooth},
          {"flat", PictureShading::flat},
-         {"path", PictureShading::path}},
+         {"path", PictureShading::path},
+         {"instant", PictureShading::instant}},
         "hybrid: direct light of each pixel, indirect light interpolated; gather: each pixel finds its own light, from "
         "the solution; smooth: interpolated over each surface; flat: one value an element; path: path tracing, without "
-        "solving")
+        "solving; instant: virtual lights, without solving")
         ->default_str("hybrid");
+    command
+        .add_option("--light-walks", options->light_walks,
+                    "Random walks from the light sources that leave virtual lights, for each batch of samples "
+                    "(--shading instant)")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1 << 18))
+        ->group(path_group);
     options->path.add_to(command);
     add_tone_options(command, *options);
     add_show(command, options->shown);

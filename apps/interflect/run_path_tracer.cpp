@@ -25,7 +25,7 @@ using namespace detail;
 
 namespace {
 
-void log_outcome(const char* what, const PathTracing& traced, double seconds) {
+void log_outcome(const std::string& what, const PathTracing& traced, double seconds) {
     const auto rays = static_cast<double>(traced.rays);
     spdlog::info("{}: {} paths, {} rays in {}, estimated relative error {} a pixel{}", what,
                  magnitude(static_cast<double>(traced.paths)), magnitude(rays), duration(seconds),
@@ -110,33 +110,28 @@ void require_memory_for_paths(Size size) {
                         "a smaller --size, and --shading smooth, need less");
 }
 
-PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const Tracer& tracer,
-                            const RayCaster& ray_caster, const View& view, PathOptions options,
+PathTracing run_path_tracer(const Scene& scene, const PathShading& shading, const View& view, PathOptions options,
                             const PathTracerArguments& arguments) {
     options.max_samples = arguments.max_samples;
     options.mirrors = arguments.mirrors;
     require_free_memory(scene.patches.size() * path_bytes_per_patch +
-                            Size{options.width, options.height}.pixels() * path_bytes_per_pixel,
+                            Size{options.width, options.height}.pixels() * path_bytes_per_pixel + shading.memory,
                         fmt::format("tracing paths in {}", scene.name),
-                        "a smaller --size, and a scene of fewer faces, need less");
+                        "a smaller --size, fewer --light-walks, and a scene of fewer faces, need less");
     std::optional<PendingFile> error_image;
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
     PathTracing traced;
     stop_on_signal();
-    const double seconds = with_path_progress([&](const Monitor& monitor) {
-        traced = solution ? tracer(scene, *solution, ray_caster, view, options, monitor)
-                          : trace_paths(scene, ray_caster, view, options, monitor);
-    });
-    if (solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
+    const double seconds = with_path_progress([&](const Monitor& monitor) { traced = shading.draw(options, monitor); });
+    if (shading.has_solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
         spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());
     if (arguments.denoise && traced.paths > 0) {
         const LongWork work("filtering noise");
         traced.image = denoise(traced.layers);
     }
-    const bool gathers = solution && tracer == static_cast<Tracer>(gather);
     if (traced.interrupted) spdlog::warn("stopped early: the picture has more noise than asked for");
-    log_outcome(gathers ? "final gathering" : solution ? "hybrid shading" : "path tracing", traced, seconds);
+    log_outcome(shading.name, traced, seconds);
     if (error_image) {
         const char* unit = options.quantity == PathQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";
         write_image(*error_image, traced.standard_error,

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <string>
 
 #include "apps/interflect/parse.h"
 #include "interflect/image.h"
@@ -35,6 +38,14 @@ bool has_every_pixel(const PathTracing& traced);
 /// Returns the layers of an OpenEXR file; refers to `traced`.
 std::vector<ImageLayer> layers_of(const PathTracing& traced);
 
+/// A way to draw by paths.
+struct PathShading {
+    std::string name;
+    std::function<PathTracing(const PathOptions&, const Monitor&)> draw;
+    bool has_solution;       ///< Smooth shading can replace it.
+    std::size_t memory = 0;  ///< Of virtual lights [bytes].
+};
+
 /// @throws std::runtime_error if a gathered or path-traced picture does not fit into memory.
 void require_memory_for_paths(Size size);
 
@@ -44,9 +55,7 @@ using Tracer = PathTracing (*)(const Scene&, const Solution&, const RayCaster&, 
 
 /// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
 /// with a partial result, which is neither filtered nor reported if smooth shading can replace it.
-/// @param solution  Null for path tracing. @param tracer  Draws a solution.
-PathTracing run_path_tracer(const Scene& scene, const Solution* solution, const Tracer& tracer,
-                            const RayCaster& ray_caster, const View& view, PathOptions options,
+PathTracing run_path_tracer(const Scene& scene, const PathShading& shading, const View& view, PathOptions options,
                             const PathTracerArguments& arguments);
 
 }  // namespace interflect::command

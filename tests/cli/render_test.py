@@ -540,6 +540,13 @@ class PathTracing(CommandTest):
         attributes = exr_attributes(one[1])
         self.assertEqual(attributes["interflect.quantity"][1], b"standard error of radiance [cd/m^2]")
 
+    def test_instant_radiosity_draws_the_same_light(self):
+        self.trace("path.exr", "--samples", "256")
+        instant = ("--shading", "instant", "--light-walks", "1000", *self.SIZE)
+        log = self.interflect("render", "room.mgf", "-o", "instant.exr", *instant, *VIEW).stderr
+        self.assertRegex(log, r"info: instant radiosity: 36\.9 k paths, .* a pixel")
+        self.assertAlmostEqual(self.json("compare", "instant.exr", "path.exr")["ratio_of_means"], 1, delta=0.02)
+
     def test_a_target_takes_more_samples_where_they_are_needed(self):
         def paths_and_error(*options):
             found = re.search(r"tracing: ([\d.]+) k paths.* error ([\d.]+)%", self.trace("out.hdr", *options))
@@ -575,6 +582,9 @@ class PathTracing(CommandTest):
             (("--shading", "path", "--until", "5%", "--max-samples", "3"), "--max-samples"),
             (("--shading", "gather", "--max-samples", "99"), "--until"),
             (("--shading", "path", "--error-image", "e.png"), "e.png"),
+            (("--shading", "path", "--light-walks", "99"), "--light-walks"),
+            (("--shading", "instant", "--light-walks", "0"), "--light-walks"),
+            (("--shading", "instant", "--rays", "1M"), "--rays"),
             (("--shading", "flat", "--error-image", "e.exr"), "--error-image"),
             (("--shading", "flat", "--denoise"), "--denoise"),
             (("--show", "level", "--layers"), "--layers"),

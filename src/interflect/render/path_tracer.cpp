@@ -11,4 +11,9 @@ PathTracing trace_paths(const Scene& scene, const RayCaster& ray_caster, const V
     return trace_picture(scene, ray_caster, start_at_camera(view, options, scene.origin), options, monitor, nullptr);
 }
 
+PathTracing render_instant(const Scene& scene, const RayCaster& ray_caster, const View& view,
+                           const PathOptions& options, const Monitor& monitor) {
+    return trace_instant_picture(scene, ray_caster, start_at_camera(view, options, scene.origin), options, monitor);
+}
+
 }  // namespace interflect

@@ -19,6 +19,7 @@
 #include "interflect/render/lights/luminaire_choice.h"
 #include "interflect/render/lights/path_samples.h"
 #include "interflect/render/lights/unoccluded_light.h"
+#include "interflect/render/lights/virtual_lights.h"
 #include "interflect/render/paths/gauge.h"
 #include "interflect/render/paths/indirect_field.h"
 #include "interflect/render/paths/sky_guide.h"
@@ -55,6 +56,7 @@ struct PathScene {
     const SmoothNormals* smooth_normals = nullptr;  // of visible surfaces; null: flat patches
     const IndirectField* indirect_field = nullptr;  // replaces reflected paths at the first vertex
     const SkyGuide* sky_guide = nullptr;            // of its records; samples the sky at the first vertex
+    const VirtualLights* virtual_lights = nullptr;  // light every vertex; paths only find the light beyond their bounds
     bool is_indirect_only = false;                  // omits light that is reflected once
     bool is_direct_only = false;                    // at the first vertex, of hybrid shading
     bool finds_points = false;                      // paths end at the first vertex
@@ -217,6 +219,9 @@ class PathWavefront {
     float density_towards(const KnownLight::Place& place, const V3f& x, const V3f& n, const V3f& direction,
                           float distance2) const;
     void connect_to_known_light(const V3f& x, const Path& path);
+    void connect_to_virtual_lights(const V3f& x, const Path& path);
+    /// Share of the light reflected at the hit towards the path's last vertex that virtual lights do not represent.
+    float share_beyond_bound(const Hit& hit, const Ray& ray, const Path& path) const;
     /// @param bounces  Reflections between emitter and camera.
     void add(std::uint32_t index, std::uint32_t bounces, const Rgb& radiance);
 

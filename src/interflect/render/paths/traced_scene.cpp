@@ -71,6 +71,10 @@ KnownLight TracedScene::known_light(const PathScene& paths, std::span<const Surf
     return light;
 }
 
+VirtualLights TracedScene::virtual_lights(const PathOptions& options) const {
+    return {scene_, ray_caster_, geometry_, panes_, static_cast<std::size_t>(options.light_walks), options.seed};
+}
+
 std::size_t TracedScene::batch_size(int samples, int batches) {
     return std::bit_floor(static_cast<unsigned>(std::clamp(samples / batches, 1, largest_batch)));
 }

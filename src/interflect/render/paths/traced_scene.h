@@ -11,6 +11,7 @@
 #include "interflect/render/lights/light_tree.h"
 #include "interflect/render/lights/luminaire_choice.h"
 #include "interflect/render/lights/unoccluded_light.h"
+#include "interflect/render/lights/virtual_lights.h"
 #include "interflect/render/paths/path_wavefront.h"
 #include "interflect/render/smooth/smooth_normals.h"
 
@@ -39,6 +40,9 @@ class TracedScene {
 
     /// Returns the known irradiance, with sampling adapted to the points (sample_seen_light()).
     KnownLight known_light(const PathScene& paths, std::span<const SurfacePoint> points) const;
+
+    /// Refers to this object.
+    VirtualLights virtual_lights(const PathOptions& options) const;
 
     /// Paths per batch, a power of two, for at least this number of batches.
     static std::size_t batch_size(int samples, int batches);

@@ -39,13 +39,15 @@ bool is_limited(const PathOptions& options) { return std::isfinite(options.time)
 
 class PathPicture {
   public:
-    /// @param time_left  As PathOptions::time.
+    /// @param time_left       As PathOptions::time.
+    /// @param virtual_lights  Of `scene`; may be null.
     PathPicture(const PathScene& scene, const PathOptions& options, const Monitor& monitor,
-                const StopRequest& time_left)
+                const StopRequest& time_left, VirtualLights* virtual_lights)
         : s_(scene),
           options_(options),
           monitor_(monitor),
           time_left_(time_left),
+          virtual_lights_(virtual_lights),
           pixels_(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height)) {}
 
     void trace() {
@@ -166,12 +168,22 @@ class PathPicture {
             more = false;
             for (std::uint32_t i = 0; i < pixels_.size() && !is_over(); ++i) {
                 if (present[i] >= wanted[i]) continue;
+                if (!more) renew_virtual_lights(chunk);
                 chunk.push_back(batch_of(i, present[i]++));
                 more = true;
                 if (chunk.size() >= per_chunk) trace_chunk(chunk);
             }
         }
         trace_chunk(chunk);
+    }
+
+    /// Each batch of a pixel is lit by another set of virtual lights, so their spread includes the error of the sets.
+    void renew_virtual_lights(std::vector<BatchOfPaths>& chunk) {
+        if (!virtual_lights_) return;
+        trace_chunk(chunk);
+        const std::int64_t before = virtual_lights_->rays();
+        virtual_lights_->renew(virtual_light_sets_++);
+        counts_.rays += virtual_lights_->rays() - before;
     }
 
     /// In hybrid shading, one sequence stratifies the batches of a pixel, so the error is overestimated. Otherwise they
@@ -215,6 +227,8 @@ class PathPicture {
     const PathOptions& options_;
     const Monitor& monitor_;
     const StopRequest& time_left_;
+    VirtualLights* virtual_lights_;
+    std::uint32_t virtual_light_sets_ = 0;
     bool has_all_pixels_ = false;
     std::vector<PixelStatistics> pixels_;
     double foreseen_ = 0;  // expected total of batches
@@ -241,13 +255,28 @@ void require_valid(const PathOptions& options) {
 namespace {
 
 PathTracing draw(const PathScene& scene, const PathOptions& options, const Monitor& monitor,
-                 const StopRequest& time_left) {
-    PathPicture picture(scene, options, monitor, time_left);
+                 const StopRequest& time_left, VirtualLights* virtual_lights = nullptr) {
+    PathPicture picture(scene, options, monitor, time_left, virtual_lights);
     picture.trace();
     return picture.result();
 }
 
 }  // namespace
+
+PathTracing trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
+                                  const PathOptions& options, const Monitor& monitor) {
+    require_valid(options);
+    if (options.light_walks < 1)
+        throw InputError(fmt::format("{} walks from the light sources: expected 1 or more", options.light_walks));
+    ray_caster.require_made_for(scene);
+    StopRequest time_left;
+    time_left.limit_time(StopRequest::Clock::now(), options.time);
+    const TracedScene traced(scene, ray_caster, nullptr);
+    PathScene paths = traced.paths(start, options, TracedScene::batch_size(options.samples, min_batches));
+    VirtualLights lights = traced.virtual_lights(options);
+    paths.virtual_lights = &lights;
+    return draw(paths, options, monitor, time_left, &lights);
+}
 
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                           const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known) {

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/luminaires/emission.h"
+#include "interflect/ray_caster.h"
+#include "interflect/raycast/panes.h"
+#include "interflect/render/lights/light_tree.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Point lights that stand for all reflected light of a scene (Keller 1997). Random walks from the light sources leave
+/// one at each diffuse reflection. The sum of flux / pi times f(position) over the lights has the expected value of the
+/// integral of f times the reflected radiance over all surfaces, for any f. Constant methods are thread-safe.
+class VirtualLights {
+  public:
+    struct Light {
+        V3f position;  ///< On the patch, relative to the scene's origin [m].
+        std::uint32_t patch;
+        Rgb flux;  ///< Reflected, cosine-distributed [lm or W].
+    };
+
+    /// No lights until renew(). Arguments must outlive this.
+    /// @param walks  From the light sources, for each set of lights; > 0.
+    VirtualLights(const Scene& scene, const RayCaster& ray_caster, std::span<const PatchGeometry> geometry,
+                  const Panes& panes, std::size_t walks, std::uint64_t seed);
+
+    /// Replaces the lights by an independent set; the same number always gives the same bits.
+    void renew(std::uint32_t number);
+    std::span<const Light> lights() const { return lights_; }
+    std::int64_t rays() const { return rays_; }  ///< Total over all sets.
+
+    /// Samples a light for point x on a surface with normal n, in proportion to its estimated unoccluded irradiance.
+    LightTree::Choice choose(const V3f& x, const V3f& n, double uniform) const;
+
+    /// Bound of the geometric term cos cos / distance^2 for the lights of a patch, below which they represent all of
+    /// its reflected light (Kollig and Keller 2004 use a constant). Does not depend on the lights in use [1/m^2].
+    float bound(std::uint32_t patch) const { return bounds_[patch]; }
+
+  private:
+    struct Walk {
+        Ray ray;
+        Rgb flux;                    // [lm or W]
+        std::uint32_t patch = none;  // start of the ray; none after a pane
+    };
+    std::vector<Walk> start(std::uint64_t key) const;
+    void start_at_patch(std::uint32_t patch, std::uint64_t key, std::span<Walk> walks) const;
+    void start_at_luminaire(std::size_t part, std::uint64_t key, std::span<Walk> walks) const;
+    /// Traces the walks to their next surfaces. Returns their reflected and transmitted parts.
+    std::vector<Walk> meet_surfaces(std::span<const Walk> walks);
+    std::vector<Walk> survivors(std::vector<Walk> walks, double uniform) const;
+    /// Adds the lights of reflected walks and samples their directions.
+    void leave_lights(std::span<Walk> walks, std::uint64_t key);
+    void measure_bounds();
+
+    const Scene& scene_;
+    const RayCaster& ray_caster_;
+    std::span<const PatchGeometry> geometry_;
+    const Panes& panes_;
+    std::size_t walks_;
+    std::uint64_t seed_;
+    Emission emission_;
+    std::vector<double> source_power_;  // of patches, then of the luminaires' parts; sum of channels [lm or W]
+    double total_power_ = 0;
+    std::vector<float> bounds_;  // of each patch [1/m^2]
+    std::vector<Light> lights_;
+    std::optional<LightTree> tree_;
+    std::int64_t rays_ = 0;
+};
+
+}  // namespace interflect::detail
