@@ -13,7 +13,7 @@ from .tasks import Entry
 
 FOLDER = ROOT / "experiments"
 PAPER = ["fig1-reference", "fig2-equal-rays", "fig3-distance", "fig4-unseen", "fig5-variants", "fig5-office"]
-BEYOND = ["world-size", "convergence", "points", "averaging"]
+BEYOND = ["world-size", "convergence", "methods", "points", "averaging"]
 
 
 @dataclass(frozen=True)

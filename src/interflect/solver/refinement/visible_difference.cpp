@@ -14,9 +14,9 @@ namespace interflect::detail {
 namespace {
 
 // The display: white of tone_map() by default, black with a contrast of 200 in a lit room [cd/m^2].
-constexpr float white = 100, black = 0.5f;
+constexpr float display_white = 100, display_black = 0.5f;
 /// Logarithmic mean of a picture relative to white, as in automatic_exposure().
-constexpr float key = 0.2f;
+constexpr float mean_over_white = 0.2f;
 /// The observer of FLIP (docs/metrics.md).
 constexpr float pixels_per_degree = 67.02f;
 /// Cycles per degree of the greatest sensitivity.
@@ -73,8 +73,9 @@ float threshold_elevation(float contrast) {
 
 VisibleDifference::VisibleDifference(const SolverState& state) : state_(state) {
     const double mean = logarithmic_mean(state);
-    if (mean > 0) exposure_ = static_cast<float>(static_cast<double>(key * white) / mean);
-    const double contrast = jnd_of_edge * cone_threshold(key * white) / (key * white);
+    if (mean > 0) exposure_ = static_cast<float>(static_cast<double>(mean_over_white * display_white) / mean);
+    const double contrast =
+        jnd_of_edge * cone_threshold(mean_over_white * display_white) / (mean_over_white * display_white);
     share_of_light_ = contrast * share_of_square_degree(state.options.views);
 }
 
@@ -85,7 +86,7 @@ float VisibleDifference::adapted_luminance(std::uint32_t leaf, float pixels) con
     std::uint32_t e = leaf;
     for (; e != patch && pixels < pixels_per_degree * pixels_per_degree; pixels *= 4) e = forest.parent(e);
     const Rgb rho = state_.materials.surface(patch, e).reflectance;
-    return std::clamp(exposure_ * luminance(Rgb(rho * state_.solution.irradiance[e])), black, white);
+    return std::clamp(exposure_ * luminance(Rgb(rho * state_.solution.irradiance[e])), display_black, display_white);
 }
 
 /// Returns the root mean square difference of the leaf and its siblings caused by texture [cd/m^2].
