@@ -173,7 +173,7 @@ TEST_P(ClusterRisk, IsTheMeanSquareErrorThatIsLeft) {
                (1 + GetParam() * std::sin(6 * geometry.point({0.5f, 0.5f}).x + 4 * geometry.point({0.5f, 0.5f}).y));
     };
     std::vector<double> differences, without_bias;
-    for (int trial = 0; trial < 60; ++trial) {
+    for (int trial = 0; trial < 400; ++trial) {
         box.receive(truth);
         const ClusterShrinkage shrinkage(box.state, box.state.clusters.front());
         std::vector<float> noise(box.patches(), 0.0f), bias(box.patches(), 0.0f);
@@ -186,13 +186,13 @@ TEST_P(ClusterRisk, IsTheMeanSquareErrorThatIsLeft) {
         differences.push_back((of_noise + of_bias) / error - 1);
         without_bias.push_back(of_noise / error - 1);
     }
-    EXPECT_GT(t_test(differences, 0, 0.15), false_alarm);
-    EXPECT_LT(t_test(without_bias, 0, 0.15), false_alarm) << "would notice missing bias";
+    EXPECT_GT(t_test(differences, 0, 0.04), false_alarm);
+    EXPECT_LT(t_test(without_bias, 0, 0.04), false_alarm) << "would notice missing bias";
 }
 
 TEST(ClusterShrinkage, KeepsTheMeanOfPicturesThatShowTheBrightPatches) {
     Box box;
-    box.state.view = ViewImportance({{{"", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}}}}, 1);
+    box.state.solution.options.views = {{{"", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}}}};
     compute_view_importance(box.state);
     std::vector<float>& seen = box.state.solution.view_importance;
     for (std::uint32_t p = 0; p < box.patches(); ++p) seen[p] = p % 2 == 0 ? 1 / 3.0f : 0;
@@ -207,7 +207,7 @@ TEST(ClusterShrinkage, KeepsTheMeanOfPicturesThatShowTheBrightPatches) {
     const double before = mean_seen(), error = box.squared_error(box.state.solution.irradiance, truth);
     finish_solution(box.state);
     EXPECT_NEAR(mean_seen() / before, 1, 0.01);
-    EXPECT_LT(box.squared_error(box.state.solution.irradiance, truth), error / 4);
+    EXPECT_LT(box.squared_error(box.state.solution.irradiance, truth), error / 3);
 }
 
 TEST(ClusterShrinkage, KeepsTheSumOfLightGroups) {

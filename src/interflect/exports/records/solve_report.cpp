@@ -148,6 +148,7 @@ void for_each_option(Options& options, const Access& access) {
 
 Json with_present_names(Json json) {
     if (!json.contains("keep_direct")) json["keep_direct"] = false;
+    if (!json.contains("clusters")) json["clusters"] = false;
     if (json.contains("time")) return json;
     json["time"] = json.at("seconds");
     json["refinement_criterion"] = json.at("refinement");

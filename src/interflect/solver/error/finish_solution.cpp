@@ -35,26 +35,18 @@ void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) 
         }
 }
 
-/// Averages over the trees of clusters.
-void reduce_patches(const SolverState& state, std::vector<Rgb>& irradiance, GroupLight& groups, GroupLight& direct) {
-    const std::uint32_t patches = state.forest->patch_count();
-    const float weight = 1 / static_cast<float>(state.clusters.size());
-    const auto reduce = [&](std::vector<Rgb>& light, const std::vector<ClusterShrinkage>& shrinkages) {
-        std::vector<Rgb> mean(patches, Rgb(0));
-        for (const ClusterShrinkage& shrinkage : shrinkages) {
-            const std::vector<Rgb> reduced = shrinkage.reduce(light);
-            for (std::uint32_t p = 0; p < patches; ++p) mean[p] += weight * reduced[p];
-        }
-        for (std::uint32_t p = 0; p < patches; ++p) light[p] = mean[p];
-    };
-    if (state.clusters.empty()) return;
-    std::vector<ClusterShrinkage> shrinkages;
-    for (const PatchClusters& clusters : state.clusters) shrinkages.emplace_back(state, clusters);
-    reduce(irradiance, shrinkages);
-    for (Rgb& h : std::span(irradiance).first(patches))
-        for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // rounding
-    for (std::vector<Rgb>& of_group : groups) reduce(of_group, shrinkages);
-    for (std::vector<Rgb>& of_group : direct) reduce(of_group, shrinkages);
+/// Moves the patches' means as their clusters demand, the average over the trees. Elements keep their shares of it.
+void reduce_patches(const ElementForest& forest, std::span<const ClusterShrinkage> trees, std::vector<Rgb>& light) {
+    std::vector<Rgb> means(forest.patch_count(), Rgb(0));
+    for (const ClusterShrinkage& tree : trees) {
+        const std::vector<Rgb> of_tree = tree.reduce(light);
+        for (std::size_t p = 0; p < means.size(); ++p) means[p] += of_tree[p] / static_cast<float>(trees.size());
+    }
+    for (std::uint32_t e = forest.size(); e-- > 0;) {  // patches last
+        const std::uint32_t patch = forest.patch(e);
+        for (int c = 0; c < 3; ++c)
+            light[e][c] = light[patch][c] > 0 ? light[e][c] * (means[patch][c] / light[patch][c]) : means[patch][c];
+    }
 }
 
 }  // namespace
@@ -74,7 +66,6 @@ void finish_solution(SolverState& state) {
     solution.rays.assign(state.streams.used.begin(), state.streams.used.end());
     std::vector<Rgb> reduced = solution.irradiance;
     GroupLight reduced_groups = solution.groups, reduced_direct = solution.direct;
-    reduce_patches(state, reduced, reduced_groups, reduced_direct);
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const std::uint32_t parent = forest.parent(first);
         const Shrinkage shrinkage = shrinkage_of(state, first, sibling_variation(state, first));
@@ -109,7 +100,16 @@ void finish_solution(SolverState& state) {
         reduce(solution.groups, reduced_groups);
         reduce(solution.direct, reduced_direct);
     });
+    std::vector<ClusterShrinkage> trees;
+    for (const PatchClusters& clusters : state.clusters) trees.emplace_back(state, clusters);
+    if (!trees.empty()) {
+        reduce_patches(forest, trees, reduced);
+        for (std::vector<Rgb>& of_group : reduced_groups) reduce_patches(forest, trees, of_group);
+        for (std::vector<Rgb>& direct : reduced_direct) reduce_patches(forest, trees, direct);
+    }
     solution.irradiance = std::move(reduced);
+    for (Rgb& h : solution.irradiance)
+        for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // rounding of clusters
     for (std::size_t g = 0; g < reduced_groups.size(); ++g)
         if (solution.dimming[g] == 0) reduced_groups[g].assign(forest.size(), Rgb(0));
     share_among_groups(solution.irradiance, reduced_groups);
