@@ -217,10 +217,8 @@ View turned(double degrees) {
     return view;
 }
 
-/// @param clusters  Keep the means of what the views show, so light differs a little between views.
-Solver solver_of_a_view(const std::string& method = "ihsrr", std::uint64_t seed = 1, bool clusters = true) {
+Solver solver_of_a_view(const std::string& method = "ihsrr", std::uint64_t seed = 1) {
     SolveOptions options{.method = find_method(method)};
-    options.experimental.clusters = clusters;
     options.views = {{into_the_room}};
     options.limits.rays = 200'000;
     options.importance.camera_rays = 2000;
@@ -231,7 +229,7 @@ Solver solver_of_a_view(const std::string& method = "ihsrr", std::uint64_t seed 
 }
 
 TEST(ChangeOfViews, KeepsTheLightAndFindsImportanceAnew) {
-    Solver solver = solver_of_a_view("ihsrr", 1, false);
+    Solver solver = solver_of_a_view();
     const Solution before = solver.solution();
     solver.set_views({{turned(25)}});
     const Solution& after = solver.solution();

@@ -80,9 +80,10 @@ void add_errors_of_patches(const SolverState& state, ErrorMeasure measure, Eleme
     for (const PatchClusters& clusters : state.clusters) {
         const std::vector<double> pixels =
             clusters.sums<double>([&](std::uint32_t p) { return forest.area(p) / pixel_area(state, p); });
-        ClusterShrinkage(state, clusters).add_errors(errors.noise, errors.bias, weight, [&](std::size_t node) {
-            return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(pixels[node]);
-        });
+        ClusterShrinkage(state, clusters, state.solution.irradiance)
+            .add_errors(errors.noise, errors.bias, weight, [&](std::size_t node) {
+                return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(pixels[node]);
+            });
     }
     if (!state.clusters.empty()) return;
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {

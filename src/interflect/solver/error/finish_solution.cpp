@@ -36,11 +36,15 @@ void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) 
 }
 
 /// Moves the patches' means as their clusters demand, the average over the trees. Elements keep their shares of it.
-void reduce_patches(const ElementForest& forest, std::span<const ClusterShrinkage> trees, std::vector<Rgb>& light) {
+/// @param unreduced  The same light as the state has it.
+void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, std::vector<Rgb>& light) {
+    if (state.clusters.empty()) return;
+    const ElementForest& forest = *state.forest;
     std::vector<Rgb> means(forest.patch_count(), Rgb(0));
-    for (const ClusterShrinkage& tree : trees) {
-        const std::vector<Rgb> of_tree = tree.reduce(light);
-        for (std::size_t p = 0; p < means.size(); ++p) means[p] += of_tree[p] / static_cast<float>(trees.size());
+    const float weight = 1 / static_cast<float>(state.clusters.size());
+    for (const PatchClusters& clusters : state.clusters) {
+        const ClusterShrinkage shrinkage(state, clusters, unreduced);
+        for (std::size_t p = 0; p < means.size(); ++p) means[p] += weight * shrinkage.means()[p];
     }
     for (std::uint32_t e = forest.size(); e-- > 0;) {  // patches last
         const std::uint32_t patch = forest.patch(e);
@@ -100,16 +104,12 @@ void finish_solution(SolverState& state) {
         reduce(solution.groups, reduced_groups);
         reduce(solution.direct, reduced_direct);
     });
-    std::vector<ClusterShrinkage> trees;
-    for (const PatchClusters& clusters : state.clusters) trees.emplace_back(state, clusters);
-    if (!trees.empty()) {
-        reduce_patches(forest, trees, reduced);
-        for (std::vector<Rgb>& of_group : reduced_groups) reduce_patches(forest, trees, of_group);
-        for (std::vector<Rgb>& direct : reduced_direct) reduce_patches(forest, trees, direct);
-    }
+    reduce_patches(state, solution.irradiance, reduced);
+    for (std::size_t g = 0; g < reduced_groups.size(); ++g)
+        reduce_patches(state, solution.groups[g], reduced_groups[g]);
+    for (std::size_t g = 0; g < reduced_direct.size(); ++g)
+        reduce_patches(state, solution.direct[g], reduced_direct[g]);
     solution.irradiance = std::move(reduced);
-    for (Rgb& h : solution.irradiance)
-        for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // rounding of clusters
     for (std::size_t g = 0; g < reduced_groups.size(); ++g)
         if (solution.dimming[g] == 0) reduced_groups[g].assign(forest.size(), Rgb(0));
     share_among_groups(solution.irradiance, reduced_groups);

@@ -5,21 +5,16 @@
 #include <vector>
 
 #include "interflect/solver/clusters/patch_clusters.h"
-#include "interflect/solver/shrinkage/sibling_variation.h"
 #include "interflect/solver/state/solver_state.h"
 
 namespace interflect::detail {
 
-struct ClusterPart {
-    float share = 1;            ///< Of its cluster's area.
-    float kept = 1, noise = 1;  ///< As in Shrinkage.
-};
-
-/// Shrinks the differences between the parts of each cluster, as those between siblings (docs/method.md, Clusters).
+/// Reduces the differences between the parts of each cluster that are mostly noise (docs/method.md, Clusters).
 class ClusterShrinkage {
   public:
     /// @param clusters  Must outlive this.
-    ClusterShrinkage(const SolverState& state, const PatchClusters& clusters);
+    /// @param irradiance  All light or a part of it, by patch; elements may follow.
+    ClusterShrinkage(const SolverState& state, const PatchClusters& clusters, std::span<const Rgb> irradiance);
 
     /// Adds the errors of the reduced means of patches, as squared luminance.
     /// @param weight  Factor of the errors.
@@ -27,43 +22,44 @@ class ClusterShrinkage {
     template <class Shown>
     void add_errors(std::span<float> noise, std::span<float> bias, float weight, const Shown& shown) const;
 
-    /// Returns the reduced means of the patches, of all light or of a part of it.
-    /// @param irradiance  By patch; elements may follow.
-    std::vector<Rgb> reduce(std::span<const Rgb> irradiance) const;
+    /// Returns the reduced means of the patches.
+    const std::vector<Rgb>& means() const { return means_; }
 
   private:
-    std::vector<RgbD> means(std::span<const Rgb> irradiance) const;
-    /// From the scene to the patches. @param limit_of  Returns the factor of a cluster's differences from its index,
-    /// its reduced mean and the reduced differences of its parts.
-    template <class LimitOf>
-    std::vector<Rgb> reduced(std::span<const Rgb> irradiance, const LimitOf& limit_of) const;
-
-    /// Clusters preserve the means of areas. Pictures show parts of them, which may be brighter than what is hidden.
-    void keep_means_of_pictures(const SolverState& state, std::span<const Rgb> reduced);
+    struct Part {
+        float share = 1;     // of its cluster's area
+        float kept = 1;      // share of its own mean; the rest is its cluster's
+        float variance = 0;  // of its own mean, as squared luminance
+        float signal = 0;    // variance of the true means in its cluster
+    };
+    void measure_parts(const SolverState& state, std::span<const Rgb> irradiance);
+    void reduce(std::span<const Rgb> irradiance);
+    void keep_means_of_pictures(const SolverState& state, std::span<const Rgb> irradiance);
 
     const PatchClusters* clusters_;
-    std::vector<ClusterPart> parts_;  // by node
-    std::vector<AddedError> added_;   // by node, of its parts
-    std::vector<Rgb> limit_;          // by node: keeps irradiance non-negative
-    std::vector<Rgb> restored_;       // by patch: keeps the means of what pictures show
-    float noise_of_scene_ = 0;
+    std::vector<Part> parts_;  // by node
+    std::vector<Rgb> means_;   // by patch
 };
 
 template <class Shown>
 void ClusterShrinkage::add_errors(std::span<float> noise, std::span<float> bias, float weight,
                                   const Shown& shown) const {
-    std::vector<AddedError> error(parts_.size());
-    error[0] = {shown(0) * noise_of_scene_, 0};
+    struct Errors {
+        float noise, bias;
+    };
+    std::vector<Errors> errors(parts_.size());
+    errors[0] = {shown(0) * parts_[0].variance, 0};
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-        const PatchClusters::Node& node = clusters_->nodes()[i];
-        if (node.is_patch()) {
-            noise[node.count] += weight * error[i].noise, bias[node.count] += weight * error[i].bias;
+        const auto [first, count] = clusters_->nodes()[i];
+        if (first == none) {
+            noise[count] += weight * errors[i].noise, bias[count] += weight * errors[i].bias;
             continue;
         }
-        for (std::uint32_t part = node.first_child; part < node.first_child + node.count; ++part) {
-            const float of_part = shown(part);
-            error[part] = {parts_[part].noise * (error[i].noise + of_part * added_[i].noise),
-                           error[i].bias + of_part * added_[i].bias};
+        for (std::uint32_t k = first; k < first + count; ++k) {
+            const Part& part = parts_[k];
+            const float own = part.kept * part.kept, of_cluster = (1 - part.kept) * (1 - part.kept);
+            errors[k] = {own * shown(k) * part.variance + of_cluster * errors[i].noise,
+                         of_cluster * (shown(k) * part.signal + errors[i].bias)};
         }
     }
 }
