@@ -133,10 +133,10 @@ void ClusterShrinkage::reduce(std::span<const Rgb> irradiance) {
             const Part& part = parts_[first + k];
             differences[k] = part.kept * (before[first + k] - after[i]);
             excess += part.share * differences[k];
-            uncertainty += part.share * part.variance;
+            uncertainty += part.share * part.kept * part.variance;
         }
-        for (std::uint32_t k = 0; k < count; ++k)
-            differences[k] -= uncertainty > 0 ? excess * (parts_[first + k].variance / uncertainty) : excess;
+        for (std::uint32_t k = 0; k < count && uncertainty > 0; ++k)
+            differences[k] -= excess * (parts_[first + k].kept * parts_[first + k].variance / uncertainty);
         for (int c = 0; c < 3; ++c) {
             float lowest = 0;
             for (std::uint32_t k = 0; k < count; ++k) lowest = std::min(lowest, differences[k][c]);
