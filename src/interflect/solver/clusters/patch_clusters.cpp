@@ -102,7 +102,7 @@ PatchClusters::PatchClusters(const ElementForest& forest, float length, float tu
         if (range.size() <= most_parts)
             for (std::size_t k = 0; k < range.size(); ++k) ranges.push_back(range.subspan(k, 1));
         else
-            divide(range, range.size() < 2 * (most_parts + 1) ? 2 : 3, of_patch, ranges);
+            divide(range, range.size() < 2 * std::size_t{most_parts + 1} ? 2 : 3, of_patch, ranges);
         nodes_.push_back({static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(ranges.size() - before)});
     }
 }
@@ -116,6 +116,7 @@ std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const Ra
         made[tree].emplace_back(forest, length, turn);
     });
     std::vector<PatchClusters> all;
+    all.reserve(trees);
     for (std::vector<PatchClusters>& tree : made) all.push_back(std::move(tree.front()));
     return all;
 }
