@@ -51,13 +51,15 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
             ax.set_title(scene["name"])
         for (series, budget), seeds in sorted_runs(runs):
             error = statistics.mean(results.values(seeds, METRIC))
+            mean = statistics.mean(results.values(seeds, "ratio_of_means_smooth"))
             elements, seconds = (results.values(seeds, name).mean() for name in ("elements", "seconds"))
-            lines.append([scene["name"], series, f"{budget / 1e6:g} M", str(error), f"{seconds:.2g}", f"{elements:,.0f}"])
+            cells = [str(error), str(mean), f"{seconds:.2g}", f"{elements:,.0f}"]
+            lines.append([scene["name"], series, f"{budget / 1e6:g} M", *cells])
     drawing.shared_legend(figure, axes[0], 6)
     caption = f"""Relative mean square error of smooth pictures against rays (top) and solving time (bottom).
         {config['seeds'][0]} seeds a point; bands are 95% confidence intervals."""
     drawing.save(figure, folder, "methods", caption)
-    header = ["scene", "method", "rays", "relative MSE, smooth", "seconds", "elements"]
+    header = ["scene", "method", "rays", "relative MSE, smooth", "mean over path", "seconds", "elements"]
     results.write_table(folder / "methods.md", header, lines)
 
 

@@ -12,7 +12,7 @@ from .picture import noise_floor
 from .program import ROOT, Finished, Program, expanded, read_stats, run
 from .tasks import SHADINGS, Measure, Picture, Reference, Solve, Task, probe
 
-METRICS = ("relative_mse", "perceptual_distance", "flip")  # keys of `compare --json`
+METRICS = ("relative_mse", "perceptual_distance", "flip", "ratio_of_means")  # keys of `compare --json`
 COLUMNS = (
     ["series", "scene", "view", "budget", "rays", "seed", "seconds", "elements", "peak_mib"]
     + [f"{metric}_{shading}" for metric in METRICS for shading in SHADINGS]

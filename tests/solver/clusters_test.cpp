@@ -25,12 +25,6 @@ namespace {
 
 using namespace testing_support;
 
-SolveOptions with_clusters(const char* method) {
-    SolveOptions options{.method = find_method(method)};
-    options.experimental.clusters = true;
-    return options;
-}
-
 /// A box of 600 patches, of which each receives `payload` by a Poisson number of rays.
 struct Box {
     static constexpr float payload = 0.004f;  // [lm]
@@ -38,7 +32,7 @@ struct Box {
     float size;
     Scene scene = closed_box({size, size, size}, 10, {{"wall", Rgb(0.5f), Rgb(1)}});
     RayCaster ray_caster{scene};
-    SolverState state{scene, ray_caster, with_clusters("hsrr")};
+    SolverState state{scene, ray_caster, {.method = find_method("hsrr")}};
     std::mt19937_64 random{1};
 
     explicit Box(float s = 1) : size(s) {}
@@ -124,9 +118,13 @@ TEST(PatchClusters, AreTheSameInAnyUnitOfLength) {
 TEST(PatchClusters, AreNotMadeWithoutShrinkage) {
     const Scene scene = closed_box({1, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(1)}});
     const RayCaster ray_caster(scene);
-    EXPECT_TRUE(SolverState(scene, ray_caster, {.method = find_method("hsrr")}).clusters.empty());
-    EXPECT_FALSE(SolverState(scene, ray_caster, with_clusters("hsrr")).clusters.empty());
-    EXPECT_TRUE(SolverState(scene, ray_caster, with_clusters("srr")).clusters.empty());
+    SolveOptions options{.method = find_method("hsrr")};
+    EXPECT_FALSE(SolverState(scene, ray_caster, options).clusters.empty());
+    options.experimental.clusters = false;
+    EXPECT_TRUE(SolverState(scene, ray_caster, options).clusters.empty());
+    options.experimental = {.shrinkage = false};
+    EXPECT_TRUE(SolverState(scene, ray_caster, options).clusters.empty());
+    EXPECT_TRUE(SolverState(scene, ray_caster, {.method = find_method("srr")}).clusters.empty()) << "does not refine";
 }
 
 TEST(ClusterShrinkage, RemovesNearlyAllNoiseFromEqualPatches) {
@@ -199,15 +197,17 @@ TEST(ClusterShrinkage, KeepsTheMeanOfPicturesThatShowTheBrightPatches) {
     for (std::uint32_t p = 0; p < box.patches(); ++p) seen[p] = p % 2 == 0 ? 1 / 3.0f : 0;
     const auto truth = [](std::uint32_t p) { return p % 2 == 0 ? 2.2f : 1.8f; };  // five rays on each patch
     box.receive(truth);
-    const auto mean_seen = [&] {
+    const auto mean_of = [&](std::uint32_t parity) {
         double sum = 0;
-        for (std::uint32_t p = 0; p < box.patches(); ++p)
-            sum += static_cast<double>(seen[p] * box.area(p) * luminance(box.state.solution.irradiance[p]));
-        return sum;
+        for (std::uint32_t p = parity; p < box.patches(); p += 2)
+            sum += static_cast<double>(box.area(p) * luminance(box.state.solution.irradiance[p]));
+        return sum / 3;
     };
-    const double before = mean_seen(), error = box.squared_error(box.state.solution.irradiance, truth);
+    const double seen_before = mean_of(0), hidden_before = mean_of(1),
+                 error = box.squared_error(box.state.solution.irradiance, truth);
     finish_solution(box.state);
-    EXPECT_NEAR(mean_seen() / before, 1, 0.01);
+    EXPECT_NEAR(mean_of(0) / seen_before, 1, 0.01);
+    EXPECT_LT(mean_of(1), (seen_before + hidden_before) / 2 + 0.02) << "hidden patches are not scaled with the others";
     EXPECT_LT(box.squared_error(box.state.solution.irradiance, truth), error / 3);
 }
 
@@ -215,7 +215,7 @@ TEST(ClusterShrinkage, KeepsTheSumOfLightGroups) {
     Scene scene = closed_box({1, 1, 1}, 10, {{"wall", Rgb(0.5f), Rgb(1)}});
     scene.light_groups = {{"lamps", "wall"}};
     const RayCaster ray_caster(scene);
-    SolveOptions options = with_clusters("hsrr");
+    SolveOptions options{.method = find_method("hsrr")};
     options.limits.rays = 3000;
     const Solution solution = solve(scene, ray_caster, options);
     for (std::size_t e = 0; e < solution.irradiance.size(); ++e) {

@@ -76,13 +76,17 @@ double squared_error_of_differences(const RiskCheck& check, double noise_of_diff
 
 void add_errors_of_patches(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {
     const ElementForest& forest = *state.forest;
+    std::vector<float> pixels(state.clusters.empty() ? 0 : forest.patch_count());  // that a patch covers
+    parallel_for_ranges(pixels.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
+        for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p)
+            pixels[p] = forest.area(p) / pixel_area(state, p);
+    });
     const float weight = 1 / static_cast<float>(state.clusters.size());
     for (const PatchClusters& clusters : state.clusters) {
-        const std::vector<double> pixels =
-            clusters.sums<double>([&](std::uint32_t p) { return forest.area(p) / pixel_area(state, p); });
+        const std::vector<double> of_node = clusters.sums<double>([&](std::uint32_t p) { return pixels[p]; });
         ClusterShrinkage(state, clusters, state.solution.irradiance)
             .add_errors(errors.noise, errors.bias, weight, [&](std::size_t node) {
-                return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(pixels[node]);
+                return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(of_node[node]);
             });
     }
     if (!state.clusters.empty()) return;

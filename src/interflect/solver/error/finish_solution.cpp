@@ -43,8 +43,8 @@ void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, st
     std::vector<Rgb> means(forest.patch_count(), Rgb(0));
     const float weight = 1 / static_cast<float>(state.clusters.size());
     for (const PatchClusters& clusters : state.clusters) {
-        const ClusterShrinkage shrinkage(state, clusters, unreduced);
-        for (std::size_t p = 0; p < means.size(); ++p) means[p] += weight * shrinkage.means()[p];
+        const std::vector<Rgb> of_tree = ClusterShrinkage(state, clusters, unreduced).means();
+        for (std::size_t p = 0; p < means.size(); ++p) means[p] += weight * of_tree[p];
     }
     for (std::uint32_t e = forest.size(); e-- > 0;) {  // patches last
         const std::uint32_t patch = forest.patch(e);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "interflect/base/parallel.h"
 #include "interflect/core.h"
 
 namespace interflect::detail {
@@ -12,9 +13,10 @@ namespace {
 
 /// Contributions of a part, found or expected, at which its measured variance has weight 1/2. With fewer, parts tend to
 /// the variance that their area and the mean of the cluster suggest: one without any would seem to be exactly black.
-constexpr double contributions_of_half_weight = 16;
+constexpr double contributions_of_half_trust = 8;
 /// In a region of the pictures that keeps its mean. Fewer would bring noise of the unreduced light back.
 constexpr double fewest_camera_rays = 1024;
+constexpr std::size_t clusters_per_task = 1 << 10;
 
 struct Sums {
     double area = 0, power = 0;  // [m^2], luminance of the received power
@@ -35,7 +37,7 @@ double variance_of(const Sums& part, double cluster_mean, double least_payload) 
     const double payload = part.power > 0 ? part.payload() : least_payload;
     const double expected = cluster_mean * part.area / payload,
                  contributions = std::max(part.contributions(), expected),
-                 measured = contributions / (contributions + contributions_of_half_weight);
+                 measured = contributions / (contributions + contributions_of_half_trust);
     return (measured * part.variance / part.area + (1 - measured) * payload * cluster_mean) / part.area;
 }
 
@@ -69,52 +71,61 @@ double variance_of_true_values(std::span<const Sample> samples) {
 
 ClusterShrinkage::ClusterShrinkage(const SolverState& state, const PatchClusters& clusters,
                                    std::span<const Rgb> irradiance)
-    : clusters_(&clusters), parts_(clusters.nodes().size()), means_(clusters.patch_count()) {
-    measure_parts(state, irradiance);
-    reduce(irradiance);
-    keep_means_of_pictures(state, irradiance);
+    : state_(&state), clusters_(&clusters), irradiance_(irradiance), parts_(clusters.nodes().size()) {
+    measure_parts();
 }
 
-void ClusterShrinkage::measure_parts(const SolverState& state, std::span<const Rgb> irradiance) {
+std::vector<Rgb> ClusterShrinkage::means() const {
+    std::vector<Rgb> means = reduce();
+    keep_means_of_pictures(means);
+    return means;
+}
+
+void ClusterShrinkage::measure_parts() {
+    const SolverState& state = *state_;
     const ElementForest& forest = *state.forest;
     const std::vector<Sums> sums = clusters_->sums<Sums>([&](std::uint32_t p) {
-        const double area = forest.area(p), all = luminance(state.solution.irradiance[p]), h = luminance(irradiance[p]);
+        const double area = forest.area(p), all = luminance(state.solution.irradiance[p]),
+                     h = luminance(irradiance_[p]);
         const double of_all =
             state.noise.variance(forest, state.solution.irradiance, p, std::max(state.history[p], 1.0f));
         const double variance = all > 0 ? of_all * std::clamp(h / all, 0.0, 1.0) : 0;  // fewer of the same rays
         return Sums(area, area * h, area * area * variance);
     });
     parts_[0].variance = static_cast<float>(sums[0].variance / (sums[0].area * sums[0].area));
-    std::vector<Sample> samples;
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-        const auto [first, count] = clusters_->nodes()[i];
-        if (first == none) continue;
-        for (std::uint32_t k = first; k < first + count; ++k)
-            parts_[k].share = static_cast<float>(sums[k].area / sums[i].area);
-        if (!(sums[i].variance > 0 && sums[i].power > 0)) continue;
-        double least_payload = sums[i].payload();
-        for (std::uint32_t k = first; k < first + count; ++k)
-            if (sums[k].variance > 0) least_payload = std::min(least_payload, sums[k].payload());
-        samples.clear();
-        for (std::uint32_t k = first; k < first + count; ++k)
-            samples.push_back({sums[k].mean(), variance_of(sums[k], sums[i].mean(), least_payload)});
-        const double signal = variance_of_true_values(samples);
-        for (std::uint32_t k = 0; k < count; ++k) {
-            Part& part = parts_[first + k];
-            part.variance = static_cast<float>(samples[k].variance), part.signal = static_cast<float>(signal);
-            part.kept = static_cast<float>(signal / (signal + samples[k].variance));
+    parallel_for_ranges(sums.size(), clusters_per_task, [&](std::size_t begin, std::size_t end) {
+        std::vector<Sample> samples;
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto [first, count] = clusters_->nodes()[i];
+            if (first == none) continue;
+            for (std::uint32_t k = first; k < first + count; ++k)
+                parts_[k].share = static_cast<float>(sums[k].area / sums[i].area);
+            if (!(sums[i].variance > 0 && sums[i].power > 0)) continue;
+            double least_payload = sums[i].payload();
+            for (std::uint32_t k = first; k < first + count; ++k)
+                if (sums[k].variance > 0) least_payload = std::min(least_payload, sums[k].payload());
+            samples.clear();
+            for (std::uint32_t k = first; k < first + count; ++k)
+                samples.push_back({sums[k].mean(), variance_of(sums[k], sums[i].mean(), least_payload)});
+            const double signal = variance_of_true_values(samples);
+            for (std::uint32_t k = 0; k < count; ++k) {
+                Part& part = parts_[first + k];
+                part.variance = static_cast<float>(samples[k].variance), part.signal = static_cast<float>(signal);
+                part.kept = static_cast<float>(signal / (signal + samples[k].variance));
+            }
         }
-    }
+    });
 }
 
 /// From the scene to the patches.
-void ClusterShrinkage::reduce(std::span<const Rgb> irradiance) {
+std::vector<Rgb> ClusterShrinkage::reduce() const {
+    std::vector<Rgb> means(clusters_->patch_count());
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
     std::vector<Rgb> before(nodes.size(), Rgb(0));
     for (std::size_t i = nodes.size(); i-- > 0;) {
         const auto [first, count] = nodes[i];
         if (first == none)
-            before[i] = irradiance[count];
+            before[i] = irradiance_[count];
         else
             for (std::uint32_t k = first; k < first + count; ++k) before[i] += parts_[k].share * before[k];
     }
@@ -124,7 +135,7 @@ void ClusterShrinkage::reduce(std::span<const Rgb> irradiance) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto [first, count] = nodes[i];
         if (first == none) {
-            means_[count] = after[i];
+            means[count] = after[i];
             continue;
         }
         Rgb excess(0);
@@ -145,22 +156,25 @@ void ClusterShrinkage::reduce(std::span<const Rgb> irradiance) {
                 after[first + k][c] = std::max(0.0f, after[i][c] + limit * differences[k][c]);
         }
     }
+    return means;
 }
 
-/// Clusters preserve the means of areas. Pictures show parts of them, which may be brighter than what is hidden.
-void ClusterShrinkage::keep_means_of_pictures(const SolverState& state, std::span<const Rgb> irradiance) {
+/// Clusters preserve the means of areas. Pictures show parts of them, which may be brighter than what is hidden. Only
+/// what is seen changes: to scale hidden parts, too, would change the power of the scene.
+void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
+    const ElementForest& forest = *state_->forest;
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
-    const std::vector<float>& seen = state.solution.view_importance;
+    const std::vector<float>& seen = state_->solution.view_importance;
     if (seen.empty()) return;
     const std::vector<double> shares =
-        clusters_->sums<double>([&](std::uint32_t p) { return seen[p] * state.forest->area(p); });
-    const double fewest = fewest_camera_rays / static_cast<double>(state.view.rays());
+        clusters_->sums<double>([&](std::uint32_t p) { return seen[p] * forest.area(p); });
+    const double fewest = fewest_camera_rays / static_cast<double>(state_->view.rays());
     struct Region {
-        double share = 0;
-        RgbD before{0, 0, 0}, after{0, 0, 0};
+        double share = 0, area = 0;
+        RgbD before{0, 0, 0}, after{0, 0, 0}, variable{0, 0, 0};
     };
     std::vector<Region> regions(nodes.size());
-    std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means_.size());
+    std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
         const auto [first, count] = nodes[i];
         if (shares[i] >= fewest) region[i] = i;
@@ -168,15 +182,25 @@ void ClusterShrinkage::keep_means_of_pictures(const SolverState& state, std::spa
             std::fill_n(region.begin() + first, count, region[i]);
             continue;
         }
-        Region& of_patch = regions[region_of_patch[count] = region[i]];
-        of_patch.share += shares[i];
-        of_patch.before += shares[i] * RgbD(irradiance[count]);
-        of_patch.after += shares[i] * RgbD(means_[count]);
+        region_of_patch[count] = region[i];
+        regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(count);
     }
-    for (std::size_t p = 0; p < means_.size(); ++p) {
-        const auto& [share, before, after] = regions[region_of_patch[p]];
+    const auto variability = [&](std::uint32_t p, const Region& r) {
+        return std::min(1.0, seen[p] * r.area / r.share);  // 1 if seen at least as well as the region on average
+    };
+    for (std::uint32_t p = 0; p < means.size(); ++p) {
+        Region& r = regions[region_of_patch[p]];
+        if (!(r.share >= fewest)) continue;
+        const double share = seen[p] * forest.area(p);
+        r.before += share * RgbD(irradiance_[p]), r.after += share * RgbD(means[p]);
+        r.variable += share * variability(p, r) * RgbD(means[p]);
+    }
+    for (std::uint32_t p = 0; p < means.size(); ++p) {
+        const Region& r = regions[region_of_patch[p]];
         for (int c = 0; c < 3; ++c)
-            if (share >= fewest && after[c] > 0) means_[p][c] *= static_cast<float>(before[c] / after[c]);
+            if (r.variable[c] > 0)
+                means[p][c] *= static_cast<float>(
+                    std::max(0.0, 1 + variability(p, r) * (r.before[c] - r.after[c]) / r.variable[c]));
     }
 }
 

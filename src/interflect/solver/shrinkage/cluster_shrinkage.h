@@ -12,8 +12,8 @@ namespace interflect::detail {
 /// Reduces the differences between the parts of each cluster that are mostly noise (docs/method.md, Clusters).
 class ClusterShrinkage {
   public:
-    /// @param clusters  Must outlive this.
-    /// @param irradiance  All light or a part of it, by patch; elements may follow.
+    /// @param state, clusters, irradiance  Must outlive this. The irradiance is all light or a part of it, by patch;
+    /// elements may follow.
     ClusterShrinkage(const SolverState& state, const PatchClusters& clusters, std::span<const Rgb> irradiance);
 
     /// Adds the errors of the reduced means of patches, as squared luminance.
@@ -23,7 +23,7 @@ class ClusterShrinkage {
     void add_errors(std::span<float> noise, std::span<float> bias, float weight, const Shown& shown) const;
 
     /// Returns the reduced means of the patches.
-    const std::vector<Rgb>& means() const { return means_; }
+    std::vector<Rgb> means() const;
 
   private:
     struct Part {
@@ -32,13 +32,14 @@ class ClusterShrinkage {
         float variance = 0;  // of its own mean, as squared luminance
         float signal = 0;    // variance of the true means in its cluster
     };
-    void measure_parts(const SolverState& state, std::span<const Rgb> irradiance);
-    void reduce(std::span<const Rgb> irradiance);
-    void keep_means_of_pictures(const SolverState& state, std::span<const Rgb> irradiance);
+    void measure_parts();
+    std::vector<Rgb> reduce() const;
+    void keep_means_of_pictures(std::vector<Rgb>& means) const;
 
+    const SolverState* state_;
     const PatchClusters* clusters_;
+    std::span<const Rgb> irradiance_;
     std::vector<Part> parts_;  // by node
-    std::vector<Rgb> means_;   // by patch
 };
 
 template <class Shown>
