@@ -25,7 +25,7 @@ SolveOptions unusual_options() {
     o.experimental.rays_per_iteration = 500;
     o.refinement.criterion = RefinementCriterion::power;
     o.experimental.shrinkage = false;
-    o.experimental.clusters = true;
+    o.experimental.clusters = false;
     o.experimental.epsilon = 1e-3;
     o.experimental.epsilon_decay = 0.5;
     o.refinement.min_area = 1e-4;
