@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "interflect/base/parallel.h"
@@ -66,6 +67,36 @@ double variance_of_true_values(std::span<const Sample> samples) {
     }
     return high;
 }
+
+/// Patches that share a mean of the pictures.
+struct Region {
+    double share = 0, area = 0;  // of the pictures; [m^2]
+    RgbD before{0, 0, 0};        // in the pictures
+    // After the reduction, in the pictures and over the area, and weighted by visibility():
+    RgbD after{0, 0, 0}, after_visible{0, 0, 0}, power{0, 0, 0}, power_visible{0, 0, 0};
+
+    /// 1 for patches that are seen at least as well as the region on average.
+    double visibility(double seen) const { return std::min(1.0, seen * area / share); }
+
+    void add(double seen, double patch_area, const RgbD& unreduced, const RgbD& reduced) {
+        if (!(share > 0)) return;
+        before += seen * patch_area * unreduced, after += seen * patch_area * reduced;
+        power += patch_area * reduced;
+        after_visible += visibility(seen) * seen * patch_area * reduced;
+        power_visible += visibility(seen) * patch_area * reduced;
+    }
+
+    /// Returns 1 + x (visibility - y), which keeps the power and makes `after` equal to `before`. Where little is
+    /// hidden, y = 0.
+    float factor(double seen, int c) const {
+        constexpr double most = 0.5;  // change of what is hidden
+        const auto change = [&](double y) { return (before[c] - after[c]) / (after_visible[c] - y * after[c]); };
+        if (!(after_visible[c] > 0)) return 1;
+        double y = power_visible[c] / power[c];
+        if (!(std::abs(y * change(y)) <= most)) y = 0;
+        return static_cast<float>(std::max(0.0, 1 + change(y) * (visibility(seen) - y)));
+    }
+};
 
 }  // namespace
 
@@ -159,8 +190,8 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
     return means;
 }
 
-/// Clusters preserve the means of areas. Pictures show parts of them, which may be brighter than what is hidden. Only
-/// what is seen changes: to scale hidden parts, too, would change the power of the scene.
+/// Clusters preserve the means of areas. Pictures show parts of them, which may be brighter than what is hidden: what
+/// is seen becomes brighter and what is hidden darker, so that the power stays, too.
 void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
     const ElementForest& forest = *state_->forest;
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
@@ -169,10 +200,6 @@ void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
     const std::vector<double> shares =
         clusters_->sums<double>([&](std::uint32_t p) { return seen[p] * forest.area(p); });
     const double fewest = fewest_camera_rays / static_cast<double>(state_->view.rays());
-    struct Region {
-        double share = 0, area = 0;
-        RgbD before{0, 0, 0}, after{0, 0, 0}, variable{0, 0, 0};
-    };
     std::vector<Region> regions(nodes.size());
     std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
@@ -185,22 +212,11 @@ void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
         region_of_patch[count] = region[i];
         regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(count);
     }
-    const auto variability = [&](std::uint32_t p, const Region& r) {
-        return std::min(1.0, seen[p] * r.area / r.share);  // 1 if seen at least as well as the region on average
-    };
-    for (std::uint32_t p = 0; p < means.size(); ++p) {
-        Region& r = regions[region_of_patch[p]];
-        if (!(r.share >= fewest)) continue;
-        const double share = seen[p] * forest.area(p);
-        r.before += share * RgbD(irradiance_[p]), r.after += share * RgbD(means[p]);
-        r.variable += share * variability(p, r) * RgbD(means[p]);
-    }
+    for (std::uint32_t p = 0; p < means.size(); ++p)
+        regions[region_of_patch[p]].add(seen[p], forest.area(p), RgbD(irradiance_[p]), RgbD(means[p]));
     for (std::uint32_t p = 0; p < means.size(); ++p) {
         const Region& r = regions[region_of_patch[p]];
-        for (int c = 0; c < 3; ++c)
-            if (r.variable[c] > 0)
-                means[p][c] *= static_cast<float>(
-                    std::max(0.0, 1 + variability(p, r) * (r.before[c] - r.after[c]) / r.variable[c]));
+        for (int c = 0; c < 3 && r.share >= fewest; ++c) means[p][c] *= r.factor(seen[p], c);
     }
 }
 
