@@ -1,13 +1,15 @@
 // Errors of constant and linear elements that are computed from the same rays (docs/results.md, Linear basis
 // functions):
 //
-//     build/release/bin/linear_basis SOLUTION.h5 EDGE SEEDS REFERENCE_RAYS RAYS... > ROWS.csv
-//     build/release/bin/linear_basis SOLUTION.h5 EDGE RAYS LEVEL OUT.h5
+//     build/release/bin/linear_basis SOLUTION.h5 EDGE FINER SEEDS REFERENCE_RAYS RAYS... > ROWS.csv
+//     build/release/bin/linear_basis SOLUTION.h5 EDGE FINER RAYS LEVEL OUT.h5
 //
 // The first form takes the scene and the views from the solution file. Each run of ihsrr stores its light on a uniform
-// mesh of cells, whose edges have at most EDGE metres on visible patches. Every basis and every mesh of larger elements
-// is then computed from these cells. The second form writes the light of one run on elements of 2^LEVEL cells, and
-// prints their errors against that of another run with 32 times the rays, to compare them with the command's pictures.
+// mesh of cells, whose edges have at most EDGE metres on visible patches, up to 2^FINER times smaller on patches
+// that the program divides further. Every
+// basis and every mesh of larger elements is then computed from these cells. The second form writes the light of one
+// run on elements of 2^LEVEL cells, and prints their errors against that of another run with 32 times the rays, to
+// compare them with the command's pictures.
 
 #include <interflect/interflect.h>
 
@@ -37,6 +39,8 @@ using namespace interflect::detail;
 
 constexpr std::size_t references = 4;  // two for the choice of a mesh, two for its error
 constexpr float edge_ratio_of_invisible = 8;
+/// Squared errors over the square of the picture's mean, or of the light at the place.
+constexpr std::array measures{"", " relative"};
 constexpr std::array methods_of_sources{"isrr", "ihsrr"};  // isrr has no StartPoints
 
 struct Input {
@@ -76,24 +80,34 @@ struct Cells {
     std::unique_ptr<ElementForest> forest;
     std::vector<int> depth;                     // by patch: number of divisions
     std::vector<std::uint32_t> leaves;          // elements of the forest
-    std::vector<std::array<double, 2>> weight;  // by leaf; the errors of the pictures, and relative to the light there
+    std::vector<std::array<double, 2>> weight;  // by leaf and measure
     std::vector<Parameters> centre;
 };
 
-/// Returns the number of divisions of each patch that make its edges shorter than `edge` [m].
-std::vector<int> depths(const Input& input, float edge) {
-    const std::unique_ptr<Run> run = input.run(1, 1, std::size_t{1} << 26);
+/// Returns the number of divisions of each patch that make its edges shorter than `edge` [m]; up to three more on
+/// visible patches that the program divides further.
+std::vector<int> depths(const Input& input, float edge, int finer) {
+    constexpr std::int64_t rays = 2'000'000;
+    const std::unique_ptr<Run> run = input.run(rays, 1, std::size_t{1} << 22);
+    if (finer > 0) trace(*run, rays);
+    const ElementForest& forest = *run->state.forest;
+    std::vector<int> deepest(forest.patch_count(), 0);
+    for (std::uint32_t e = 0; e < forest.size(); ++e)
+        deepest[forest.patch(e)] = std::max(deepest[forest.patch(e)], forest.level(e));
     std::vector<int> depths;
-    for (std::uint32_t p = 0; p < input.scene->patches.size(); ++p) {
-        const PatchGeometry& geometry = run->state.forest->geometry(p);
+    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+        const PatchGeometry& geometry = forest.geometry(p);
         const std::span<const Parameters> corners = corners_of(geometry.is_triangle());
         float longest = 0;
         for (std::size_t c = 0; c < corners.size(); ++c)
             longest = std::max(
                 longest, (geometry.point(corners[(c + 1) % corners.size()]) - geometry.point(corners[c])).length());
+        const auto divisions = [&](float e) {
+            return std::max(0, static_cast<int>(std::ceil(std::log2(longest / e))));
+        };
         const bool is_visible = run->state.solution.view_importance[p] > 0;
-        depths.push_back(std::max(
-            0, static_cast<int>(std::ceil(std::log2(longest / (is_visible ? edge : edge_ratio_of_invisible * edge))))));
+        depths.push_back(is_visible ? std::clamp(deepest[p], divisions(edge), divisions(edge) + finer)
+                                    : divisions(edge_ratio_of_invisible * edge));
     }
     return depths;
 }
@@ -376,10 +390,11 @@ void trace_references(Bench& bench, std::int64_t rays) {
 
 /// Sums the mean error of seeds by element of a mesh, for the choice of meshes.
 void add_element_errors(const Bench& bench, const Mesh& mesh, std::size_t pair, const std::vector<float>& light,
-                        double share, std::vector<double>& error) {
+                        double share, std::array<std::vector<double>, measures.size()>& error) {
     for (std::size_t i = 0; i < light.size(); ++i)
-        error[mesh.element[mesh.leaf[i]]] +=
-            share * bench.cells.weight[i][0] * square_error(bench.reference, pair, i, light[i]);
+        for (std::size_t m = 0; m < measures.size(); ++m)
+            error[m][mesh.element[mesh.leaf[i]]] +=
+                share * bench.cells.weight[i][m] * square_error(bench.reference, pair, i, light[i]);
 }
 
 /// Number of coefficients of an element of the forest of cells.
@@ -388,10 +403,16 @@ int coefficient_count(const Cells& cells, bool is_linear, std::uint32_t e) {
     return cells.forest->geometry(cells.forest->patch(e)).is_triangle() ? 3 : 4;
 }
 
-/// Errors of one basis by half of the seeds and of the references and by element, each in its uniform mesh.
+/// Errors of one basis by half of the seeds and of the references, by measure and element, each in its uniform mesh.
 struct ElementErrors {
-    std::array<std::vector<double>, 2> of_half;
-    double cost;  // error per coefficient of the best uniform mesh
+    std::array<std::array<std::vector<double>, measures.size()>, 2> of_half;
+    std::array<double, measures.size()> cost;  // error per coefficient of the best uniform mesh
+};
+/// Measure and half that choose a mesh.
+struct Selection {
+    std::size_t measure, half;
+
+    const std::vector<double>& of(const ElementErrors& errors) const { return errors.of_half[half][measure]; }
 };
 
 /// Quadtree whose leaves choose among bases.
@@ -401,13 +422,13 @@ struct Quadtree {
 
 /// Finds the quadtree of least error + cost times coefficients (dynamic programming from the cells up).
 Quadtree best_quadtree(const Cells& cells, std::span<const Candidate> bases, std::span<const ElementErrors> errors,
-                       std::size_t half, double cost) {
+                       const Selection& selection, double cost) {
     const ElementForest& forest = *cells.forest;
     std::vector<double> best(forest.size(), std::numeric_limits<double>::infinity());
     Quadtree tree{std::vector<std::uint8_t>(forest.size(), 0), std::vector<std::uint8_t>(forest.size(), 0)};
     for (std::uint32_t e = forest.size(); e-- > 0;) {
         for (std::size_t k = 0; k < bases.size(); ++k) {
-            const double with = errors[k].of_half[half][e] + cost * coefficient_count(cells, bases[k].is_linear, e);
+            const double with = selection.of(errors[k])[e] + cost * coefficient_count(cells, bases[k].is_linear, e);
             if (with < best[e]) best[e] = with, tree.choice[e] = static_cast<std::uint8_t>(k);
         }
         const std::uint32_t first = forest.first_child(e);
@@ -419,7 +440,7 @@ Quadtree best_quadtree(const Cells& cells, std::span<const Candidate> bases, std
 }
 
 /// Finds the uniform level and the basis of least error for each patch.
-Quadtree best_patches(const Cells& cells, std::span<const ElementErrors> errors, std::size_t half) {
+Quadtree best_patches(const Cells& cells, std::span<const ElementErrors> errors, const Selection& selection) {
     const ElementForest& forest = *cells.forest;
     struct Choice {
         int depth = 0;
@@ -432,7 +453,7 @@ Quadtree best_patches(const Cells& cells, std::span<const ElementErrors> errors,
         for (std::uint32_t p = 0; p < by_depth.size(); ++p)
             by_depth[p].assign(static_cast<std::size_t>(cells.depth[p]) + 1, 0);
         for (std::uint32_t e = 0; e < forest.size(); ++e)
-            by_depth[forest.patch(e)][static_cast<std::size_t>(forest.level(e))] += errors[k].of_half[half][e];
+            by_depth[forest.patch(e)][static_cast<std::size_t>(forest.level(e))] += selection.of(errors[k])[e];
         for (std::uint32_t p = 0; p < by_depth.size(); ++p)
             for (std::size_t depth = 0; depth < by_depth[p].size(); ++depth)
                 if (by_depth[p][depth] < best[p].error) best[p] = {static_cast<int>(depth), k, by_depth[p][depth]};
@@ -493,9 +514,10 @@ struct Comparison {
 /// Prints the errors on all uniform meshes, and returns those of the elements.
 ElementErrors compare_uniform(const Comparison& of, const Candidate& candidate) {
     const Cells& cells = of.bench.cells;
-    const std::vector<double> zeros(cells.forest->size(), 0);
-    ElementErrors errors{{zeros, zeros}, 0};
-    double least = std::numeric_limits<double>::infinity();
+    ElementErrors errors;
+    for (auto& of_half : errors.of_half) of_half.fill(std::vector<double>(cells.forest->size(), 0));
+    std::array<double, measures.size()> least;
+    least.fill(std::numeric_limits<double>::infinity());
     for (std::size_t level = 0; level < of.bench.uniform.size(); ++level) {
         const Mesh& mesh = of.bench.uniform[level];
         std::vector<std::vector<float>> light(of.seeds());
@@ -504,21 +526,22 @@ ElementErrors compare_uniform(const Comparison& of, const Candidate& candidate) 
             light[s] = reconstruct(cells, mesh, of.of(candidate, s), candidate.is_joined);
             error[s] = total_error(cells, of.bench.reference, {0, 1}, light[s]);
         });
-        double mean = 0;
+        std::array<double, measures.size()> mean{};
         for (std::size_t s = 0; s < of.seeds(); ++s) {
             add_element_errors(of.bench, mesh, s % 2, light[s], 2.0 / static_cast<double>(of.seeds()),
                                errors.of_half[s % 2]);
             of.print(candidate, mesh, "uniform", static_cast<double>(level), s, error[s]);
-            mean += error[s][0] / static_cast<double>(of.seeds());
+            for (std::size_t m = 0; m < mean.size(); ++m) mean[m] += error[s][m] / static_cast<double>(of.seeds());
         }
-        if (mean < least) least = mean, errors.cost = mean / of.count(candidate, mesh);
+        for (std::size_t m = 0; m < mean.size(); ++m)
+            if (mean[m] < least[m]) least[m] = mean[m], errors.cost[m] = mean[m] / of.count(candidate, mesh);
     }
     return errors;
 }
 
 /// Prints the errors on a mesh that was chosen with the seeds and the references of `half`, by the others.
 void print_chosen(const Comparison& of, const char* name, std::span<const Candidate> bases, const Quadtree& tree,
-                  const char* kind, double cost, std::size_t half) {
+                  const std::string& kind, double cost, std::size_t half) {
     const Cells& cells = of.bench.cells;
     const Mesh mesh = make_mesh(*of.bench.input.scene, cells, [&](std::uint32_t e) { return tree.divides[e] != 0; });
     int count = 0;
@@ -533,19 +556,24 @@ void print_chosen(const Comparison& of, const char* name, std::span<const Candid
             total_error(cells, of.bench.reference, {1 - half}, reconstruct(cells, mesh, chosen, bases[0].is_joined));
     });
     for (std::size_t s = 1 - half; s < of.seeds(); s += 2)
-        of.bench.print(of.rays, s + 1, name, kind, cost, static_cast<int>(mesh.visible.size()), count, error[s]);
+        of.bench.print(of.rays, s + 1, name, kind.c_str(), cost, static_cast<int>(mesh.visible.size()), count,
+                       error[s]);
 }
 
 /// Prints the errors on meshes that are chosen for the basis, or for the better of two in each element.
 void compare_chosen(const Comparison& of, const char* name, std::span<const Candidate> bases,
                     std::span<const ElementErrors> errors) {
-    for (std::size_t half = 0; half < 2; ++half) {
-        const Cells& cells = of.bench.cells;
-        print_chosen(of, name, bases, best_patches(cells, errors, half), "patches", 0, half);
-        for (const double cost : costs)
-            print_chosen(of, name, bases, best_quadtree(cells, bases, errors, half, cost * errors[0].cost), "quadtree",
-                         cost, half);
-    }
+    const Cells& cells = of.bench.cells;
+    for (std::size_t measure = 0; measure < measures.size(); ++measure)
+        for (std::size_t half = 0; half < 2; ++half) {
+            const Selection selection{measure, half};
+            const auto print = [&](const Quadtree& tree, const char* kind, double cost) {
+                print_chosen(of, name, bases, tree, std::string(kind) + measures[measure], cost, half);
+            };
+            print(best_patches(cells, errors, selection), "patches", 0);
+            for (const double cost : costs)
+                print(best_quadtree(cells, bases, errors, selection, cost * errors[0].cost[measure]), "quadtree", cost);
+        }
 }
 
 /// Prints the errors on the program's meshes and on coarser ones.
@@ -664,8 +692,8 @@ void print_sources(const Bench& bench, std::int64_t rays, int level, const Eleme
     std::fflush(stdout);
 }
 
-int write_level(const Input& input, float edge, std::int64_t rays, int level, const char* path) {
-    Bench bench{input, make_cells(input, depths(input, edge)), {}, {}};
+int write_level(const Input& input, float edge, int finer, std::int64_t rays, int level, const char* path) {
+    Bench bench{input, make_cells(input, depths(input, edge, finer)), {}, {}};
     trace_references(bench, 32 * rays);
     const Cells& cells = bench.cells;
     const std::unique_ptr<Run> run = run_on_mesh(input, rays, 1, cells.depth);
@@ -693,7 +721,8 @@ int write_level(const Input& input, float edge, std::int64_t rays, int level, co
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 6) return std::fputs("usage: linear_basis SOLUTION.h5 EDGE SEEDS REFERENCE_RAYS RAYS...\n", stderr), 64;
+    if (argc < 7)
+        return std::fputs("usage: linear_basis SOLUTION.h5 EDGE FINER SEEDS REFERENCE_RAYS RAYS...\n", stderr), 64;
     SolvedScene solved = read_solution(argv[1]);
     Input input;
     input.scene = std::make_shared<const Scene>(std::move(solved.scene));
@@ -702,20 +731,21 @@ int main(int argc, char** argv) {
     if (input.views.empty())
         for (const View& view : input.scene->views) input.views.push_back({view});
     const auto edge = static_cast<float>(std::atof(argv[2]));
-    if (argc == 6 && std::string(argv[5]).ends_with(".h5"))
-        return write_level(input, edge, std::atoll(argv[3]), std::atoi(argv[4]), argv[5]);
+    const int finer = std::atoi(argv[3]);
+    if (argc == 7 && std::string(argv[6]).ends_with(".h5"))
+        return write_level(input, edge, finer, std::atoll(argv[4]), std::atoi(argv[5]), argv[6]);
 
-    Bench bench{input, make_cells(input, depths(input, edge)), {}, {}};
-    trace_references(bench, std::atoll(argv[4]));
+    Bench bench{input, make_cells(input, depths(input, edge, finer)), {}, {}};
     std::fprintf(stderr, "%zu cells\n", bench.cells.leaves.size());
+    trace_references(bench, std::atoll(argv[5]));
     const int deepest = *std::max_element(bench.cells.depth.begin(), bench.cells.depth.end());
     for (int level = 0; level <= deepest; ++level)
         bench.uniform.push_back(uniform_mesh(*input.scene, bench.cells, level));
     std::puts("rays,seed,basis,mesh,parameter,elements,coefficients,error,relative_error");
-    const std::span<char*> budgets(argv + 5, argv + argc);
+    const std::span<char*> budgets(argv + 6, argv + argc);
     const std::int64_t most = std::atoll(budgets.back());
     std::vector<std::unique_ptr<Run>> runs, refining;
-    const auto seeds = static_cast<std::size_t>(std::atoi(argv[3]));
+    const auto seeds = static_cast<std::size_t>(std::atoi(argv[4]));
     for (std::size_t s = 1; s <= seeds; ++s) {
         runs.push_back(run_on_mesh(input, std::atoll(budgets.front()), s, bench.cells.depth));
         refining.push_back(input.run(std::atoll(budgets.front()), s, std::size_t{1} << 22));

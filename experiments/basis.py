@@ -5,7 +5,6 @@ four independent references. So differences between bases contain neither differ
 mesh. docs/results.md (Linear basis functions) explains the result.
 """
 
-import math
 import subprocess
 import sys
 from collections.abc import Iterable
@@ -13,17 +12,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from audit import Reference, Scale
 from audit_scenes import Scene
 from constants import attic, gallery
 from lab import drawing, program, results
+from lab.picture import luminance, read_exr
 from lab.results import Row
-from lab.statistics import Ratio, mean, mean_ratio
+from lab.statistics import mean, mean_ratio
 
 WORK = program.ROOT / "out/experiments/cache/basis"
 TABLE = program.ROOT / "experiments/results/basis.csv"
 FIGURES = program.ROOT / "docs/figures"
-SEEDS, REFERENCE_RAYS = 6, 24_000_000
-BUDGETS = (500_000, 2_000_000, 8_000_000)
+USUAL = (6, 24_000_000, (500_000, 2_000_000, 8_000_000))
+CHECKED_RAYS = 300_000
 DRAWN = 2_000_000  # rays of the figure
 
 
@@ -31,6 +32,10 @@ DRAWN = 2_000_000  # rays of the figure
 class Subject:
     name: str
     edge: float  # of the cells [m]
+    finer: int  # further divisions of cells where the program refines
+    seeds: int
+    reference_rays: int
+    budgets: tuple[int, ...]
     file: str = ""  # with a named view; else made from `scene`
     view: str = ""
     scene: Scene | None = None
@@ -49,10 +54,10 @@ class Subject:
 
 
 SUBJECTS = [
-    Subject("two-rooms", 0.035, "make-scene two-rooms", "lit"),
-    Subject("office", 0.03, "scenes/office.mgf", "desk"),
-    Subject("attic", 0.03, scene=attic()),
-    Subject("gallery", 0.05, scene=gallery()),
+    Subject("two-rooms", 0.035, 0, *USUAL, "make-scene two-rooms", "lit"),
+    Subject("office", 0.03, 0, *USUAL, "scenes/office.mgf", "desk"),
+    Subject("attic", 0.06, 2, 4, 16_000_000, (2_000_000,), scene=attic()),
+    Subject("gallery", 0.05, 0, *USUAL, scene=gallery()),
 ]
 TITLES = {
     "two-rooms": "two-rooms: soft gradients",
@@ -70,7 +75,12 @@ GROUPS = {
     "either": ("either", "either reduced"),
     "either, joined": ("either joined", "either joined reduced"),
 }
-CHOSEN = ("uniform", "patches", "quadtree")  # meshes that are chosen with knowledge of the references
+COUNTED = ("constant, smooth", "linear, joined")
+# Meshes that are chosen with knowledge of the references, by measure.
+CHOSEN = {
+    "errors": ("uniform", "patches", "quadtree"),
+    "relative_errors": ("uniform", "patches relative", "quadtree relative"),
+}
 
 
 def measure(command: program.Program, subject: Subject) -> list[dict]:
@@ -78,14 +88,14 @@ def measure(command: program.Program, subject: Subject) -> list[dict]:
     if not bench.is_file():
         raise program.ExperimentError(f"{bench} is not there: build the target interflect_linear_basis")
     raw = WORK / f"{subject.name}.csv"
-    arguments = [bench, subject.prepare(command), subject.edge, SEEDS, REFERENCE_RAYS, *BUDGETS]
+    arguments = [bench, subject.prepare(command), subject.edge, subject.finer, subject.seeds, subject.reference_rays, *subject.budgets]
     with raw.open("w") as file:
         subprocess.run([str(a) for a in arguments], stdout=file, check=True)
     return summarised(subject.name, results.read_csv(raw, {"basis", "mesh"}))
 
 
 def summarised(scene: str, rows: Iterable[Row]) -> list[dict]:
-    """Joins the seeds of a mesh in one row. @return `errors` in the order of the seeds."""
+    """Joins the seeds of a mesh in one row; errors are in the order of the seeds."""
     keys = ("rays", "basis", "mesh", "parameter")
     found: dict = {}
     for row in rows:
@@ -93,73 +103,128 @@ def summarised(scene: str, rows: Iterable[Row]) -> list[dict]:
     joined = []
     for key, seeds in found.items():
         seeds.sort(key=lambda row: row["seed"])
-        means = {name: f"{results.values(seeds, name).mean():.4g}" for name in ("elements", "coefficients", "relative_error")}
-        errors = " ".join(f"{row['error']:.4g}" for row in seeds)
-        joined.append({"scene": scene} | dict(zip(keys, key)) | means | {"errors": errors})
+        means = {name: f"{results.values(seeds, name).mean():.4g}" for name in ("elements", "coefficients")}
+        errors = {f"{name}s": " ".join(f"{row[name]:.3g}" for row in seeds) for name in ("error", "relative_error")}
+        joined.append({"scene": scene} | dict(zip(keys, key)) | means | errors)
     return joined
 
 
 def read() -> list[Row]:
-    rows = results.read_csv(TABLE, {"scene", "basis", "mesh", "errors"})
+    rows = results.read_csv(TABLE, {"scene", "basis", "mesh", *CHOSEN})
     for row in rows:
-        row["errors"] = np.array([float(e) for e in row["errors"].split()])
+        row |= {measure: np.array([float(e) for e in row[measure].split()]) for measure in CHOSEN}
     return rows
 
 
-def best(rows: Iterable[Row], members: Iterable[str], meshes: Iterable[str] = CHOSEN) -> Row:
+def best(rows: Iterable[Row], members: Iterable[str], meshes: Iterable[str], measure: str = "errors") -> Row:
     """Returns the row of least mean error."""
-    return min((row for row in rows if row["basis"] in members and row["mesh"] in meshes), key=lambda row: row["errors"].mean())
+    return min((row for row in rows if row["basis"] in members and row["mesh"] in meshes), key=lambda row: row[measure].mean())
 
 
-def over(row: Row, base: Row) -> Ratio:
-    return mean_ratio(row["errors"] / base["errors"])
+def over(row: Row, base: Row, measure: str = "errors") -> str:
+    return "1" if row is base else str(mean_ratio(row[measure] / base[measure]))
 
 
-def slope(rows: list[Row], members: Iterable[str]) -> float:
-    """Returns the exponent of the error in the rays."""
-    errors = [math.log(best([row for row in rows if row["rays"] == rays], members)["errors"].mean()) for rays in BUDGETS]
-    return float(np.polyfit(np.log(BUDGETS), errors, 1)[0])
+def check_pictures(command: program.Program) -> None:
+    """Compares the errors of cells with those of the command's pictures of the same light, against path tracing."""
+    subject = next(one for one in SUBJECTS if one.name == "gallery")
+    solved = subject.prepare(command)
+    scale = Scale(size=(320, 180), samples=256)
+    reference = Reference(command, subject.name, subject.scene, scale, WORK)
+    lines = []
+    for level in (2, 3):
+        coarse, picture = WORK / f"level{level}.h5", WORK / "picture.exr"
+        arguments = [command.path.with_name("linear_basis"), solved, subject.edge, subject.finer, CHECKED_RAYS, level, coarse]
+        printed = subprocess.run([str(a) for a in arguments], capture_output=True, text=True, check=True).stdout
+        for kind, line in zip(("flat", "smooth"), printed.splitlines()):
+            options = f"--size 320x180 --samples 64 --shading {kind} -o {picture}"
+            program.run(command, ["render", str(coarse), *subject.scene.view().split(), *options.split()])
+            values = luminance(read_exr(picture))
+            error = reference.pixel_error(values, values)[0] ** 2
+            edge = f"{subject.edge * 2**level:.1f} m"
+            lines.append([edge, kind, f"{float(line.split(',')[-2]):.3g}", f"{error:.3g}"])
+    results.write_table(FIGURES / "basis-check.md", ["edge", "shading", "squared error of the cells", "of the picture"], lines)
 
 
-def rays_for_equal_error(ratio: Ratio, exponent: float) -> Ratio:
-    return Ratio(*(value ** (-1 / exponent) for value in (ratio.value, ratio.low, ratio.high)))
+def check_moments() -> list[str]:
+    """Compares linear elements from cells with those from the hits themselves, for a smooth function with noise.
+
+    @return  Lines with the squared errors of both, over the whole element.
+    """
+    generator = np.random.default_rng(1)
+    light = lambda u, v: 1 + 0.4 * (u - 0.5) + 0.3 * (v - 0.5) ** 2 + 0.2 * u * v
+    linear = lambda u, v: np.stack([np.ones_like(u), *(np.sqrt(3) * (2 * x - 1) for x in (u, v)), 3 * (2 * u - 1) * (2 * v - 1)])
+    middles = lambda n: np.meshgrid(*2 * [(np.arange(n) + 0.5) / n], indexing="ij")
+    hits, trials, points = 400, 1000, middles(64)
+    lines = []
+    for cells in (4, 8, 16):
+        square = 1 - cells**-2  # of a linear function of the basis, over the middles of the cells
+        errors = []
+        for _ in range(trials):
+            u, v = generator.random((2, hits))
+            power = light(u, v)
+            binned = np.zeros((cells, cells))
+            np.add.at(binned, ((u * cells).astype(int), (v * cells).astype(int)), power / hits)
+            from_cells = (linear(*middles(cells)) * binned).sum((1, 2)) / [1, square, square, square**2]
+            from_hits = (linear(u, v) * power).mean(1)
+            errors.append([np.mean((np.tensordot(c, linear(*points), 1) - light(*points)) ** 2) for c in (from_cells, from_hits)])
+        of_cells, of_hits = np.mean(errors, axis=0)
+        lines.append(f"{cells} x {cells} cells: squared error {of_cells / of_hits:.3f} of that from the hits")
+    return lines
+
+
+def fewest_coefficients(rows: Iterable[Row], members: Iterable[str], error: float) -> str:
+    """Returns the least number of coefficients of a chosen mesh whose error is at most a tenth larger than `error`."""
+    meshes = CHOSEN["errors"]
+    within = [row["coefficients"] for row in rows if row["basis"] in members and row["mesh"] in meshes and row["errors"].mean() <= 1.1 * error]
+    return f"{min(within):,.0f}" if within else "-"
 
 
 def write_tables(rows: list[Row]) -> None:
-    lines, on_program, sources = [], [], []
+    for measure, file in zip(CHOSEN, ("basis.md", "basis-relative.md")):
+        lines = []
+        for subject in SUBJECTS:
+            for rays in subject.budgets:
+                runs = [row for row in rows if row["scene"] == subject.name and row["rays"] == rays]
+                base = best(runs, CONSTANT, CHOSEN[measure], measure)
+                ratios = [over(best(runs, members, CHOSEN[measure], measure), base, measure) for members in GROUPS.values()]
+                ratios[list(GROUPS.values()).index(CONSTANT)] = str(mean(base[measure]))
+                counts = [fewest_coefficients(runs, GROUPS[group], base["errors"].mean()) for group in COUNTED] if measure == "errors" else []
+                lines.append([subject.name, f"{rays / 1e6:g} M", *ratios, *counts])
+        counted = [f"coefficients: {group}" for group in COUNTED] if measure == "errors" else []
+        results.write_table(FIGURES / file, ["scene", "rays", *GROUPS, *counted], lines)
+    write_program_meshes(rows)
+    write_sources(rows)
+
+
+def write_program_meshes(rows: list[Row]) -> None:
+    lines = []
     for subject in SUBJECTS:
-        of_scene = [row for row in rows if row["scene"] == subject.name]
-        for rays in BUDGETS:
-            runs = [row for row in of_scene if row["rays"] == rays]
-            base = best(runs, CONSTANT)
-            for group, members in GROUPS.items():
-                row = best(runs, members)
-                ratio = over(row, base)
-                gain = "1" if row is base else str(rays_for_equal_error(ratio, slope(of_scene, members)))
-                lines.append(
-                    [
-                        subject.name, f"{rays / 1e6:g} M", group, row["mesh"], f"{row['elements']:,.0f}", f"{row['coefficients']:,.0f}",
-                        str(mean(row["errors"])), "1" if row is base else str(ratio), gain,
-                    ]
-                )  # fmt: skip
+        for rays in subject.budgets:
+            runs = [row for row in rows if row["scene"] == subject.name and row["rays"] == rays]
             now = best(runs, CONSTANT, ["refined"])
-            cells = [subject.name, f"{rays / 1e6:g} M", f"{now['elements']:,.0f}", str(mean(now["errors"])), str(over(base, now))]
-            same = best([row for row in runs if row["parameter"] == 0], ["constant smooth reduced"], ["program"])
+            meshes = [row for row in runs if row["mesh"] == "program"]
+            same = best([row for row in meshes if row["parameter"] == 0], CONSTANT[1:], ["program"])
+            cells = [over(best(runs, CONSTANT, CHOSEN["errors"]), now)]
             for coarser in range(3):
-                meshes = [row for row in runs if row["mesh"] == "program" and row["parameter"] == coarser]
-                cells += [str(over(best(meshes, GROUPS[group], ["program"]), same)) for group in ("constant, smooth", "linear, joined")]
-            on_program.append(cells)
-        for row in of_scene:
-            if row["mesh"].startswith("sources"):
-                sources.append(
-                    [subject.name, row["mesh"].removeprefix("sources "), f"{subject.edge * 2 ** row['parameter']:.2f} m" if row["mesh"].endswith("uniform") else "",
-                     "uniform" if row["basis"] == "isrr" else "hit points", f"{row['elements']:,.0f}", str(mean(row["errors"]))]
-                )  # fmt: skip
-    header = ["scene", "rays", "basis", "mesh", "elements", "coefficients", "squared error", "over smooth constants", "rays for equal error"]
-    results.write_table(FIGURES / "basis.md", header, lines)
-    levels = [f"{group}, {coarser} coarser" for coarser in range(3) for group in ("constant", "linear")]
-    results.write_table(FIGURES / "basis-program.md", ["scene", "rays", "elements", "squared error", "best mesh over it", *levels], on_program)
-    results.write_table(FIGURES / "basis-sources.md", ["scene", "mesh", "edge", "origins", "elements", "squared error"], sources)
+                of_level = [row for row in meshes if row["parameter"] == coarser]
+                cells += [over(best(of_level, GROUPS[group], ["program"]), same) for group in COUNTED]
+            lines.append([subject.name, f"{rays / 1e6:g} M", f"{now['elements']:,.0f}", str(mean(now["errors"])), *cells])
+    levels = [f"{group}, {name}" for name in ("its mesh", "1 coarser", "2 coarser") for group in ("constant", "linear")]
+    results.write_table(FIGURES / "basis-program.md", ["scene", "rays", "elements", "squared error", "best mesh over it", *levels], lines)
+
+
+def write_sources(rows: list[Row]) -> None:
+    lines = []
+    for subject in SUBJECTS:
+        for row in rows:
+            if row["scene"] != subject.name or not row["mesh"].startswith("sources"):
+                continue
+            is_uniform = row["mesh"].endswith("uniform")
+            mesh = f"uniform, {subject.edge * 2 ** row['parameter']:.2g} m" if is_uniform else "the program's"
+            origins = "uniform" if row["basis"] == "isrr" else "hit points"
+            lines.append([subject.name, mesh, origins, f"{row['elements']:,.0f}", " and ".join(f"{e:.1e}" for e in row["errors"])])
+    results.write_table(FIGURES / "basis-sources.md", ["scene", "mesh", "origins", "elements", "squared error"], lines)
 
 
 def draw(rows: list[Row]) -> None:
@@ -180,8 +245,8 @@ def draw(rows: list[Row]) -> None:
     axes[0].set_ylabel("squared error of the picture")
     drawing.shared_legend(figure, axes[0], 5)
     caption = f"""Uniform meshes of all sizes from the same {DRAWN / 1e6:g} million rays: squared error over the square of the
-        picture's mean against the number of coefficients. Dotted: after reduction of differences that are mostly noise. Mean of
-        {SEEDS} seeds."""
+        picture's mean against the number of coefficients. Dotted: after reduction of differences that are mostly noise. Means
+        of 4 to 6 seeds."""
     drawing.save(figure, FIGURES, "basis", caption)
 
 
@@ -191,10 +256,11 @@ def main(only_draw: bool) -> None:
         WORK.mkdir(parents=True, exist_ok=True)
         rows = []
         for subject in SUBJECTS:
-            print(f"{subject.name}: {SEEDS} seeds", file=sys.stderr, flush=True)
+            print(f"{subject.name}: {subject.seeds} seeds", file=sys.stderr, flush=True)
             rows += measure(command, subject)
         results.write_csv(TABLE, rows, list(rows[0]))
+        check_pictures(command)
     rows = read()
     write_tables(rows)
     draw(rows)
-    print((FIGURES / "basis.md").read_text(), end="")
+    print((FIGURES / "basis.md").read_text(), *check_moments(), sep="\n")
