@@ -708,7 +708,10 @@ int write_level(const Input& input, float edge, int finer, std::int64_t rays, in
     Solution solution;
     solution.options = run->state.options;
     solution.emitted_power = run->state.solution.emitted_power;
-    for (const std::uint32_t e : mesh.element) solution.irradiance.push_back(run->state.solution.irradiance[e]);
+    for (const std::uint32_t e : mesh.element) {
+        const Rgb& h = run->state.solution.irradiance[e];  // noise may make it negative
+        solution.irradiance.push_back({std::max(h.x, 0.0f), std::max(h.y, 0.0f), std::max(h.z, 0.0f)});
+    }
     const std::vector<float> zeros(mesh.element.size(), 0);
     solution.view_importance = solution.indirect_importance = solution.standard_error = solution.discretisation_error =
         solution.rays = zeros;

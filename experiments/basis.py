@@ -5,6 +5,7 @@ four independent references. So differences between bases contain neither differ
 mesh. docs/results.md (Linear basis functions) explains the result.
 """
 
+import math
 import subprocess
 import sys
 from collections.abc import Iterable
@@ -18,7 +19,7 @@ from constants import attic, gallery
 from lab import drawing, program, results
 from lab.picture import luminance, read_exr
 from lab.results import Row
-from lab.statistics import mean, mean_ratio
+from lab.statistics import Ratio, mean, mean_ratio
 
 WORK = program.ROOT / "out/experiments/cache/basis"
 TABLE = program.ROOT / "experiments/results/basis.csv"
@@ -180,19 +181,37 @@ def fewest_coefficients(rows: Iterable[Row], members: Iterable[str], error: floa
     return f"{min(within):,.0f}" if within else "-"
 
 
+def rays_for_equal_error(rows: list[Row], rays: int, members: Iterable[str]) -> str:
+    """Returns the factor of the rays with which these bases have the error of smooth constants."""
+    of_budget = {budget: [row for row in rows if row["rays"] == budget] for budget in sorted({row["rays"] for row in rows})}
+    if len(of_budget) < 2:
+        return "-"
+    found = {budget: best(runs, members, CHOSEN["errors"]) for budget, runs in of_budget.items()}
+    exponent = np.polyfit(np.log(list(found)), [math.log(row["errors"].mean()) for row in found.values()], 1)[0]
+    ratio = mean_ratio(found[rays]["errors"] / best(of_budget[rays], CONSTANT, CHOSEN["errors"])["errors"])
+    return str(Ratio(*(value ** (-1 / exponent) for value in (ratio.value, ratio.low, ratio.high))))
+
+
 def write_tables(rows: list[Row]) -> None:
+    costs = []
     for measure, file in zip(CHOSEN, ("basis.md", "basis-relative.md")):
         lines = []
         for subject in SUBJECTS:
+            of_scene = [row for row in rows if row["scene"] == subject.name]
             for rays in subject.budgets:
-                runs = [row for row in rows if row["scene"] == subject.name and row["rays"] == rays]
+                runs = [row for row in of_scene if row["rays"] == rays]
+                start = [subject.name, f"{rays / 1e6:g} M"]
                 base = best(runs, CONSTANT, CHOSEN[measure], measure)
                 ratios = [over(best(runs, members, CHOSEN[measure], measure), base, measure) for members in GROUPS.values()]
                 ratios[list(GROUPS.values()).index(CONSTANT)] = str(mean(base[measure]))
-                counts = [fewest_coefficients(runs, GROUPS[group], base["errors"].mean()) for group in COUNTED] if measure == "errors" else []
-                lines.append([subject.name, f"{rays / 1e6:g} M", *ratios, *counts])
-        counted = [f"coefficients: {group}" for group in COUNTED] if measure == "errors" else []
-        results.write_table(FIGURES / file, ["scene", "rays", *GROUPS, *counted], lines)
+                lines.append([*start, *ratios])
+                if measure == "errors":
+                    counts = [fewest_coefficients(runs, GROUPS[group], base["errors"].mean()) for group in COUNTED]
+                    needed = [rays_for_equal_error(of_scene, rays, GROUPS[group]) for group in ("linear", "linear, joined", "either, joined")]
+                    costs.append([*start, *counts, *needed])
+        results.write_table(FIGURES / file, ["scene", "rays", *GROUPS], lines)
+    header = [*(f"coefficients: {group}" for group in COUNTED), "rays: linear", "linear, joined", "either, joined"]
+    results.write_table(FIGURES / "basis-costs.md", ["scene", "rays", *header], costs)
     write_program_meshes(rows)
     write_sources(rows)
 
