@@ -4,12 +4,10 @@
 //     build/release/bin/linear_basis SOLUTION.h5 EDGE FINER SEEDS REFERENCE_RAYS RAYS... > ROWS.csv
 //     build/release/bin/linear_basis SOLUTION.h5 EDGE FINER RAYS LEVEL OUT.h5
 //
-// The first form takes the scene and the views from the solution file. Each run of ihsrr stores its light on a uniform
-// mesh of cells, whose edges have at most EDGE metres on visible patches, up to 2^FINER times smaller on patches
-// that the program divides further. Every
-// basis and every mesh of larger elements is then computed from these cells. The second form writes the light of one
-// run on elements of 2^LEVEL cells, and prints their errors against that of another run with 32 times the rays, to
-// compare them with the command's pictures.
+// The first form reads the scene and the views from the solution file. Each run of ihsrr stores its light on a uniform
+// mesh of cells. Their edges have at most EDGE metres on visible patches, and are up to 2^FINER times smaller on patches
+// that the program divides further. All bases and meshes of larger elements are computed from these cells. The second
+// form writes the light of one run on elements of 2^LEVEL cells and prints its errors, for comparison with pictures.
 
 #include <interflect/interflect.h>
 
@@ -511,7 +509,7 @@ struct Comparison {
     }
 };
 
-/// Prints the errors on all uniform meshes, and returns those of the elements.
+/// Prints the errors on all uniform meshes. Returns the errors by element.
 ElementErrors compare_uniform(const Comparison& of, const Candidate& candidate) {
     const Cells& cells = of.bench.cells;
     ElementErrors errors;
@@ -665,7 +663,7 @@ void print_sources(const Bench& bench, std::int64_t rays, int level, const Eleme
             for (std::uint32_t e = 0; e < own.size(); ++e)
                 light[r].push_back(reflected(run->state, run->state.solution.irradiance, e));
         }
-        // Of each reference, the mean over the cells of an element.
+        // Mean of each reference over the cells of an element.
         std::array<std::vector<double>, references> exact;
         std::vector<double> weight(mesh.forest->size(), 0);
         for (std::size_t r = 0; r < references; ++r) {

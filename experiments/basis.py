@@ -127,7 +127,7 @@ def over(row: Row, base: Row, measure: str = "errors") -> str:
 
 
 def check_pictures(command: program.Program) -> None:
-    """Compares the errors of cells with those of the command's pictures of the same light, against path tracing."""
+    """Compares errors computed from cells with errors of pictures of the same light, against path tracing."""
     subject = next(one for one in SUBJECTS if one.name == "gallery")
     solved = subject.prepare(command)
     scale = Scale(size=(320, 180), samples=256)
@@ -183,7 +183,7 @@ def fewest_coefficients(rows: Iterable[Row], members: Iterable[str], error: floa
 
 def rays_for_equal_error(rows: list[Row], rays: int, members: Iterable[str]) -> str:
     """Returns the factor of the rays with which these bases have the error of smooth constants."""
-    of_budget = {budget: [row for row in rows if row["rays"] == budget] for budget in sorted({row["rays"] for row in rows})}
+    of_budget = {budget: [row for row in rows if row["rays"] == budget] for budget in sorted({row["rays"] for row in rows if row["mesh"] == "uniform"})}
     if len(of_budget) < 2:
         return "-"
     found = {budget: best(runs, members, CHOSEN["errors"]) for budget, runs in of_budget.items()}
@@ -201,6 +201,8 @@ def write_tables(rows: list[Row]) -> None:
             for rays in subject.budgets:
                 runs = [row for row in of_scene if row["rays"] == rays]
                 start = [subject.name, f"{rays / 1e6:g} M"]
+                if not any(row["mesh"] == CHOSEN[measure][-1] for row in runs):
+                    continue  # rows of an older version
                 base = best(runs, CONSTANT, CHOSEN[measure], measure)
                 ratios = [over(best(runs, members, CHOSEN[measure], measure), base, measure) for members in GROUPS.values()]
                 ratios[list(GROUPS.values()).index(CONSTANT)] = str(mean(base[measure]))
