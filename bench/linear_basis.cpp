@@ -5,9 +5,10 @@
 //     build/release/bin/linear_basis SOLUTION.h5 EDGE FINER RAYS LEVEL OUT.h5
 //
 // The first form reads the scene and the views from the solution file. Each run of ihsrr stores its light on a uniform
-// mesh of cells. Their edges have at most EDGE metres on visible patches, and are up to 2^FINER times smaller on patches
-// that the program divides further. All bases and meshes of larger elements are computed from these cells. The second
-// form writes the light of one run on elements of 2^LEVEL cells and prints its errors, for comparison with pictures.
+// mesh of cells. Their edges have at most EDGE metres on visible patches, and are up to 2^FINER times smaller on
+// patches that the program divides further. All bases and meshes of larger elements are computed from these cells. The
+// second form writes the light of one run on elements of 2^LEVEL cells and prints its errors, for comparison with
+// pictures.
 
 #include <interflect/interflect.h>
 
