@@ -133,7 +133,7 @@ def check_pictures(command: program.Program) -> None:
     scale = Scale(size=(320, 180), samples=256)
     reference = Reference(command, subject.name, subject.scene, scale, WORK)
     lines = []
-    for level in (2, 3):
+    for level in (2, 3, 4):
         coarse, picture = WORK / f"level{level}.h5", WORK / "picture.exr"
         arguments = [command.path.with_name("linear_basis"), solved, subject.edge, subject.finer, CHECKED_RAYS, level, coarse]
         printed = subprocess.run([str(a) for a in arguments], capture_output=True, text=True, check=True).stdout
