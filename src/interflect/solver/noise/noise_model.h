@@ -25,6 +25,11 @@ class NoiseModel {
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[hit_rate_class(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
+    /// The same for a part of the mean. @param independent  Its variance for independent rays.
+    float variance_of_part(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e,
+                           float independent) const {
+        return scale_[hit_rate_class(forest, mean, e)] * share_of_own(forest, e) * independent;
+    }
     bool is_known() const { return iterations_ > 1; }
 
     /// Returns the noise variance of the siblings `first` ... `first` + 3 relative to its mean. With few rays, a

@@ -69,6 +69,30 @@ struct RaySet {
     }
 };
 
+/// ContributionUnits with finer squares: the term of importance, which these rays do not carry, holds what rounding
+/// leaves of each square. Payloads of light through a small hole have 1e-19 of the sum of squares of a landscape.
+class PayloadUnits {
+  public:
+    /// @param rays  Upper bound of the contributions.
+    PayloadUnits(const PayloadTotals& all, double max_deposits, double rays)
+        : units_(all, max_deposits), remainder_(units_.square.to_number(1) * rays) {}
+
+    Contribution contribution_of(const RgbD& payload) const {
+        Contribution contribution = units_.contribution_of(payload);
+        const double square = std::pow(luminance(payload), 2);
+        contribution[importance_term] = remainder_.from(square - units_.square.to_number(contribution[3]));
+        return contribution;
+    }
+    RgbD power(const Contribution& sum) const { return units_.power.to_colour({sum[0], sum[1], sum[2]}); }
+    double square(const Contribution& sum) const {
+        return units_.square.to_number(sum[3]) + remainder_.to_number(sum[importance_term]);
+    }
+
+  private:
+    ContributionUnits units_;
+    FixedPoint remainder_;
+};
+
 std::uint32_t leaf_within(const ElementForest& forest, std::uint32_t e, Place place) {
     return forest.is_leaf(e) ? e : forest.leaf_below(e, forest.cell(e), place.parameters());
 }
@@ -99,13 +123,15 @@ class KeptRays : public IterationMethod {
     void shoot(SolverState& state, const RayPlan& plan);
     /// Sets the solution by all rays.
     void receive_again(SolverState& state);
-    /// Light by the rays from `first` on. They carry the radiosity for which the quotas were planned: a new one may
-    /// exceed it many times on elements with few rays.
-    Estimate received(SolverState& state, std::size_t first, const Quotas& quotas) const;
+    /// Light by the new rays, and by the kept rays of paused sources.
+    Estimate fresh_estimate(SolverState& state, const Quotas& growth) const;
+    /// Light by rays [first, last) of the sources with quotas. They carry the radiosity for which the quotas were
+    /// planned: a new one may exceed it many times on elements with few rays.
+    Estimate received(SolverState& state, std::size_t first, std::size_t last, const Quotas& quotas) const;
     /// Adds payloads to state.contributions; returns the escaped power.
-    RgbD scatter(SolverState& state, std::size_t first, const std::vector<RgbD>& payload,
-                 const ContributionUnits& units) const;
-    static Estimate collect(SolverState& state, const ContributionUnits& units);
+    RgbD scatter(SolverState& state, std::size_t first, std::size_t last, const std::vector<RgbD>& payload,
+                 const PayloadUnits& units) const;
+    static Estimate collect(SolverState& state, const PayloadUnits& units);
 
     Passes passes_;
     RaySet set_;
@@ -182,7 +208,19 @@ Estimate KeptRays::trace(SolverState& state, IterationPlan& plan) {
     for (std::size_t s = 0; s < q.size(); ++s) q[s] = static_cast<float>(next_quotas_[s] - quotas_[s]);
     shoot(state, power.plan);
     state.power_rays += rays;
-    return received(state, merged_, Quotas(q.begin(), q.end()));
+    return fresh_estimate(state, Quotas(q.begin(), q.end()));
+}
+
+Estimate KeptRays::fresh_estimate(SolverState& state, const Quotas& growth) const {
+    Estimate fresh = received(state, merged_, set_.size(), growth);
+    Quotas paused = quotas_;
+    for (std::size_t s = 0; s < paused.size(); ++s)
+        if (growth[s] > 0) paused[s] = 0;
+    if (std::none_of(paused.begin(), paused.end(), [](double quota) { return quota > 0; })) return fresh;
+    Estimate shared = received(state, 0, merged_, paused);
+    for (std::size_t e = 0; e < fresh.irradiance.size(); ++e) fresh.irradiance[e] += shared.irradiance[e];
+    fresh.shared_variance = std::move(shared.variance);
+    return fresh;
 }
 
 void KeptRays::drop_rays_of_parts(const SolverState& state) {
@@ -274,7 +312,7 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
                                         [](const KeptRay& ray) { return ray.receiver == none; });
 }
 
-Estimate KeptRays::received(SolverState& state, std::size_t first, const Quotas& quotas) const {
+Estimate KeptRays::received(SolverState& state, std::size_t first, std::size_t last, const Quotas& quotas) const {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, reflected_);
     std::vector<RgbD> payload(quotas.size(), RgbD(0));  // by source
@@ -289,15 +327,15 @@ Estimate KeptRays::received(SolverState& state, std::size_t first, const Quotas&
         totals.square += std::pow(luminance(power), 2) / quotas[s];
     }
     constexpr double margin = 0x1p12;  // numbers of rays from parts of divided leaves vary
-    const ContributionUnits units(totals, margin);
-    const RgbD escaped = scatter(state, first, payload, units);
+    const PayloadUnits units(totals, margin, static_cast<double>(std::max<std::size_t>(1, last - first)));
+    const RgbD escaped = scatter(state, first, last, payload, units);
     Estimate estimate = collect(state, units);
     estimate.escaped_power = escaped - state.emission.repeated_power();
     return estimate;
 }
 
-RgbD KeptRays::scatter(SolverState& state, std::size_t first, const std::vector<RgbD>& payload,
-                       const ContributionUnits& units) const {
+RgbD KeptRays::scatter(SolverState& state, std::size_t first, std::size_t last, const std::vector<RgbD>& payload,
+                       const PayloadUnits& units) const {
     const std::uint32_t elements = state.forest->size();
     std::vector<Contribution> contribution(payload.size());
     for (std::size_t s = 0; s < payload.size(); ++s) contribution[s] = units.contribution_of(payload[s]);
@@ -305,38 +343,39 @@ RgbD KeptRays::scatter(SolverState& state, std::size_t first, const std::vector<
     sums.begin_step(elements);
     using ScatterBuffer = ContributionSums::ScatterBuffer;
     PerThread<ScatterBuffer> buffers([&] { return ScatterBuffer(sums); });
-    FixedPoint::Value escaped{};
-    parallel_for_ranges(set_.size() - first, rays_per_task, [&](std::size_t begin, std::size_t end) {
+    Contribution escaped{};
+    parallel_for_ranges(last - first, rays_per_task, [&](std::size_t begin, std::size_t end) {
         ScatterBuffer& buffer = buffers.local();
-        FixedPoint::Value escaped_here{};
+        Contribution escaped_here{};
         for (std::size_t i = first + begin; i < first + end; ++i) {
             const std::size_t source = set_.source(i, elements);
+            if (payload[source] == RgbD(0)) continue;
             const Contribution power = (set_.kind[i] & RaySet::behind_pane) != 0
                                            ? units.contribution_of(payload[source] * RgbD(set_.transmittance[i]))
                                            : contribution[source];
             if (set_.rays[i].receiver == none)
-                for (std::size_t c = 0; c < 3; ++c) escaped_here[c] += power[c];
+                for (std::size_t c = 0; c < power.size(); ++c) escaped_here[c] += power[c];
             else
-                buffer.add(set_.rays[i].receiver, buffer.add_payload(power), ScatterBuffer::Terms::power);
+                buffer.add(set_.rays[i].receiver, buffer.add_payload(power), ScatterBuffer::Terms::both);
         }
         buffer.release_payloads();
-        add_concurrently(escaped, escaped_here);
+        for (std::size_t c = 0; c < escaped.size(); ++c) add_concurrently(escaped[c], escaped_here[c]);
     });
     for (ScatterBuffer& buffer : buffers) buffer.flush_all();
-    return units.power.to_colour(escaped);
+    return units.power(escaped);
 }
 
-Estimate KeptRays::collect(SolverState& state, const ContributionUnits& units) {
+Estimate KeptRays::collect(SolverState& state, const PayloadUnits& units) {
     const ElementForest& forest = *state.forest;
     Estimate estimate;
     estimate.irradiance.resize(forest.size());
     estimate.variance.resize(forest.size());
     parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            const auto [red, green, blue, square, importance] = state.contributions.take(e);
+            const Contribution sum = state.contributions.take(e);
             const float area = forest.area(e);
-            estimate.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
-            estimate.variance[e] = static_cast<float>(units.square.to_number(square) / area / area);
+            estimate.irradiance[e] = Rgb(units.power(sum)) / area;
+            estimate.variance[e] = static_cast<float>(units.square(sum) / area / area);
         }
     });
     pull(forest, estimate.irradiance), pull_variance(forest, estimate.variance);
@@ -355,7 +394,7 @@ void KeptRays::merge(SolverState& state, const Estimate& estimate, const Iterati
 }
 
 void KeptRays::receive_again(SolverState& state) {
-    Estimate total = received(state, 0, quotas_);
+    Estimate total = received(state, 0, set_.size(), quotas_);
     state.history.assign(state.forest->size(), static_cast<float>(all_rays_));
     state.noise.set_variance(total.variance, state.history);
     state.solution.irradiance = std::move(total.irradiance);
