@@ -46,9 +46,10 @@ class NoiseModel {
     void add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
-    /// Takes the variance of independent rays from a mean with known variance. @param history  Its rays.
-    void set_variance(std::span<const float> variance, std::span<const float> history) {
-        for (std::size_t e = 0; e < per_ray_.size(); ++e) per_ray_[e] = history[e] * variance[e];
+    /// Takes the variance of independent rays from a mean with known variance, for elements from `first` on.
+    /// @param history  Its rays.
+    void set_variance(std::span<const float> variance, std::span<const float> history, std::uint32_t first = 0) {
+        for (std::size_t e = first; e < per_ray_.size(); ++e) per_ray_[e] = history[e] * variance[e];
     }
 
     void shrink(std::size_t size) { per_ray_.resize(size); }

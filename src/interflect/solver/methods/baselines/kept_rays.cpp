@@ -73,9 +73,8 @@ struct RaySet {
 /// leaves of each square. Payloads of light through a small hole have 1e-19 of the sum of squares of a landscape.
 class PayloadUnits {
   public:
-    /// @param rays  Upper bound of the contributions.
-    PayloadUnits(const PayloadTotals& all, double max_deposits, double rays)
-        : units_(all, max_deposits), remainder_(units_.square.to_number(1) * rays) {}
+    PayloadUnits(const PayloadTotals& all, std::size_t rays)
+        : units_(all, /*max_deposits=*/1), remainder_(units_.square.to_number(1) * static_cast<double>(rays)) {}
 
     Contribution contribution_of(const RgbD& payload) const {
         Contribution contribution = units_.contribution_of(payload);
@@ -121,16 +120,21 @@ class KeptRays : public IterationMethod {
     /// Divides quotas with their leaves, and replaces these in rays.
     void follow_forest(const ElementForest& forest);
     void shoot(SolverState& state, const RayPlan& plan);
-    /// Sets the solution by all rays.
-    void receive_again(SolverState& state);
+    /// Sets the light of the elements from `first` on by all rays.
+    void receive_again(SolverState& state, std::uint32_t first = 0);
     /// Light by the new rays, and by the kept rays of paused sources.
     Estimate fresh_estimate(SolverState& state, const Quotas& growth) const;
-    /// Light by rays [first, last) of the sources with quotas. They carry the radiosity for which the quotas were
-    /// planned: a new one may exceed it many times on elements with few rays.
-    Estimate received(SolverState& state, std::size_t first, std::size_t last, const Quotas& quotas) const;
+    struct Range {
+        std::size_t begin, end;
+    };
+    /// Light by these rays of the sources with quotas, on the elements from `first` on. They carry the radiosity for
+    /// which the quotas were planned: a new one may exceed it many times on elements with few rays.
+    Estimate received(SolverState& state, Range rays, const Quotas& quotas, std::uint32_t first = 0) const;
+    /// Returns the numbers of rays of the sources, which differ from quotas.
+    std::vector<std::int64_t> count_rays(Range rays, std::size_t sources) const;
     /// Adds payloads to state.contributions; returns the escaped power.
-    RgbD scatter(SolverState& state, std::size_t first, std::size_t last, const std::vector<RgbD>& payload,
-                 const PayloadUnits& units) const;
+    RgbD scatter(SolverState& state, Range rays, const std::vector<RgbD>& payload, const PayloadUnits& units,
+                 std::uint32_t first) const;
     static Estimate collect(SolverState& state, const PayloadUnits& units);
 
     Passes passes_;
@@ -212,12 +216,12 @@ Estimate KeptRays::trace(SolverState& state, IterationPlan& plan) {
 }
 
 Estimate KeptRays::fresh_estimate(SolverState& state, const Quotas& growth) const {
-    Estimate fresh = received(state, merged_, set_.size(), growth);
+    Estimate fresh = received(state, {merged_, set_.size()}, growth);
     Quotas paused = quotas_;
     for (std::size_t s = 0; s < paused.size(); ++s)
         if (growth[s] > 0) paused[s] = 0;
     if (std::none_of(paused.begin(), paused.end(), [](double quota) { return quota > 0; })) return fresh;
-    Estimate shared = received(state, 0, merged_, paused);
+    Estimate shared = received(state, {0, merged_}, paused);
     for (std::size_t e = 0; e < fresh.irradiance.size(); ++e) fresh.irradiance[e] += shared.irradiance[e];
     fresh.shared_variance = std::move(shared.variance);
     return fresh;
@@ -312,9 +316,10 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
                                         [](const KeptRay& ray) { return ray.receiver == none; });
 }
 
-Estimate KeptRays::received(SolverState& state, std::size_t first, std::size_t last, const Quotas& quotas) const {
+Estimate KeptRays::received(SolverState& state, Range rays, const Quotas& quotas, std::uint32_t first) const {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, reflected_);
+    const std::vector<std::int64_t> count = count_rays(rays, quotas.size());
     std::vector<RgbD> payload(quotas.size(), RgbD(0));  // by source
     PayloadTotals totals;
     for (std::uint32_t s = 0; s < quotas.size(); ++s) {
@@ -323,19 +328,30 @@ Estimate KeptRays::received(SolverState& state, std::size_t first, std::size_t l
         const RgbD power = is_leaf ? RgbD(light.of(forest, s)) * static_cast<double>(forest.area(s))
                                    : state.emission.power(s - forest.size());
         payload[s] = power / quotas[s];
-        totals.power += power;
-        totals.square += std::pow(luminance(power), 2) / quotas[s];
+        totals.power += static_cast<double>(count[s]) * payload[s];
+        totals.square += static_cast<double>(count[s]) * std::pow(luminance(payload[s]), 2);
     }
-    constexpr double margin = 0x1p12;  // numbers of rays from parts of divided leaves vary
-    const PayloadUnits units(totals, margin, static_cast<double>(std::max<std::size_t>(1, last - first)));
-    const RgbD escaped = scatter(state, first, last, payload, units);
+    const PayloadUnits units(totals, rays.end - rays.begin);
+    const RgbD escaped = scatter(state, rays, payload, units, first);
     Estimate estimate = collect(state, units);
     estimate.escaped_power = escaped - state.emission.repeated_power();
     return estimate;
 }
 
-RgbD KeptRays::scatter(SolverState& state, std::size_t first, std::size_t last, const std::vector<RgbD>& payload,
-                       const PayloadUnits& units) const {
+std::vector<std::int64_t> KeptRays::count_rays(Range rays, std::size_t sources) const {
+    std::vector<std::int64_t> count(sources, 0);
+    parallel_for_ranges(rays.end - rays.begin, rays_per_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = rays.begin + begin; i < rays.begin + end;) {
+            const std::size_t first = i, source = set_.source(i, elements_);
+            while (i < rays.begin + end && set_.source(i, elements_) == source) ++i;
+            add_concurrently(count[source], static_cast<std::int64_t>(i - first));
+        }
+    });
+    return count;
+}
+
+RgbD KeptRays::scatter(SolverState& state, Range rays, const std::vector<RgbD>& payload, const PayloadUnits& units,
+                       std::uint32_t first) const {
     const std::uint32_t elements = state.forest->size();
     std::vector<Contribution> contribution(payload.size());
     for (std::size_t s = 0; s < payload.size(); ++s) contribution[s] = units.contribution_of(payload[s]);
@@ -344,10 +360,11 @@ RgbD KeptRays::scatter(SolverState& state, std::size_t first, std::size_t last, 
     using ScatterBuffer = ContributionSums::ScatterBuffer;
     PerThread<ScatterBuffer> buffers([&] { return ScatterBuffer(sums); });
     Contribution escaped{};
-    parallel_for_ranges(last - first, rays_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(rays.end - rays.begin, rays_per_task, [&](std::size_t begin, std::size_t end) {
         ScatterBuffer& buffer = buffers.local();
         Contribution escaped_here{};
-        for (std::size_t i = first + begin; i < first + end; ++i) {
+        for (std::size_t i = rays.begin + begin; i < rays.begin + end; ++i) {
+            if (set_.rays[i].receiver < first) continue;
             const std::size_t source = set_.source(i, elements);
             if (payload[source] == RgbD(0)) continue;
             const Contribution power = (set_.kind[i] & RaySet::behind_pane) != 0
@@ -393,23 +410,25 @@ void KeptRays::merge(SolverState& state, const Estimate& estimate, const Iterati
     receive_again(state);
 }
 
-void KeptRays::receive_again(SolverState& state) {
-    Estimate total = received(state, 0, set_.size(), quotas_);
+void KeptRays::receive_again(SolverState& state, std::uint32_t first) {
+    Estimate total = received(state, {0, set_.size()}, quotas_, first);
     state.history.assign(state.forest->size(), static_cast<float>(all_rays_));
-    state.noise.set_variance(total.variance, state.history);
-    state.solution.irradiance = std::move(total.irradiance);
+    state.noise.set_variance(total.variance, state.history, first);
+    std::copy(total.irradiance.begin() + first, total.irradiance.end(), state.solution.irradiance.begin() + first);
+    pull(*state.forest, state.solution.irradiance);
     state.escaped_power = total.escaped_power;
 }
 
 void KeptRays::refine(SolverState& state) {
     constexpr int rounds = 2;
     if (!refines_by_variance(state.options) || !state.noise.is_known()) return;
-    // Rays give the light of new elements, too.
+    // Rays give the light of new elements, too. The others keep theirs, because parts of a source have its payload.
     for (int i = 0; i < rounds; ++i) {
+        const std::uint32_t first = elements_;
         refine_by_variance(state);
-        if (state.forest->size() == elements_) return;
+        if (state.forest->size() == first) return;
         follow_forest(*state.forest);
-        receive_again(state);
+        receive_again(state, first);
     }
 }
 
