@@ -25,8 +25,9 @@ double measured_signal(const SolverState& state, const Estimate& fresh, std::uin
         product += static_cast<double>(forest.area(e) * difference(state.solution.irradiance, e) *
                                        difference(fresh.irradiance, e));
         if (!fresh.shared_variance.empty())
-            product -= static_cast<double>(forest.area(e) * state.noise.variance_of_part(forest, state.solution.irradiance, e,
-                                                                             fresh.shared_variance[e]));
+            product -=
+                static_cast<double>(forest.area(e) * state.noise.variance_of_part(forest, state.solution.irradiance, e,
+                                                                                  fresh.shared_variance[e]));
         area += forest.area(e);
     }
     return product / area;
