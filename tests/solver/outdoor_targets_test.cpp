@@ -97,10 +97,16 @@ double power_on_floor(const Solution& solution) {
     return sum;
 }
 
-class SmallHole : public testing::TestWithParam<std::tuple<Source, std::string>> {
+class SmallHole : public testing::TestWithParam<std::tuple<Source, std::string, bool>> {
   protected:
     const Source source = std::get<0>(GetParam());
     const std::string method = std::get<1>(GetParam());
+
+    SolveOptions options(std::uint64_t seed) const {
+        SolveOptions o = options_of(seed, method);
+        o.experimental.clusters = std::get<2>(GetParam());
+        return o;
+    }
 };
 
 TEST_P(SmallHole, LetsLightInWithoutBias) {
@@ -110,7 +116,7 @@ TEST_P(SmallHole, LetsLightInWithoutBias) {
     std::vector<double> found;
     double mean = 0, square = 0;
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-        found.push_back(power_on_floor(solve(scene, ray_caster, options_of(seed, method))) / source.expected);
+        found.push_back(power_on_floor(solve(scene, ray_caster, options(seed))) / source.expected);
         mean += found.back() / runs, square += found.back() * found.back() / runs;
     }
     constexpr double integration_error = 2e-3;
@@ -121,14 +127,18 @@ TEST_P(SmallHole, LetsLightInWithoutBias) {
 /// Light that is aimed at the hole counts once in the emitted and the escaped power.
 TEST_P(SmallHole, LosesNoPower) {
     const Scene scene = room_in_a_landscape(source.luminaire);
-    const Solution solution = solve(scene, RayCaster(scene), options_of(1, method));
+    const Solution solution = solve(scene, RayCaster(scene), options(1));
     const PowerBalance balance = power_balance(scene, solution);
     EXPECT_NEAR(channel_sum(RgbD(balance.absorbed + balance.escaped)) / channel_sum(balance.emitted), 1, 0.01);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SmallHole,
-                         testing::Combine(testing::ValuesIn(sources()), testing::Values("ihsrr", "ihwdrs")),
-                         [](const auto& test) { return std::get<0>(test.param).name + "_" + std::get<1>(test.param); });
+                         testing::Combine(testing::ValuesIn(sources()), testing::Values("ihsrr", "ihwdrs"),
+                                          testing::Bool()),
+                         [](const auto& test) {
+                             return std::get<0>(test.param).name + "_" + std::get<1>(test.param) +
+                                    (std::get<2>(test.param) ? "_clusters" : "");
+                         });
 
 TEST(Targets, EndWhereLinesComeTogether) {
     const Imath::Box3f scene_box(V3f(-500, -500, 0), V3f(500, 500, 20));
