@@ -174,8 +174,8 @@ TEST(Targets, AreNoneForAnOpenPlain) {
     EXPECT_LE(find_targets(lines, std::vector<double>(lines.size(), 1.0), scene_box).size(), 4u);
 }
 
-/// The room has 1e-10 of the light of a landscape of 16 km, and 1e-22 of the sum of squared payloads. All kept rays are
-/// summed in one unit. Seen to fail if the unit is 2^12 times as large, or if squares are rounded to it.
+/// The room has 1e-10 of the light of a landscape of 16 km, and 1e-22 of the sum of squared payloads. Seen to fail with
+/// a unit 2^12 times as large, and with rounded squares.
 TEST(KeptRays, SumTheLightOfASmallHoleInAWideLandscape) {
     constexpr int runs = 16;
     const Source disc = sources()[2];

@@ -69,8 +69,8 @@ struct RaySet {
     }
 };
 
-/// ContributionUnits with finer squares: the term of importance, which these rays do not carry, holds what rounding
-/// leaves of each square. Payloads of light through a small hole have 1e-19 of the sum of squares of a landscape.
+/// ContributionUnits with finer squares. Kept rays carry no importance, so its term holds the rounding errors of the
+/// squares. The squared payload of light through a small hole is 1e-19 of the sum for a landscape.
 class PayloadUnits {
   public:
     PayloadUnits(const PayloadTotals& all, std::size_t rays)
