@@ -1,12 +1,14 @@
-// Errors after a change of views, and of a new run with as many rays (docs/results.md, Kept rays):
+// Errors after a change of views, and of a new run with as many rays, and the share of the rays that reach the error of
+// the new run after the change, with 95% intervals by the jackknife over seeds (docs/results.md, Kept rays):
 //
 //     build/release/bin/view_change SCENE FROM TO RAYS SEEDS METHOD...
 //
-// FROM and TO are numbers of views; RAYS are traced before the change.
+// FROM and TO are numbers of views; RAYS are traced before the change. At least two seeds.
 
 #include <interflect/interflect.h>
 
 #include <array>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -49,13 +51,26 @@ double square_error(const std::vector<Rgb>& pixels, const std::vector<Rgb>& exac
     return squares * static_cast<double>(pixels.size()) / (sum * sum);
 }
 
-void add_errors(Solver& solver, const View& view, const std::vector<Rgb>& exact, Errors& errors) {
+Errors errors_of(Solver& solver, const View& view, const std::vector<Rgb>& exact) {
+    Errors errors{};
     std::int64_t done = 0;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         solver.advance({.rays = steps[i] - done});
         done = steps[i];
-        errors[i] += square_error(picture(solver, view), exact);
+        errors[i] = square_error(picture(solver, view), exact);
     }
+    return errors;
+}
+
+constexpr std::size_t none = ~std::size_t{0};
+
+/// Returns the mean over seeds without seed `omitted`.
+Errors mean(const std::vector<Errors>& by_seed, std::size_t omitted = none) {
+    Errors sum{};
+    for (std::size_t seed = 0; seed < by_seed.size(); ++seed)
+        for (std::size_t i = 0; i < sum.size() && seed != omitted; ++i) sum[i] += by_seed[seed][i];
+    for (double& e : sum) e /= static_cast<double>(by_seed.size() - (omitted == none ? 0 : 1));
+    return sum;
 }
 
 /// Returns the rays, interpolated between the steps, at which `errors` fall to `target`; NaN outside of them.
@@ -65,6 +80,30 @@ double rays_to(double target, const Errors& errors) {
             return static_cast<double>(steps[i]) *
                    std::exp2(std::log(errors[i] / target) / std::log(errors[i] / errors[i + 1]));
     return std::nan("");
+}
+
+/// Share of the rays with its interval; NaN where it is unknown.
+struct Share {
+    double value, low, high;
+};
+
+/// The logarithm is taken to be normal, with the variance that leaving out one seed at a time gives.
+Share share_of_rays(std::size_t step, const std::vector<Errors>& of_new_run, const std::vector<Errors>& after_change) {
+    const auto log_share = [&](std::size_t omitted) {
+        return std::log(rays_to(mean(of_new_run, omitted)[step], mean(after_change, omitted)) /
+                        static_cast<double>(steps[step]));
+    };
+    const auto seeds = static_cast<double>(of_new_run.size());
+    double sum = 0, squares = 0;
+    for (std::size_t seed = 0; seed < of_new_run.size(); ++seed) {
+        const double without = log_share(seed);
+        sum += without, squares += without * without;
+    }
+    const double error = std::sqrt((squares - sum * sum / seeds) * (seeds - 1) / seeds);
+    constexpr double upper_tail = 0.975;
+    const double half = boost::math::quantile(boost::math::students_t(seeds - 1), upper_tail) * error;
+    const double middle = log_share(none);
+    return {std::exp(middle), std::exp(middle - half), std::exp(middle + half)};
 }
 
 }  // namespace
@@ -82,18 +121,21 @@ int main(int argc, char** argv) {
     reference.advance({.rays = reference_rays});
     const std::vector<Rgb> exact = picture(reference, to);
     for (int i = 6; i < argc; ++i) {
-        Errors of_new_run{}, after_change{};
+        std::vector<Errors> of_new_run, after_change;
         for (int seed = 1; seed <= seeds; ++seed) {
             Solver new_run = setup.solver(argv[i], to, seed), continued = setup.solver(argv[i], from, seed);
-            add_errors(new_run, to, exact, of_new_run);
+            of_new_run.push_back(errors_of(new_run, to, exact));
             continued.advance({.rays = rays});
             continued.set_views({{to}});
-            add_errors(continued, to, exact, after_change);
+            after_change.push_back(errors_of(continued, to, exact));
         }
-        for (std::size_t k = 0; k < steps.size(); ++k)
-            std::printf("%-7s %8lld rays: new run %.2f%%, after the change %.2f%%, share of the rays %.2f\n", argv[i],
-                        static_cast<long long>(steps[k]), 100 * std::sqrt(of_new_run[k] / seeds),
-                        100 * std::sqrt(after_change[k] / seeds),
-                        rays_to(of_new_run[k], after_change) / static_cast<double>(steps[k]));
+        for (std::size_t k = 0; k < steps.size(); ++k) {
+            const Share share = share_of_rays(k, of_new_run, after_change);
+            std::printf(
+                "%-7s %8lld rays: new run %.2f%%, after the change %.2f%%, share of the rays %.2f (%.2f to %.2f)\n",
+                argv[i], static_cast<long long>(steps[k]), 100 * std::sqrt(mean(of_new_run)[k]),
+                100 * std::sqrt(mean(after_change)[k]), share.value, share.low, share.high);
+        }
+        std::fflush(stdout);
     }
 }

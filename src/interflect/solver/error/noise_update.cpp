@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns the mean of y z over siblings (docs/method.md, Errors).
+/// Returns the mean of y z over siblings (docs/method.md, Errors), less the noise of rays that both have.
 double measured_signal(const SolverState& state, const Estimate& fresh, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t parent = forest.parent(first);
@@ -24,6 +24,10 @@ double measured_signal(const SolverState& state, const Estimate& fresh, std::uin
     for (std::uint32_t e = first; e < first + 4; ++e) {
         product += static_cast<double>(forest.area(e) * difference(state.solution.irradiance, e) *
                                        difference(fresh.irradiance, e));
+        if (!fresh.shared_variance.empty())
+            product -=
+                static_cast<double>(forest.area(e) * state.noise.variance_of_part(forest, state.solution.irradiance, e,
+                                                                                  fresh.shared_variance[e]));
         area += forest.area(e);
     }
     return product / area;

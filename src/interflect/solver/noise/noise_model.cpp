@@ -58,7 +58,9 @@ void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::sp
                     difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
                 const double w = weight(e);
                 const std::size_t n = hit_rate_class(forest, mean, e);
-                const float independent = (rays * per_ray_[e] + m * rays * fresh.variance[e]) / (rays + m);
+                const float shared = fresh.shared_variance.empty() ? 0 : m * fresh.shared_variance[e],
+                            independent = (rays * std::max(0.0f, per_ray_[e] - shared) + m * rays * fresh.variance[e]) /
+                                          (rays + m);
                 sum.observed[n] += w * static_cast<double>(difference) * difference * (rays * m / (rays + m));
                 sum.independent[n] += w * static_cast<double>(share_of_own(forest, e) * independent);
             }

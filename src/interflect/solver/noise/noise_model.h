@@ -25,6 +25,11 @@ class NoiseModel {
     float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
         return scale_[hit_rate_class(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
+    /// The same for a part of the mean. @param independent  Its variance for independent rays.
+    float variance_of_part(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e,
+                           float independent) const {
+        return scale_[hit_rate_class(forest, mean, e)] * share_of_own(forest, e) * independent;
+    }
     bool is_known() const { return iterations_ > 1; }
 
     /// Returns the noise variance of the siblings `first` ... `first` + 3 relative to its mean. With few rays, a
@@ -41,9 +46,10 @@ class NoiseModel {
     void add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
 
-    /// Takes the variance of independent rays from a mean with known variance. @param history  Its rays.
-    void set_variance(std::span<const float> variance, std::span<const float> history) {
-        for (std::size_t e = 0; e < per_ray_.size(); ++e) per_ray_[e] = history[e] * variance[e];
+    /// Takes the variance of independent rays from a mean with known variance, for elements from `first` on.
+    /// @param history  Its rays.
+    void set_variance(std::span<const float> variance, std::span<const float> history, std::uint32_t first = 0) {
+        for (std::size_t e = first; e < per_ray_.size(); ++e) per_ray_[e] = history[e] * variance[e];
     }
 
     void shrink(std::size_t size) { per_ray_.resize(size); }

@@ -69,6 +69,29 @@ struct RaySet {
     }
 };
 
+/// ContributionUnits with finer squares. Kept rays carry no importance, so its term holds the rounding errors of the
+/// squares. The squared payload of light through a small hole is 1e-19 of the sum for a landscape.
+class PayloadUnits {
+  public:
+    PayloadUnits(const PayloadTotals& all, std::size_t rays)
+        : units_(all, /*max_deposits=*/1), remainder_(units_.square.to_number(1) * static_cast<double>(rays)) {}
+
+    Contribution contribution_of(const RgbD& payload) const {
+        Contribution contribution = units_.contribution_of(payload);
+        const double square = std::pow(luminance(payload), 2);
+        contribution[importance_term] = remainder_.from(square - units_.square.to_number(contribution[3]));
+        return contribution;
+    }
+    RgbD power(const Contribution& sum) const { return units_.power.to_colour({sum[0], sum[1], sum[2]}); }
+    double square(const Contribution& sum) const {
+        return units_.square.to_number(sum[3]) + remainder_.to_number(sum[importance_term]);
+    }
+
+  private:
+    ContributionUnits units_;
+    FixedPoint remainder_;
+};
+
 std::uint32_t leaf_within(const ElementForest& forest, std::uint32_t e, Place place) {
     return forest.is_leaf(e) ? e : forest.leaf_below(e, forest.cell(e), place.parameters());
 }
@@ -97,15 +120,22 @@ class KeptRays : public IterationMethod {
     /// Divides quotas with their leaves, and replaces these in rays.
     void follow_forest(const ElementForest& forest);
     void shoot(SolverState& state, const RayPlan& plan);
-    /// Sets the solution by all rays.
-    void receive_again(SolverState& state);
-    /// Light by the rays from `first` on. They carry the radiosity for which the quotas were planned: a new one may
-    /// exceed it many times on elements with few rays.
-    Estimate received(SolverState& state, std::size_t first, const Quotas& quotas) const;
+    /// Sets the light of the elements from `first` on by all rays.
+    void receive_again(SolverState& state, std::uint32_t first = 0);
+    /// Light by the new rays, and by the kept rays of paused sources.
+    Estimate fresh_estimate(SolverState& state, const Quotas& growth) const;
+    struct Range {
+        std::size_t begin, end;
+    };
+    /// Light by these rays of the sources with quotas, on the elements from `first` on. They carry the radiosity for
+    /// which the quotas were planned: a new one may exceed it many times on elements with few rays.
+    Estimate received(SolverState& state, Range rays, const Quotas& quotas, std::uint32_t first = 0) const;
+    /// Returns the numbers of rays of the sources, which differ from quotas.
+    std::vector<std::int64_t> count_rays(Range rays, std::size_t sources) const;
     /// Adds payloads to state.contributions; returns the escaped power.
-    RgbD scatter(SolverState& state, std::size_t first, const std::vector<RgbD>& payload,
-                 const ContributionUnits& units) const;
-    static Estimate collect(SolverState& state, const ContributionUnits& units);
+    RgbD scatter(SolverState& state, Range rays, const std::vector<RgbD>& payload, const PayloadUnits& units,
+                 std::uint32_t first) const;
+    static Estimate collect(SolverState& state, const PayloadUnits& units);
 
     Passes passes_;
     RaySet set_;
@@ -182,7 +212,19 @@ Estimate KeptRays::trace(SolverState& state, IterationPlan& plan) {
     for (std::size_t s = 0; s < q.size(); ++s) q[s] = static_cast<float>(next_quotas_[s] - quotas_[s]);
     shoot(state, power.plan);
     state.power_rays += rays;
-    return received(state, merged_, Quotas(q.begin(), q.end()));
+    return fresh_estimate(state, Quotas(q.begin(), q.end()));
+}
+
+Estimate KeptRays::fresh_estimate(SolverState& state, const Quotas& growth) const {
+    Estimate fresh = received(state, {merged_, set_.size()}, growth);
+    Quotas paused = quotas_;
+    for (std::size_t s = 0; s < paused.size(); ++s)
+        if (growth[s] > 0) paused[s] = 0;
+    if (std::none_of(paused.begin(), paused.end(), [](double quota) { return quota > 0; })) return fresh;
+    Estimate shared = received(state, {0, merged_}, paused);
+    for (std::size_t e = 0; e < fresh.irradiance.size(); ++e) fresh.irradiance[e] += shared.irradiance[e];
+    fresh.shared_variance = std::move(shared.variance);
+    return fresh;
 }
 
 void KeptRays::drop_rays_of_parts(const SolverState& state) {
@@ -274,9 +316,10 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
                                         [](const KeptRay& ray) { return ray.receiver == none; });
 }
 
-Estimate KeptRays::received(SolverState& state, std::size_t first, const Quotas& quotas) const {
+Estimate KeptRays::received(SolverState& state, Range rays, const Quotas& quotas, std::uint32_t first) const {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, reflected_);
+    const std::vector<std::int64_t> count = count_rays(rays, quotas.size());
     std::vector<RgbD> payload(quotas.size(), RgbD(0));  // by source
     PayloadTotals totals;
     for (std::uint32_t s = 0; s < quotas.size(); ++s) {
@@ -285,19 +328,30 @@ Estimate KeptRays::received(SolverState& state, std::size_t first, const Quotas&
         const RgbD power = is_leaf ? RgbD(light.of(forest, s)) * static_cast<double>(forest.area(s))
                                    : state.emission.power(s - forest.size());
         payload[s] = power / quotas[s];
-        totals.power += power;
-        totals.square += std::pow(luminance(power), 2) / quotas[s];
+        totals.power += static_cast<double>(count[s]) * payload[s];
+        totals.square += static_cast<double>(count[s]) * std::pow(luminance(payload[s]), 2);
     }
-    constexpr double margin = 0x1p12;  // numbers of rays from parts of divided leaves vary
-    const ContributionUnits units(totals, margin);
-    const RgbD escaped = scatter(state, first, payload, units);
+    const PayloadUnits units(totals, rays.end - rays.begin);
+    const RgbD escaped = scatter(state, rays, payload, units, first);
     Estimate estimate = collect(state, units);
     estimate.escaped_power = escaped - state.emission.repeated_power();
     return estimate;
 }
 
-RgbD KeptRays::scatter(SolverState& state, std::size_t first, const std::vector<RgbD>& payload,
-                       const ContributionUnits& units) const {
+std::vector<std::int64_t> KeptRays::count_rays(Range rays, std::size_t sources) const {
+    std::vector<std::int64_t> count(sources, 0);
+    parallel_for_ranges(rays.end - rays.begin, rays_per_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = rays.begin + begin; i < rays.begin + end;) {
+            const std::size_t first = i, source = set_.source(i, elements_);
+            while (i < rays.begin + end && set_.source(i, elements_) == source) ++i;
+            add_concurrently(count[source], static_cast<std::int64_t>(i - first));
+        }
+    });
+    return count;
+}
+
+RgbD KeptRays::scatter(SolverState& state, Range rays, const std::vector<RgbD>& payload, const PayloadUnits& units,
+                       std::uint32_t first) const {
     const std::uint32_t elements = state.forest->size();
     std::vector<Contribution> contribution(payload.size());
     for (std::size_t s = 0; s < payload.size(); ++s) contribution[s] = units.contribution_of(payload[s]);
@@ -305,38 +359,40 @@ RgbD KeptRays::scatter(SolverState& state, std::size_t first, const std::vector<
     sums.begin_step(elements);
     using ScatterBuffer = ContributionSums::ScatterBuffer;
     PerThread<ScatterBuffer> buffers([&] { return ScatterBuffer(sums); });
-    FixedPoint::Value escaped{};
-    parallel_for_ranges(set_.size() - first, rays_per_task, [&](std::size_t begin, std::size_t end) {
+    Contribution escaped{};
+    parallel_for_ranges(rays.end - rays.begin, rays_per_task, [&](std::size_t begin, std::size_t end) {
         ScatterBuffer& buffer = buffers.local();
-        FixedPoint::Value escaped_here{};
-        for (std::size_t i = first + begin; i < first + end; ++i) {
+        Contribution escaped_here{};
+        for (std::size_t i = rays.begin + begin; i < rays.begin + end; ++i) {
+            if (set_.rays[i].receiver < first) continue;
             const std::size_t source = set_.source(i, elements);
+            if (payload[source] == RgbD(0)) continue;
             const Contribution power = (set_.kind[i] & RaySet::behind_pane) != 0
                                            ? units.contribution_of(payload[source] * RgbD(set_.transmittance[i]))
                                            : contribution[source];
             if (set_.rays[i].receiver == none)
-                for (std::size_t c = 0; c < 3; ++c) escaped_here[c] += power[c];
+                for (std::size_t c = 0; c < power.size(); ++c) escaped_here[c] += power[c];
             else
-                buffer.add(set_.rays[i].receiver, buffer.add_payload(power), ScatterBuffer::Terms::power);
+                buffer.add(set_.rays[i].receiver, buffer.add_payload(power), ScatterBuffer::Terms::both);
         }
         buffer.release_payloads();
-        add_concurrently(escaped, escaped_here);
+        for (std::size_t c = 0; c < escaped.size(); ++c) add_concurrently(escaped[c], escaped_here[c]);
     });
     for (ScatterBuffer& buffer : buffers) buffer.flush_all();
-    return units.power.to_colour(escaped);
+    return units.power(escaped);
 }
 
-Estimate KeptRays::collect(SolverState& state, const ContributionUnits& units) {
+Estimate KeptRays::collect(SolverState& state, const PayloadUnits& units) {
     const ElementForest& forest = *state.forest;
     Estimate estimate;
     estimate.irradiance.resize(forest.size());
     estimate.variance.resize(forest.size());
     parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            const auto [red, green, blue, square, importance] = state.contributions.take(e);
+            const Contribution sum = state.contributions.take(e);
             const float area = forest.area(e);
-            estimate.irradiance[e] = Rgb(units.power.to_colour({red, green, blue})) / area;
-            estimate.variance[e] = static_cast<float>(units.square.to_number(square) / area / area);
+            estimate.irradiance[e] = Rgb(units.power(sum)) / area;
+            estimate.variance[e] = static_cast<float>(units.square(sum) / area / area);
         }
     });
     pull(forest, estimate.irradiance), pull_variance(forest, estimate.variance);
@@ -354,23 +410,25 @@ void KeptRays::merge(SolverState& state, const Estimate& estimate, const Iterati
     receive_again(state);
 }
 
-void KeptRays::receive_again(SolverState& state) {
-    Estimate total = received(state, 0, quotas_);
+void KeptRays::receive_again(SolverState& state, std::uint32_t first) {
+    Estimate total = received(state, {0, set_.size()}, quotas_, first);
     state.history.assign(state.forest->size(), static_cast<float>(all_rays_));
-    state.noise.set_variance(total.variance, state.history);
-    state.solution.irradiance = std::move(total.irradiance);
+    state.noise.set_variance(total.variance, state.history, first);
+    std::copy(total.irradiance.begin() + first, total.irradiance.end(), state.solution.irradiance.begin() + first);
+    pull(*state.forest, state.solution.irradiance);
     state.escaped_power = total.escaped_power;
 }
 
 void KeptRays::refine(SolverState& state) {
     constexpr int rounds = 2;
     if (!refines_by_variance(state.options) || !state.noise.is_known()) return;
-    // Rays give the light of new elements, too.
+    // Rays give the light of new elements, too. The others keep theirs, because parts of a source have its payload.
     for (int i = 0; i < rounds; ++i) {
+        const std::uint32_t first = elements_;
         refine_by_variance(state);
-        if (state.forest->size() == elements_) return;
+        if (state.forest->size() == first) return;
         follow_forest(*state.forest);
-        receive_again(state);
+        receive_again(state, first);
     }
 }
 
