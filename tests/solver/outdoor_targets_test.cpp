@@ -184,7 +184,9 @@ TEST(KeptRays, SumTheLightOfASmallHoleInAWideLandscape) {
     std::vector<double> found;
     double mean = 0, square = 0, reported = 0;
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-        const Solution solution = solve(scene, ray_caster, options_of(seed, "ihwdrs"));
+        SolveOptions options = options_of(seed, "ihwdrs");
+        options.experimental.clusters = false;  // the errors of patches would depend on each other
+        const Solution solution = solve(scene, ray_caster, options);
         found.push_back(power_on_floor(solution) / disc.expected);
         mean += found.back() / runs, square += found.back() * found.back() / runs;
         for (std::uint32_t i = 0; i < 20; ++i)
@@ -204,7 +206,7 @@ TEST(Targets, FollowTheViews) {
     const Scene scene = room_in_a_landscape(sources()[1].luminaire);
     for (const char* method : {"ihsrr", "ihwdrs"}) {
         std::vector<double> found;
-        for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        for (std::uint64_t seed = 1; seed <= 12; ++seed) {
             SolveOptions options = options_of(seed, method);
             options.views = {{View{"outside", {-20, -20, 9}, {0, 0, 1}, {0, 0, 1}, 40}}};
             Solver solver(scene, options);
