@@ -41,7 +41,7 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
     lines = []
     for column, scene in enumerate(everywhere):
         runs = [row for row in rows if row["scene"] == scene["scene"]]
-        for row, cost in enumerate(("rays", "seconds")):
+        for row, cost in enumerate(("rays", "processor_seconds")):
             ax = axes[row * len(everywhere) + column]
             for number, method in enumerate(config["methods"]):
                 of_method = [run for run in runs if run["series"] == method["name"]]
@@ -52,14 +52,14 @@ def draw(config: dict, rows: list[Row], folder: Path) -> None:
         for (series, budget), seeds in sorted_runs(runs):
             error = statistics.mean(results.values(seeds, METRIC))
             mean = statistics.mean(results.values(seeds, "ratio_of_means_smooth"))
-            elements, seconds = (results.values(seeds, name).mean() for name in ("elements", "seconds"))
+            elements, seconds = (results.values(seeds, name).mean() for name in ("elements", "processor_seconds"))
             cells = [str(error), str(mean), f"{seconds:.2g}", f"{elements:,.0f}"]
             lines.append([scene["name"], series, f"{budget / 1e6:g} M", *cells])
     drawing.shared_legend(figure, axes[0], 6)
-    caption = f"""Relative mean square error of smooth pictures against rays (top) and solving time (bottom).
+    caption = f"""Relative mean square error of smooth pictures against rays (top) and processor time of `solve` (bottom).
         {config['seeds'][0]} seeds a point; bands are 95% confidence intervals."""
     drawing.save(figure, folder, "methods", caption)
-    header = ["scene", "method", "rays", "relative MSE, smooth", "mean over path", "seconds", "elements"]
+    header = ["scene", "method", "rays", "relative MSE, smooth", "mean over path", "processor time [s]", "elements"]
     results.write_table(folder / "methods.md", header, lines)
 
 

@@ -39,6 +39,7 @@ QUALITIES = [Quality(140), Quality(120), Quality(100), Quality(120, palette=True
 COUNTS = ("rays", "elements")
 LABELS = {
     "seconds": "time of the solver [s]",
+    "processor_seconds": "processor time [s]",
     "rays": "rays",
     "elements": "elements",
     "peak_mib": "peak memory [MiB]",

@@ -18,6 +18,7 @@ _, status, usage = os.wait4(process, 0)
 cost = {
     "exit_code": os.waitstatus_to_exitcode(status),
     "seconds": time.monotonic() - begin,
+    "processor_seconds": usage.ru_utime + usage.ru_stime,
     "peak_mib": usage.ru_maxrss / 1024,  # Linux counts in KiB
 }
 with open(report, "w") as file:

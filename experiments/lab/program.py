@@ -34,6 +34,7 @@ class Finished:
     output: str  # stdout
     messages: str  # stderr
     seconds: float  # wall time, including reading the scene
+    processor_seconds: float  # of all threads
     peak_mib: float  # peak resident memory
 
 
@@ -75,7 +76,7 @@ def run(program: Program, arguments: list[str]) -> Finished:
     if cost["exit_code"] != 0:
         said = "\n".join(messages.splitlines()[-5:])
         raise ExperimentError(f"interflect {' '.join(arguments)}\nended with exit code {cost['exit_code']}:\n{said}")
-    return Finished(output, messages, cost["seconds"], cost["peak_mib"])
+    return Finished(output, messages, cost["seconds"], cost["processor_seconds"], cost["peak_mib"])
 
 
 def read_stats(path: Path) -> tuple[dict, dict]:

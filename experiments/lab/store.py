@@ -14,7 +14,7 @@ from .tasks import SHADINGS, Measure, Picture, Reference, Solve, Task, probe
 
 METRICS = ("relative_mse", "perceptual_distance", "flip", "ratio_of_means")  # keys of `compare --json`
 COLUMNS = (
-    ["series", "scene", "view", "budget", "rays", "seed", "seconds", "elements", "peak_mib"]
+    ["series", "scene", "view", "budget", "rays", "seed", "seconds", "processor_seconds", "elements", "peak_mib"]
     + [f"{metric}_{shading}" for metric in METRICS for shading in SHADINGS]
     + ["picture", "version", "command", "reference", "reference_noise", "machine", "threads"]
 )
@@ -81,6 +81,7 @@ class Store:
             "rays": last["rays"],
             "seed": solve.seed,
             "seconds": last["seconds"],
+            "processor_seconds": round(finished.processor_seconds, 3),
             "elements": last["elements"],
             "peak_mib": round(finished.peak_mib, 1),
             "version": self._program.version,
