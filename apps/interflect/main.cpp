@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/crew.h"
 #include "apps/interflect/machine_memory.h"
 #include "apps/interflect/messages.h"
 #include "apps/interflect/signals.h"
@@ -63,6 +64,13 @@ int run(int argc, char** argv) {
     return exit_code;
 }
 
+struct Dismissal {
+    Dismissal() = default;
+    ~Dismissal() { interflect::command::dismiss_crew(); }
+    Dismissal(const Dismissal&) = delete;
+    Dismissal& operator=(const Dismissal&) = delete;
+};
+
 /// Returns freed large arrays to the system. By default glibc keeps them after the first such free, and fragmentation
 /// then determines the memory in use.
 void return_large_arrays() {
@@ -88,6 +96,11 @@ int main(int argc, char** argv) try {
     handle_signals();
     return_large_arrays();
     interflect::command::log_to_stderr();
+    if (!join_crew()) {
+        serve_crew();
+        return done;
+    }
+    const Dismissal at_the_end;
     return run(argc, argv);
 } catch (const interflect::InputError& e) {
     spdlog::error("{}", e.what());

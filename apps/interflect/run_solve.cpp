@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "apps/interflect/crew.h"
 #include "apps/interflect/leaks.h"
 #include "apps/interflect/machine_memory.h"
 #include "apps/interflect/percent.h"
@@ -144,12 +145,13 @@ Solution run_to_end(Solver solver, const Checkpoints& checkpoints, const EarlyLi
         if (!checkpoints.file.empty()) limits.time = checkpoints.every;
         Limits first = limits;
         if (early_light.use) first.time = std::min(first.time, early_light.after);
-        AdvanceReport report = solver.advance(first, monitor);
+        CrewRun run(solver);
+        AdvanceReport report = run.advance(first, monitor);
         if (early_light.use && !report.is_finished && !report.is_stopped)
-            if (const std::optional<Limits> plan = early_light.use(solver.solution())) solver.set_plan(*plan);
+            if (const std::optional<Limits> plan = early_light.use(solver.solution())) run.set_plan(*plan);
         checkpoints.save(solver);
         while (!report.is_finished && !report.is_stopped) {
-            report = solver.advance(limits, monitor);
+            report = run.advance(limits, monitor);
             checkpoints.save(solver);
         }
     }

@@ -98,12 +98,17 @@ struct Progress {
     const IterationReport* iteration = nullptr;  ///< The last iteration of a run of the solver; null for other work.
 };
 
-/// Progress reports and early termination of long work.
+class Ranks;
+
+/// Progress reports and early termination of long work, and who shares it.
 struct Monitor {
     /// Called on the calling thread: after each iteration of the solver, or several times a second. May be empty.
     std::function<void(const Progress&)> on_progress;
     /// Once true, the work ends within milliseconds. May be set by another thread or a signal handler; may be null.
     const std::atomic<bool>* stop = nullptr;
+    /// Processes that share the work and make the same call; null: this one works alone. `stop` of the first one counts,
+    /// and ends the work after some seconds.
+    Ranks* ranks = nullptr;
 };
 
 /// Thrown if Monitor::stop ends work before it has a usable result. The message names the missing part.

@@ -49,6 +49,15 @@ void ElementForest::require_made_for(const Scene& scene) const {
 
 int ElementForest::level(std::uint32_t e) const { return (std::bit_width(path(e)) - 1) / 2; }
 
+std::uint32_t ElementForest::at_path(std::uint32_t patch, std::uint32_t path) const {
+    std::uint32_t e = patch;
+    for (int digit = (std::bit_width(path) - 1) / 2 - 1; digit >= 0 && e != none; --digit) {
+        const std::uint32_t child = first_child(e);
+        e = child == none ? none : child + (path >> (2 * digit) & 3u);
+    }
+    return e;
+}
+
 Cell ElementForest::cell(std::uint32_t e) const {
     const bool triangle = geometry_[patch(e)].is_triangle();
     const std::uint32_t way = path(e);

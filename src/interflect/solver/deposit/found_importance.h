@@ -20,6 +20,7 @@ class FoundImportance {
 
     /// Thread-safe.
     void add(std::size_t source, double found) { add_concurrently(sums_[source], unit_.from(found)); }
+    std::span<std::int64_t> sums() { return {&sums_[0], sums_.capacity()}; }
     double sum(std::size_t source) const { return unit_.to_number(sums_[source]); }
 
   private:

@@ -62,7 +62,7 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
 
 void SolverState::begin_work(const Monitor& m) {
     monitor = m;
-    stop = StopRequest(m.stop);
+    stop = CommonStop(m.stop, m.ranks);
     start_of_this_call = StopRequest::Clock::now();
 }
 

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "interflect/base/state_archive.h"
+#include "interflect/base/common_stop.h"
+#include "interflect/base/rank_sums.h"
 #include "interflect/base/stop_request.h"
 #include "interflect/elements/forest.h"
 #include "interflect/luminaires/emission.h"
@@ -67,14 +69,16 @@ struct SolverState {
 
     // The work in progress:
     Monitor monitor;
-    StopRequest stop;  // after a first estimate, also by the time limit
+    CommonStop stop;  // after a first estimate, also by the time limit
     StopRequest::Clock::time_point start_of_this_call;
     double earlier_seconds = 0;
 
     void begin_work(const Monitor& m);
     void end_work() { earlier_seconds = seconds(); }
+    /// Of the first rank [s].
     double seconds_of_this_call() const {
-        return std::chrono::duration<double>(StopRequest::Clock::now() - start_of_this_call).count();
+        const std::chrono::duration<double> passed = StopRequest::Clock::now() - start_of_this_call;
+        return of_first_rank(monitor.ranks, passed.count());
     }
     /// Includes earlier calls [s].
     double seconds() const { return earlier_seconds + seconds_of_this_call(); }

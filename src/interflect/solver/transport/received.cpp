@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "interflect/base/parallel.h"
+#include "interflect/base/rank_sums.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {
@@ -17,6 +18,22 @@ class RenumberedSums {
 
     Contribution take(std::uint32_t e) { return sums_.take(number(e)); }
     std::array<std::int64_t, 3> take(std::uint32_t e, std::size_t group) { return sums_.take(number(e), group); }
+    /// Terms of all groups follow one another.
+    std::size_t terms() const { return Contribution().size() + 3 * sums_.groups(); }
+    void take(std::uint32_t e, std::span<std::int64_t> terms) {
+        std::ranges::copy(take(e), terms.begin());
+        for (std::size_t g = 0; g < sums_.groups(); ++g)
+            std::ranges::copy(take(e, g), terms.begin() + static_cast<std::ptrdiff_t>(first_term(g)));
+    }
+    void add(std::uint32_t e, std::span<const std::int64_t> terms) {
+        Contribution contribution;
+        std::copy_n(terms.begin(), contribution.size(), contribution.begin());
+        sums_.add(number(e), contribution);
+        for (std::size_t g = 0; g < sums_.groups(); ++g) {
+            const std::size_t first = first_term(g);
+            sums_.add(number(e), g, {terms[first], terms[first + 1], terms[first + 2]});
+        }
+    }
     void move(std::uint32_t from, std::uint32_t to) {
         sums_.add(number(to), take(from));
         for (std::size_t g = 0; g < sums_.groups(); ++g) sums_.add(number(to), g, take(from, g));
@@ -26,12 +43,20 @@ class RenumberedSums {
     }
 
   private:
+    static std::size_t first_term(std::size_t group) { return Contribution().size() + 3 * group; }
     std::uint32_t number(std::uint32_t e) const { return e < old_size_ ? e : old_numbers_[e - old_size_]; }
 
     ContributionSums& sums_;
     std::uint32_t old_size_;
     std::vector<std::uint32_t> old_numbers_;
 };
+
+void add_contributions(Ranks& ranks, std::size_t elements, RenumberedSums& sums) {
+    add_over_ranks(
+        ranks, elements, sums.terms(),
+        [&](std::size_t e, std::span<std::int64_t> terms) { sums.take(static_cast<std::uint32_t>(e), terms); },
+        [&](std::size_t e, std::span<const std::int64_t> terms) { sums.add(static_cast<std::uint32_t>(e), terms); });
+}
 
 void drop_excess(ElementForest& forest, RenumberedSums& sums, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
@@ -116,8 +141,9 @@ Received nothing_received(const TransportStep& step, std::size_t elements) {
 
 Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_size, const RayAllocation& allocation,
                  const PayloadTotals& payload, const ContributionUnits& units, const FoundImportance* importance,
-                 ContributionSums& sums) {
+                 ContributionSums& sums, Ranks* ranks) {
     RenumberedSums renumbered(sums, old_size, forest.put_in_order(old_size));
+    if (ranks) add_contributions(*ranks, forest.size(), renumbered);
     drop_excess(forest, renumbered, step.oracle.max_elements, old_size);
     Received received;
     step.oracle.importance = std::vector<float>();

@@ -34,10 +34,10 @@ struct Received {
 
 /// Converts contributions to received values and zeroes them. Sorts new elements; drops those beyond the oracle's
 /// limit, whose parents receive the contributions. Reuses buffers of the step.
-/// @param importance  Found by the rays, or null.
+/// @param importance  Found by the rays, or null. @param ranks  Add their contributions; null: this process is alone.
 Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_size, const RayAllocation& allocation,
                  const PayloadTotals& payload, const ContributionUnits& units, const FoundImportance* importance,
-                 ContributionSums& sums);
+                 ContributionSums& sums, Ranks* ranks);
 
 Received nothing_received(const TransportStep& step, std::size_t elements);
 

@@ -8,6 +8,7 @@
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
+#include "interflect/base/rank_sums.h"
 #include "interflect/base/random.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/panes.h"
@@ -151,17 +152,55 @@ void walk(const TransportStep& step, const StepData& data, const Walks& walks, s
     walks.follow(first_ray, walkers, buffers.descent);
 }
 
-/// StartPoints sorts them.
-StartPoints start_points_of(const std::vector<std::vector<StartPoint>>& of_threads) {
-    std::vector<StartPoint> all;
-    for (const std::vector<StartPoint>& some : of_threads) all.insert(all.end(), some.begin(), some.end());
-    return StartPoints(std::move(all));
+struct RayRange {
+    std::size_t begin, end;
+};
+
+/// Returns the rays of this rank: whole batches, about equally many for all.
+RayRange rays_of_rank(const Ranks* ranks, std::size_t rays) {
+    if (!ranks) return {0, rays};
+    const std::size_t batches = (rays + batch_rays - 1) / batch_rays;
+    const auto begin_of = [&](int r) {
+        return std::min(rays, batches * static_cast<std::size_t>(r) / static_cast<std::size_t>(ranks->count()) * batch_rays);
+    };
+    return {begin_of(ranks->rank()), begin_of(ranks->rank() + 1)};
+}
+
+/// Makes the elements from `old_size` on that other ranks have made.
+void make_elements_of_ranks(Ranks& ranks, ElementForest& forest, std::uint32_t old_size) {
+    struct Parent {
+        std::uint32_t patch, path;
+    };
+    std::vector<Parent> divided;
+    for (std::uint32_t e = old_size; e < forest.size(); e += 4)
+        divided.push_back({forest.patch(e), forest.path(forest.parent(e))});
+    divided = gather_over_ranks<Parent>(ranks, divided);
+    // Parents have shorter, hence smaller paths.
+    std::ranges::sort(divided, {}, [](const Parent& p) { return std::pair(p.path, p.patch); });
+    for (const Parent& p : divided) {
+        const std::uint32_t element = forest.at_path(p.patch, p.path);
+        if (element != none && forest.is_leaf(element)) forest.subdivide(element);
+    }
+}
+
+void add_importance(Ranks& ranks, FoundImportance& found) {
+    const std::span<std::int64_t> sums = found.sums();
+    add_over_ranks(
+        ranks, sums.size(), 1,
+        [&](std::size_t e, std::span<std::int64_t> sum) { sum[0] = std::exchange(sums[e], 0); },
+        [&](std::size_t e, std::span<const std::int64_t> sum) { sums[e] = sum[0]; });
+}
+
+Escaped sum_over_ranks(Ranks& ranks, const Escaped& own) {
+    Escaped sum;
+    for (const Escaped& of_rank : gather_over_ranks<Escaped>(ranks, std::span(&own, 1))) sum += of_rank;
+    return sum;
 }
 
 }  // namespace
 
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
-                   SampleStreams& streams, ContributionSums& sums, const StopRequest& stop) {
+                   SampleStreams& streams, ContributionSums& sums, const CommonStop& stop) {
     assert(step.q.size() == forest.size() + step.part_count() && step.rays > 0);
     const StepData data(materials, forest, ray_caster, step, streams);
     const std::uint32_t old_size = forest.size();
@@ -175,30 +214,40 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
         return ThreadBuffers(
             {materials, forest, step, old_size, sums, found_importance ? &*found_importance : nullptr});
     });
+    const RayRange own = rays_of_rank(stop.ranks(), static_cast<std::size_t>(step.rays));
     try {
-        parallel_for_ranges(static_cast<std::size_t>(step.rays), batch_rays, stop,
-                            [&](std::size_t begin, std::size_t end) {
+        parallel_for_ranges(own.end - own.begin, batch_rays, stop.within_process(),
+                            [&](std::size_t first, std::size_t last) {
+                                const std::size_t begin = own.begin + first, end = own.begin + last;
                                 ThreadBuffers& buffers = all_buffers.local();
                                 trace(data, ray_caster, begin, end, buffers);
                                 deposit(step, data, buffers);
                                 if (step.completes_by_walks) walk(step, data, walks, begin, buffers);
                             });
+        if (stop.ranks() && stop.is_due()) throw Interrupted();
     } catch (const Interrupted&) {
         sums.clear(forest.size());
         drop_new_elements(forest, old_size);
         throw;
     }
     Escaped escaped;
-    std::vector<std::vector<StartPoint>> start_points;
+    std::vector<StartPoint> start_points;
     for (ThreadBuffers& buffers : all_buffers) {
         escaped += buffers.descent.finish();
-        start_points.push_back(buffers.descent.start_points());
+        const std::vector<StartPoint>& some = buffers.descent.start_points();
+        start_points.insert(start_points.end(), some.begin(), some.end());
+    }
+    if (stop.ranks()) {
+        make_elements_of_ranks(*stop.ranks(), forest, old_size);
+        if (found_importance) add_importance(*stop.ranks(), *found_importance);
+        start_points = gather_over_ranks<StartPoint>(*stop.ranks(), start_points);
+        escaped = sum_over_ranks(*stop.ranks(), escaped);
     }
     const RayAllocation& allocation = data.rays.allocation();
     advance(streams, allocation, old_size, step.part_count());
     Received received = collect(step, forest, old_size, allocation, data.payload_totals, data.contribution_units,
-                                found_importance ? &*found_importance : nullptr, sums);
-    received.start_points = start_points_of(start_points);
+                                found_importance ? &*found_importance : nullptr, sums, stop.ranks());
+    received.start_points = StartPoints(std::move(start_points));
     received.escaped_rays = escaped.rays;
     received.escaped_power = data.contribution_units.power.to_colour(escaped.power);
     // Boxes of outdoor light overlap: a line is sampled from one; rays of the others miss the scene. The power of
@@ -213,7 +262,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams) {
     ContributionSums sums(forest.capacity(), step.groups.size());
-    return transport(materials, forest, ray_caster, std::move(step), streams, sums, StopRequest());
+    return transport(materials, forest, ray_caster, std::move(step), streams, sums, CommonStop());
 }
 
 std::vector<Ray> transport_rays(const ElementForest& forest, const RayCaster& ray_caster, const TransportStep& step,

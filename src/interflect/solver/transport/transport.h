@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "interflect/base/stop_request.h"
+#include "interflect/base/common_stop.h"
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solver/deposit/contributions.h"
@@ -22,10 +22,11 @@ namespace interflect::detail {
 /// @param forest   Grows if the oracle refines; old indices stay valid.
 /// @param sums     Zero before and after; has the capacity of the forest.
 /// @param streams  Advanced. The same streams give the same bits for any number of threads.
+/// @param stop     Its ranks share the rays; all return the same.
 /// @throws Interrupted if `stop` is due before the last ray; forest, streams and sums are then unchanged.
 /// Cost: O(N (log(patches) + levels)).
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
-                   SampleStreams& streams, ContributionSums& sums, const StopRequest& stop);
+                   SampleStreams& streams, ContributionSums& sums, const CommonStop& stop);
 /// With its own sums; not stoppable.
 Received transport(const Materials& materials, ElementForest& forest, const RayCaster& ray_caster, TransportStep step,
                    SampleStreams& streams);

@@ -208,7 +208,7 @@ class GlobalLines final : public Passes {
             make_lines(domain_, state.options.experimental.points, key, begin, bundle);
             // A line crosses each flat patch at most once.
             for (std::uint32_t i = 0; i < forest.patch_count() && !bundle.lines.empty(); ++i) {
-                if (is_cut_short || state.stop.is_due()) {
+                if (is_cut_short || state.stop.within_process().is_due()) {
                     is_cut_short = true;
                     return;
                 }
@@ -217,7 +217,7 @@ class GlobalLines final : public Passes {
                 for (const Panes::HitBehind& behind : bundle.behind) sums.add(bundle.segments[behind.ray], behind);
             }
         };
-        parallel_for_ranges(static_cast<std::size_t>(lines), lines_per_task, state.stop, trace_some);
+        parallel_for_ranges(static_cast<std::size_t>(lines), lines_per_task, state.stop.within_process(), trace_some);
         if (is_cut_short) throw Interrupted();
         ++state.streams.allocations;
         Received received = sums.received(forest);

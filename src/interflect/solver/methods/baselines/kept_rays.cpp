@@ -280,7 +280,7 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
         ray.end = Place(p);
         return ray;
     };
-    parallel_for_ranges(count, rays_per_task, state.stop, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(count, rays_per_task, state.stop.within_process(), [&](std::size_t begin, std::size_t end) {
         thread_local RayBatch batch;
         thread_local std::vector<Hit> hits;
         thread_local std::vector<Panes::HitBehind> hits_behind;

@@ -134,7 +134,7 @@ void LinkedElements::find_patches_to_link() {
 
     std::vector<std::vector<LinkCandidate>> of_patch(forest_.patch_count());
     std::atomic<std::size_t> count{0};
-    parallel_for_ranges(of_patch.size(), patches_per_task, state_.stop, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(of_patch.size(), patches_per_task, state_.stop.within_process(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && count <= link_limit_; ++i) {
             const auto a = static_cast<std::uint32_t>(i);
             for (std::uint32_t b = a + 1; b < forest_.patch_count(); ++b)
@@ -154,7 +154,7 @@ void LinkedElements::link_candidates() {
     require_room_for(candidates_.size());
     std::vector<Link> made(candidates_.size());
     std::atomic<std::int64_t> rays{0};
-    parallel_for_ranges(made.size(), pairs_per_task, state_.stop, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(made.size(), pairs_per_task, state_.stop.within_process(), [&](std::size_t begin, std::size_t end) {
         std::int64_t used = 0;
         for (std::size_t i = begin; i < end; ++i)
             made[i] = {candidates_[i].ends, estimator_.estimate(candidates_[i].ends, candidates_[i].effort, used)};

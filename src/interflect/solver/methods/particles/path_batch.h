@@ -130,7 +130,7 @@ class PathBatch {
           emission_(state.emission),
           ray_caster_(state.ray_caster),
           panes_(state.scene, state.ray_caster),
-          stop_(state.stop),
+          stop_(state.stop.within_process()),
           first_points_(state.options.experimental.points),
           payload_(payload),
           paths_(paths),

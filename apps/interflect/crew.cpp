@@ -1,0 +1,126 @@
+#include "apps/interflect/crew.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "apps/interflect/threads.h"
+#include "interflect/base/pending_file.h"
+
+namespace interflect::command {
+
+namespace {
+
+std::shared_ptr<Ranks> crew;
+
+/// What the first process does next, and the others with it.
+struct Order {
+    enum class Kind { solve, advance, plan, end_of_run, dismiss } kind;
+    Limits limits = {};
+    std::size_t bytes = 0;  ///< Of the run that follows.
+    int threads = 0;
+};
+
+template <class T>
+std::span<std::byte> bytes_of(T& value) {
+    return std::as_writable_bytes(std::span(&value, 1));
+}
+
+void give(Order order) {
+    if (crew) crew->broadcast(bytes_of(order));
+}
+
+Order receive_order() {
+    Order order{};
+    crew->broadcast(bytes_of(order));
+    return order;
+}
+
+/// A file of this process alone, removed with this.
+class ScratchFile {
+  public:
+    ScratchFile() : file_(std::filesystem::temp_directory_path() / ("interflect-" + std::to_string(::getpid()) + ".h5")) {}
+    const std::filesystem::path& path() const { return file_.temporary_path(); }
+
+  private:
+    detail::PendingFile file_;  // never committed
+};
+
+Ranks::Bytes saved(const Solver& solver) {
+    const ScratchFile file;
+    solver.save(file.path());
+    Ranks::Bytes bytes(std::filesystem::file_size(file.path()));
+    std::ifstream(file.path(), std::ios::binary)
+        .read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    return bytes;
+}
+
+Solver receive_run(std::size_t size) {
+    Ranks::Bytes bytes(size);
+    crew->broadcast(bytes);
+    const ScratchFile file;
+    std::ofstream(file.path(), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(size));
+    return Solver::open(file.path());
+}
+
+void serve_run(const Order& order) {
+    const ThreadLimit threads(order.threads);
+    Solver solver = receive_run(order.bytes);
+    for (Order next = receive_order(); next.kind != Order::Kind::end_of_run; next = receive_order()) {
+        if (next.kind == Order::Kind::advance)
+            solver.advance(next.limits, {.on_progress = {}, .ranks = crew.get()});
+        else
+            solver.set_plan(next.limits);
+    }
+}
+
+}  // namespace
+
+bool join_crew() {
+    crew = join_ranks();
+    return !crew || crew->rank() == 0;
+}
+
+void serve_crew() {
+    for (Order order = receive_order(); order.kind != Order::Kind::dismiss; order = receive_order()) serve_run(order);
+    crew.reset();
+}
+
+void dismiss_crew() {
+    give({.kind = Order::Kind::dismiss});
+    crew.reset();
+}
+
+CrewRun::CrewRun(Solver& solver) : solver_(solver) {
+    if (!crew) return;
+    Ranks::Bytes run = saved(solver);
+    const auto threads =
+        static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    const bool is_limited = threads < tbb::info::default_concurrency();
+    give({.kind = Order::Kind::solve, .bytes = run.size(), .threads = is_limited ? threads : 0});
+    crew->broadcast(run);
+}
+
+CrewRun::~CrewRun() { give({.kind = Order::Kind::end_of_run}); }
+
+AdvanceReport CrewRun::advance(const Limits& limits, Monitor monitor) {
+    give({.kind = Order::Kind::advance, .limits = limits});
+    monitor.ranks = crew.get();
+    return solver_.advance(limits, monitor);
+}
+
+void CrewRun::set_plan(const Limits& limits) {
+    solver_.set_plan(limits);  // first: it may throw
+    give({.kind = Order::Kind::plan, .limits = limits});
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+
+#include "interflect/core.h"
+#include "interflect/ranks.h"
+#include "interflect/solver.h"
+
+namespace interflect::command {
+
+/// Joins the processes that mpirun started. The first one reads the command line and writes all files and messages; the
+/// others only help to solve.
+/// @return  Whether this process is the first, or alone.
+bool join_crew();
+
+/// Waits for runs of the first process and solves them with it, until it leaves. @throws what a Solver throws.
+void serve_crew();
+
+/// The first process calls this at its end, also after an error.
+void dismiss_crew();
+
+/// A run that the whole crew solves. Without a crew it is the Solver alone.
+class CrewRun {
+  public:
+    /// Sends the run to the others. The solver must outlive this.
+    explicit CrewRun(Solver& solver);
+    ~CrewRun();
+    CrewRun(const CrewRun&) = delete;
+    CrewRun& operator=(const CrewRun&) = delete;
+
+    AdvanceReport advance(const Limits& limits, Monitor monitor);
+    void set_plan(const Limits& limits);
+
+  private:
+    Solver& solver_;
+};
+
+}  // namespace interflect::command

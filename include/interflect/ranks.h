@@ -1,0 +1,44 @@
+/// @file
+/// Processes that share a run, on one or several machines.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace interflect {
+
+/// Processes that solve one scene together. Each holds the scene and the whole state, and traces its part of the rays;
+/// so all end with the same bits, as one process would. Functions that are not const are collective: all processes call
+/// them in the same order, each from one thread.
+class Ranks {
+  public:
+    using Bytes = std::vector<std::byte>;
+
+    virtual ~Ranks() = default;
+    virtual int rank() const = 0;   ///< From 0.
+    virtual int count() const = 0;  ///< At least 1.
+
+    /// Sends parts[r] to rank r. @return  What each rank sent to this one.
+    virtual std::vector<Bytes> exchange(const std::vector<Bytes>& parts) = 0;
+    /// Returns the bytes of all ranks, whose numbers may differ.
+    virtual std::vector<Bytes> gather(std::span<const std::byte> bytes) = 0;
+    /// Replaces the bytes by those of rank 0. All ranks have equally many.
+    virtual void broadcast(std::span<std::byte> bytes) = 0;
+
+    /// Work of the functions above so far, in this process.
+    struct Traffic {
+        std::int64_t bytes = 0;  ///< Sent to other ranks.
+        double seconds = 0;      ///< Including the time in which this process waited for others.
+    };
+    virtual Traffic traffic() const = 0;
+};
+
+/// Joins the processes that mpirun started.
+/// @return  Null if this process is alone.
+/// @throws std::runtime_error if it is not alone and Interflect was built without MPI.
+std::shared_ptr<Ranks> join_ranks();
+
+}  // namespace interflect
