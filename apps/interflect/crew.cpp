@@ -1,19 +1,28 @@
 #include "apps/interflect/crew.h"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <unistd.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "apps/interflect/commands.h"
 #include "apps/interflect/threads.h"
+#include "interflect/base/crc32.h"
 #include "interflect/base/pending_file.h"
+#include "interflect/base/rank_sums.h"
 
 namespace interflect::command {
 
@@ -47,7 +56,8 @@ Order receive_order() {
 /// A file of this process alone, removed with this.
 class ScratchFile {
   public:
-    ScratchFile() : file_(std::filesystem::temp_directory_path() / ("interflect-" + std::to_string(::getpid()) + ".h5")) {}
+    ScratchFile()
+        : file_(std::filesystem::temp_directory_path() / ("interflect-" + std::to_string(::getpid()) + ".h5")) {}
     const std::filesystem::path& path() const { return file_.temporary_path(); }
 
   private:
@@ -83,11 +93,50 @@ void serve_run(const Order& order) {
     }
 }
 
+std::string content_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What determines the bits of results: the program, and the instructions that libraries choose from.
+struct Fingerprint {
+    std::uint32_t program, instructions;
+    bool operator==(const Fingerprint&) const = default;
+};
+
+Fingerprint fingerprint() {
+    const std::string program = content_of("/proc/self/exe"), processor = content_of("/proc/cpuinfo");
+    const std::size_t flags = processor.find("flags");
+    const std::string instructions =
+        flags == std::string::npos ? "" : processor.substr(flags, processor.find('\n', flags) - flags);
+    return {detail::crc32(program), detail::crc32(instructions)};
+}
+
+void require_equal_processes(Ranks& ranks) {
+    const Fingerprint own = fingerprint();
+    const std::vector<Fingerprint> all = detail::gather_over_ranks<Fingerprint>(ranks, std::span(&own, 1));
+    for (std::size_t r = 1; r < all.size(); ++r) {
+        if (all[r].program != all[0].program)
+            throw std::runtime_error(fmt::format(
+                "process {} runs another build of Interflect than process 0: start the same file everywhere", r));
+        if (all[r].instructions != all[0].instructions)
+            throw std::runtime_error(fmt::format(
+                "process {} has a processor with other instructions than process 0, so results would differ: "
+                "use machines of one type",
+                r));
+    }
+}
+
 }  // namespace
 
 bool join_crew() {
     crew = join_ranks();
+    if (crew) require_equal_processes(*crew);
     return !crew || crew->rank() == 0;
+}
+
+void abort_crew(int exit_code) {
+    if (crew && crew->count() > 1) crew->abort(exit_code);
 }
 
 void serve_crew() {
@@ -102,6 +151,9 @@ void dismiss_crew() {
 
 CrewRun::CrewRun(Solver& solver) : solver_(solver) {
     if (!crew) return;
+    if (const Method& method = solver.options().method; crew->count() > 1 && !method.shares_rays)
+        spdlog::warn("{} does not divide its rays: each of the {} processes does all the work", method.name,
+                     crew->count());
     Ranks::Bytes run = saved(solver);
     const auto threads =
         static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
@@ -112,10 +164,14 @@ CrewRun::CrewRun(Solver& solver) : solver_(solver) {
 
 CrewRun::~CrewRun() { give({.kind = Order::Kind::end_of_run}); }
 
-AdvanceReport CrewRun::advance(const Limits& limits, Monitor monitor) {
+AdvanceReport CrewRun::advance(const Limits& limits, Monitor monitor) try {
     give({.kind = Order::Kind::advance, .limits = limits});
     monitor.ranks = crew.get();
     return solver_.advance(limits, monitor);
+} catch (const std::exception& e) {
+    if (crew) spdlog::error("{}", e.what());
+    abort_crew(failed);  // the others wait for this process in the midst of their work
+    throw;
 }
 
 void CrewRun::set_plan(const Limits& limits) {

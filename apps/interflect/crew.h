@@ -11,13 +11,18 @@ namespace interflect::command {
 /// Joins the processes that mpirun started. The first one reads the command line and writes all files and messages; the
 /// others only help to solve.
 /// @return  Whether this process is the first, or alone.
+/// @throws std::runtime_error if the processes run different builds or have different instructions, and would not have
+/// the same bits.
 bool join_crew();
 
 /// Waits for runs of the first process and solves them with it, until it leaves. @throws what a Solver throws.
 void serve_crew();
 
-/// The first process calls this at its end, also after an error.
+/// The first process calls this at its end, also after an error outside runs.
 void dismiss_crew();
+
+/// After an error in a run, ends all processes with this exit code. Does nothing without a crew.
+void abort_crew(int exit_code);
 
 /// A run that the whole crew solves. Without a crew it is the Solver alone.
 class CrewRun {

@@ -71,6 +71,16 @@ struct Dismissal {
     Dismissal& operator=(const Dismissal&) = delete;
 };
 
+/// Returns the exit code.
+int serve() try {
+    interflect::command::serve_crew();
+    return interflect::command::done;
+} catch (const std::exception& e) {
+    spdlog::error("a helping process failed: {}", e.what());
+    interflect::command::abort_crew(interflect::command::failed);
+    return interflect::command::failed;
+}
+
 /// Returns freed large arrays to the system. By default glibc keeps them after the first such free, and fragmentation
 /// then determines the memory in use.
 void return_large_arrays() {
@@ -96,10 +106,7 @@ int main(int argc, char** argv) try {
     handle_signals();
     return_large_arrays();
     interflect::command::log_to_stderr();
-    if (!join_crew()) {
-        serve_crew();
-        return done;
-    }
+    if (!join_crew()) return serve();
     const Dismissal at_the_end;
     return run(argc, argv);
 } catch (const interflect::InputError& e) {

@@ -27,6 +27,8 @@ class Ranks {
     virtual std::vector<Bytes> gather(std::span<const std::byte> bytes) = 0;
     /// Replaces the bytes by those of rank 0. All ranks have equally many.
     virtual void broadcast(std::span<std::byte> bytes) = 0;
+    /// Ends all processes at once, for faults of one.
+    [[noreturn]] virtual void abort(int exit_code) = 0;
 
     /// Work of the functions above so far, in this process.
     struct Traffic {

@@ -50,6 +50,7 @@ struct Method {
     std::size_t bytes_per_ray = 0;                  ///< Peak of the memory for each ray of a run that is kept.
     bool separates_groups = false;                  ///< Keeps the light of each light group separate.
     bool separates_direct = false;                  ///< Supports SolveOptions::keep_direct.
+    bool shares_rays = false;                       ///< Divides its rays among Monitor::ranks; others repeat all work.
     bool follows_dimming = false;                   ///< Can continue with dimmed groups, see Solver::set_dimming().
 };
 

@@ -27,18 +27,23 @@ struct Setting {
 };
 
 class SharedRun : public testing::TestWithParam<Setting> {};
-INSTANTIATE_TEST_SUITE_P(
-    Settings, SharedRun,
-    testing::Values(Setting{"importance", [](SolveOptions& o) { o.method = find_method("ihsrr"); }},
-                    Setting{"no_importance",
-                            [](SolveOptions& o) {
-                                o.method = find_method("hsrr");
-                                o.views.clear();
-                            }},
-                    Setting{"fixed_mesh", [](SolveOptions& o) { o.method = find_method("isrr"); }},
-                    Setting{"as_published", [](SolveOptions& o) { use_published_algorithm(o); }},
-                    Setting{"light_groups", [](SolveOptions& o) { o.keep_direct = true; }, true}),
-    [](const auto& setting) { return std::string(setting.param.name); });
+INSTANTIATE_TEST_SUITE_P(Settings, SharedRun,
+                         testing::Values(Setting{"importance",
+                                                 [](SolveOptions& o) { o.method = find_method("ihsrr"); }},
+                                         Setting{"no_importance",
+                                                 [](SolveOptions& o) {
+                                                     o.method = find_method("hsrr");
+                                                     o.views.clear();
+                                                 }},
+                                         Setting{"fixed_mesh", [](SolveOptions& o) { o.method = find_method("isrr"); }},
+                                         Setting{"equal_power",
+                                                 [](SolveOptions& o) {
+                                                     o.method = find_method("hwdrs");
+                                                     o.views.clear();
+                                                 }},
+                                         Setting{"as_published", [](SolveOptions& o) { use_published_algorithm(o); }},
+                                         Setting{"light_groups", [](SolveOptions& o) { o.keep_direct = true; }, true}),
+                         [](const auto& setting) { return std::string(setting.param.name); });
 
 /// With a table, an area lamp and a point light.
 Scene room() {
@@ -55,7 +60,7 @@ TEST_P(SharedRun, HasTheBitsOfOneProcess) {
     if (GetParam().has_groups) scene.light_groups = {{"lamps", "lamp"}};
     const RayCaster ray_caster(scene);
     SolveOptions options{.method = find_method("ihsrr")};
-    options.limits.rays = 300'000;
+    options.limits.rays = 100'000;
     options.views = {{View{"", {1, 1, 1}, {3, 2, 0.5}}}};
     GetParam().set(options);
     const Solution alone = solve(scene, ray_caster, options);

@@ -2,13 +2,14 @@
 
 #include <atomic>
 
+#include "interflect/base/rank_sums.h"
 #include "interflect/base/stop_request.h"
 #include "interflect/ranks.h"
-#include "interflect/base/rank_sums.h"
 
 namespace interflect::detail {
 
-/// A stop on which all ranks agree: that of the first. Loops of one process, which cannot know it, then run to their end.
+/// A stop on which all ranks agree: that of the first. Loops of one process, which cannot know it, then run to their
+/// end.
 class CommonStop {
   public:
     CommonStop() = default;

@@ -12,7 +12,8 @@
 
 namespace interflect::detail {
 
-/// Elements with a sum other than 0, as bytes: differences of their indices and the terms, seven bits in a byte (LEB128).
+/// Elements with a sum other than 0, as bytes: differences of their indices and the terms, seven bits in a byte
+/// (LEB128).
 class SparseSums {
   public:
     explicit SparseSums(std::size_t terms) : terms_(terms) {}
@@ -82,10 +83,12 @@ void add_over_ranks(Ranks& ranks, std::size_t elements, std::size_t terms, const
             for (std::size_t i = 0; i < terms; ++i) of_all[e * terms + i] += of_rank[i];
         });
     SparseSums result(terms);
-    for (std::size_t e = 0; e < of_all.size() / terms; ++e) result.append(e, std::span(of_all).subspan(e * terms, terms));
+    for (std::size_t e = 0; e < of_all.size() / terms; ++e)
+        result.append(e, std::span(of_all).subspan(e * terms, terms));
     const std::vector<Ranks::Bytes> results = ranks.gather(result.bytes());
     for (std::size_t r = 0; r < count; ++r)
-        reader.for_each(results[r], [&](std::size_t e, std::span<const std::int64_t> all) { add(begin_of(r) + e, all); });
+        reader.for_each(results[r],
+                        [&](std::size_t e, std::span<const std::int64_t> all) { add(begin_of(r) + e, all); });
 }
 
 /// Returns the values of all ranks, in their order.

@@ -30,7 +30,9 @@ struct Layout {
             places[r] = checked_size(place), place += static_cast<std::size_t>(sizes[r]);
         checked_size(place);
     }
-    std::size_t bytes() const { return static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0})); }
+    std::size_t bytes() const {
+        return static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
+    }
     std::vector<Ranks::Bytes> parts_of(const Ranks::Bytes& all) const {
         std::vector<Ranks::Bytes> parts;
         for (std::size_t r = 0; r < sizes.size(); ++r)
@@ -88,6 +90,11 @@ class MpiRanks : public Ranks {
             MPI_Bcast(part.data(), static_cast<int>(part.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
         }
         if (rank_ == 0) traffic_.bytes += static_cast<std::int64_t>(bytes.size());
+    }
+
+    void abort(int exit_code) override {
+        MPI_Abort(MPI_COMM_WORLD, exit_code);
+        std::abort();  // MPI_Abort() does not return
     }
 
     Traffic traffic() const override { return traffic_; }

@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
 #include "interflect/base/common_stop.h"
 #include "interflect/base/rank_sums.h"
+#include "interflect/base/state_archive.h"
 #include "interflect/base/stop_request.h"
 #include "interflect/elements/forest.h"
 #include "interflect/luminaires/emission.h"

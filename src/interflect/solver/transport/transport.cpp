@@ -8,8 +8,8 @@
 
 #include "interflect/base/fixed_point.h"
 #include "interflect/base/parallel.h"
-#include "interflect/base/rank_sums.h"
 #include "interflect/base/random.h"
+#include "interflect/base/rank_sums.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/solver/deposit/contributions.h"
@@ -161,7 +161,8 @@ RayRange rays_of_rank(const Ranks* ranks, std::size_t rays) {
     if (!ranks) return {0, rays};
     const std::size_t batches = (rays + batch_rays - 1) / batch_rays;
     const auto begin_of = [&](int r) {
-        return std::min(rays, batches * static_cast<std::size_t>(r) / static_cast<std::size_t>(ranks->count()) * batch_rays);
+        return std::min(rays,
+                        batches * static_cast<std::size_t>(r) / static_cast<std::size_t>(ranks->count()) * batch_rays);
     };
     return {begin_of(ranks->rank()), begin_of(ranks->rank() + 1)};
 }
@@ -186,8 +187,7 @@ void make_elements_of_ranks(Ranks& ranks, ElementForest& forest, std::uint32_t o
 void add_importance(Ranks& ranks, FoundImportance& found) {
     const std::span<std::int64_t> sums = found.sums();
     add_over_ranks(
-        ranks, sums.size(), 1,
-        [&](std::size_t e, std::span<std::int64_t> sum) { sum[0] = std::exchange(sums[e], 0); },
+        ranks, sums.size(), 1, [&](std::size_t e, std::span<std::int64_t> sum) { sum[0] = std::exchange(sums[e], 0); },
         [&](std::size_t e, std::span<const std::int64_t> sum) { sums[e] = sum[0]; });
 }
 

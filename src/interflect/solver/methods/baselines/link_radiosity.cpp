@@ -134,15 +134,16 @@ void LinkedElements::find_patches_to_link() {
 
     std::vector<std::vector<LinkCandidate>> of_patch(forest_.patch_count());
     std::atomic<std::size_t> count{0};
-    parallel_for_ranges(of_patch.size(), patches_per_task, state_.stop.within_process(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end && count <= link_limit_; ++i) {
-            const auto a = static_cast<std::uint32_t>(i);
-            for (std::uint32_t b = a + 1; b < forest_.patch_count(); ++b)
-                if (estimator_.face_each_other({a, b}))
-                    of_patch[i].push_back({{a, b}, is_weak(a, b) ? Effort::quick : Effort::thorough});
-            count += of_patch[i].size();
-        }
-    });
+    parallel_for_ranges(
+        of_patch.size(), patches_per_task, state_.stop.within_process(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end && count <= link_limit_; ++i) {
+                const auto a = static_cast<std::uint32_t>(i);
+                for (std::uint32_t b = a + 1; b < forest_.patch_count(); ++b)
+                    if (estimator_.face_each_other({a, b}))
+                        of_patch[i].push_back({{a, b}, is_weak(a, b) ? Effort::quick : Effort::thorough});
+                count += of_patch[i].size();
+            }
+        });
     require_room_for(count);
     candidates_.reserve(count);
     for (const std::vector<LinkCandidate>& some : of_patch)
@@ -154,12 +155,13 @@ void LinkedElements::link_candidates() {
     require_room_for(candidates_.size());
     std::vector<Link> made(candidates_.size());
     std::atomic<std::int64_t> rays{0};
-    parallel_for_ranges(made.size(), pairs_per_task, state_.stop.within_process(), [&](std::size_t begin, std::size_t end) {
-        std::int64_t used = 0;
-        for (std::size_t i = begin; i < end; ++i)
-            made[i] = {candidates_[i].ends, estimator_.estimate(candidates_[i].ends, candidates_[i].effort, used)};
-        rays += used;
-    });
+    parallel_for_ranges(
+        made.size(), pairs_per_task, state_.stop.within_process(), [&](std::size_t begin, std::size_t end) {
+            std::int64_t used = 0;
+            for (std::size_t i = begin; i < end; ++i)
+                made[i] = {candidates_[i].ends, estimator_.estimate(candidates_[i].ends, candidates_[i].effort, used)};
+            rays += used;
+        });
     rays_ += rays;
     links_.insert(links_.end(), made.begin(), made.end());
     std::erase_if(links_, [](const Link& l) { return l.exchange.area == 0; });
