@@ -7,7 +7,10 @@
 #include "interflect/base/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/iteration/iteration_method.h"
-#include "interflect/solver/methods/baselines/exchange.h"
+#include "interflect/solver/methods/links/cluster_exchange.h"
+#include "interflect/solver/methods/links/exchange.h"
+#include "interflect/solver/methods/links/first_links.h"
+#include "interflect/solver/methods/links/patch_tree.h"
 
 namespace interflect::detail {
 
@@ -22,11 +25,6 @@ struct Link {
     RgbD area() const { return RgbD(exchange.transmittance) * static_cast<double>(exchange.area); }
     /// Mean over the channels, for importance.
     double mean_area() const { return channel_sum(area()) / 3; }
-};
-
-struct LinkCandidate {
-    ElementPair ends;
-    Effort effort;
 };
 
 struct RefinementCandidate;
@@ -62,18 +60,22 @@ class LinkedElements : public IterationMethod {
     RgbD gather_light();
     void gather_importance();
     bool refine_links();
-    void find_patches_to_link();
+    void find_first_links();
+    Exchange estimate(const LinkCandidate& candidate, std::int64_t& rays) const;
     void link_candidates();
     void subdivide_links();
     void require_room_for(std::size_t more) const;
     std::vector<RefinementCandidate> refinement_candidates() const;
-    bool may_divide(std::uint32_t element) const;
+    std::uint32_t divided_end(const ElementPair& ends, double over_a, double over_b) const;
+    bool may_divide(std::uint32_t end) const;
     void keep_affordable(std::vector<RefinementCandidate>& candidates) const;
     void describe_new_elements(std::uint32_t first);
 
     SolverState& state_;
     ElementForest& forest_;
     ExchangeEstimator estimator_;
+    PatchTree tree_;
+    ClusterExchange clusters_;
     std::size_t link_limit_;
     std::vector<Link> links_;
     std::vector<LinkCandidate> candidates_;
