@@ -1,8 +1,9 @@
 // Links of clusters in `hr`, against links of all pairs of patches, which tests/solver/link_radiosity_test.cpp compares
 // with closed forms. Deterministic: the tolerances are about twice the observed differences.
 //
-// Seen to fail if facets lack their area, the scale lacks 1/pi or a square, clusters omit a patch or a child, light
-// passes a board, it flows in one direction only, or importance lacks rho.
+// Seen to fail if facets lack their area, the scale lacks 1/pi, a divided pair lacks a child, the parts of a cluster
+// are not linked, lines of sight are not traced, light flows in one direction only, the variation of equal lines is 0,
+// or importance lacks rho.
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -10,9 +10,9 @@
 
 namespace interflect::detail {
 
-/// Exchange between two ends of which at least one is a cluster, after Smits, Arvo and Greenberg 1994. Between member p
-/// of one and q of the other, A_p F_pq = T s w_p w_q, so a link costs the sum of the members instead of their product.
-/// T is one sampled transmittance for all.
+/// Exchange of a cluster with a cluster or an element, after Smits, Arvo and Greenberg 1994. For members p and q,
+/// A_p F_pq = T s w_p w_q [m^2], so a link costs the sum of the members instead of their product. All pairs of a link
+/// share one sampled transmittance T.
 ///
 /// Distant ends: w_p = A_p cos / |p - c|^2 towards the centre c of the other end, s = |c - c'|^2 / pi. The relative
 /// error is of second order in radius over distance. A near element and a cluster: w_p = A_p F_p towards the element by

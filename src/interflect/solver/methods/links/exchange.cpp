@@ -187,7 +187,7 @@ Exchange ExchangeEstimator::estimate(const ElementPair& pair, Effort effort, std
 }
 
 Rgb ExchangeEstimator::transmittance(const PointOfElement& x, const PointOfElement& y, std::int64_t& rays) const {
-    // Both directions: the back of a one-sided face stops no ray, and rays hit only one of two coincident faces.
+    // Both directions: rays pass the back of a one-sided face, and hit only one of two coincident faces.
     const Rgb line = one_way(x, y, rays);
     return line != Rgb(0) ? smaller(line, one_way(y, x, rays)) : line;
 }

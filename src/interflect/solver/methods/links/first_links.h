@@ -15,8 +15,8 @@ struct LinkCandidate {
     Effort effort;
 };
 
-/// Returns the patches to group: those that do not emit. Emitters keep one link to each patch, for accurate direct
-/// light. Empty without ExperimentalOptions::clusters.
+/// Returns the patches to group. Emitters are not grouped and keep one link to each patch, for accurate direct light.
+/// Empty without ExperimentalOptions::clusters.
 std::vector<std::uint32_t> patches_to_cluster(const SolverState& state);
 
 /// Returns all pairs of patches that face each other; stops beyond `limit`.

@@ -32,9 +32,9 @@ constexpr double bound_if_blocked = 1.0 / 16;
 constexpr std::int64_t rays_per_division = std::int64_t{4} * 2 * 16;
 constexpr std::size_t pairs_per_task = 256;
 /// Rays of a quick link.
-constexpr double rays_of_weak_link = 2 * 4;
-/// Share of the rays that links between all patches may need. Of 20 million, 700 patches need that. With 1,902 patches,
-/// which need 0.7, clusters have 0.6 of the error (docs/results.md).
+constexpr double rays_of_quick_link = 2 * 4;
+/// Share of the rays that links between all patches may need: 707 patches at 20 million rays. 1,902 patches need 0.7 of
+/// the rays, and then have 1.6 times the error of clusters (docs/results.md).
 constexpr double share_of_pairs = 0.1;
 /// Partial sums of light from clusters. The number of threads must not change their order.
 constexpr std::size_t cluster_sums = 8;
@@ -131,7 +131,7 @@ void LinkedElements::prepare(SolverState&) {
 void LinkedElements::find_first_links() {
     const double pairs = 0.5 * forest_.patch_count() * (forest_.patch_count() - 1.0);
     const auto rays = static_cast<double>(std::min(state_.options.limits.rays, SolveOptions().limits.rays));
-    const bool links_patches = tree_.clusters().empty() || pairs * rays_of_weak_link <= share_of_pairs * rays;
+    const bool links_patches = tree_.clusters().empty() || pairs * rays_of_quick_link <= share_of_pairs * rays;
     candidates_ = links_patches ? pairs_of_patches(state_, estimator_, link_limit_)
                                 : pairs_of_clusters(state_, estimator_, tree_, clusters_, link_limit_);
 }

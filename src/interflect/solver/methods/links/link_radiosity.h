@@ -30,15 +30,18 @@ struct Link {
 struct RefinementCandidate;
 
 /// Hierarchical radiosity (Hanrahan et al. 1991) for Eq. 1, Prikryl et al. 2000; deterministic. A sweep gathers one
-/// bounce. Only visibility is sampled.
+/// bounce. Only visibility is sampled. With ExperimentalOptions::clusters, scenes of many patches have links between
+/// clusters (Smits et al. 1994; ClusterExchange).
 ///
-/// Four links to the children of one end replace a link if its error bound exceeds epsilon times reference_power(). The
-/// bound is rho_i B_j A_i times the variation of F_ij over an element, including partial occlusion. With importance, it
-/// is weighted by psi_i / psi_max (Eq. 15; Smits et al. 1992).
+/// Links to the four children of one end, or to the two parts of a cluster, replace a link if its error bound exceeds
+/// epsilon times reference_power(). The bound is rho_i B_j A_i times the variation of F_ij over an element, including
+/// partial occlusion. With importance, it is weighted by psi_i / psi_max (Eq. 15; Smits et al. 1992).
 ///
 /// The run ends when light and links have settled. It stays within limits.rays (except for the first links),
 /// max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
-/// escaped_power is the error of the form factors. Cost: O(patches^2 + links).
+/// escaped_power is the error of the form factors. Cost: O(patches^2 + links), with clusters about O(patches
+/// log(patches)
+/// + links); a sweep costs the number of members of all links.
 class LinkedElements : public IterationMethod {
   public:
     /// The state must outlive this.

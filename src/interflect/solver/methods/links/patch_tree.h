@@ -44,7 +44,7 @@ class PatchTree {
         std::uint32_t first_facet, end_facet;
         std::array<std::uint32_t, 2> children;  ///< Clusters or patches.
         Sphere sphere;                          ///< Around the area-weighted mean of the patches.
-        float largest_radius;                   ///< Of a patch [m].
+        float largest_radius;                   ///< Largest radius of a patch [m].
         float area;                             ///< [m^2]
     };
 
