@@ -411,7 +411,8 @@ void SolverOptions::add_paper_refinement(CLI::App& app) {
                        "Reduce differences of neighbouring elements that are mostly noise "
                        "(with --refinement-criterion variance)"));
     group(app.add_flag("--clusters,!--no-clusters", o.clusters,
-                       "Also between faces that are near each other and face alike: for scenes of many small faces"));
+                       "Also between faces that are near each other and face alike: for scenes of many small faces. "
+                       "Method hr: link clusters of faces where they are many"));
     group(app.add_option("--epsilon", o.epsilon,
                          "Power that may pass between two elements undivided, relative to what is seen (or emitted), "
                          "once 20M rays are averaged")

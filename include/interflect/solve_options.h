@@ -110,7 +110,8 @@ struct ExperimentalOptions {
 
     /// With RefinementCriterion::variance: reduces differences that are mostly noise (docs/method.md).
     bool shrinkage = true;
-    bool clusters = true;  ///< With shrinkage: also between neighbouring patches that face alike.
+    /// With shrinkage: also between neighbouring patches that face alike. Method hr: links clusters of many patches.
+    bool clusters = true;
     /// Threshold of Eq. 14 and 15 at 20 million averaged rays, relative to visible power (without a view: emitted
     /// power); > 0. Method hr uses it unchanged.
     double epsilon = 4e-8;

@@ -338,6 +338,38 @@ TEST(ChangeOfViews, HasTheSameBitsWhenSavedAfterwards) {
                         changed_after(iterations, criterion, {}));
 }
 
+/// Links of clusters, before and after a change of the view. With a file, the run is saved and opened after every
+/// iteration.
+Solution linked_by_clusters(const fs::path& file) {
+    Scene scene = closed_box({4.1f, 2.9f, 2.5f}, 8, {{"wall", {0.7f, 0.6f, 0.5f}, Rgb(0)}});
+    add_rectangle(scene, {1, 1, 2.4f}, {0, 1, 0}, {1, 0, 0}, add_material(scene, Rgb(0), Rgb(50)));
+    SolveOptions options{.method = find_method("hr")};
+    options.method.importance = ImportanceUse::full;
+    options.views = {{into_the_room}};
+    options.experimental.epsilon = 1e-3;
+    options.limits.rays = 200'000;
+    Solver solver(scene, options);
+    for (const std::int64_t rays : {200'000, 300'000}) {
+        if (rays > 200'000) solver.set_views({{turned(25)}});
+        solver.set_plan({.rays = rays});
+        for (bool is_finished = false; !is_finished; is_finished = solver.advance({.time = 0}).is_finished) {
+            if (file.empty()) continue;
+            solver.save(file);
+            solver = Solver::open(file);
+        }
+    }
+    return solver.solution();
+}
+
+// Seen to fail when LinkedElements does not archive its links.
+TEST(ClusterLinks, HaveTheSameBitsWhenSavedAndAfterAChangeOfViews) {
+    const TemporaryFolder folder;
+    const Solution expected = linked_by_clusters({});
+    EXPECT_GT(expected.iterations.size(), 10u);
+    EXPECT_GT(expected.forest->size(), expected.forest->patch_count());
+    expect_same(linked_by_clusters(folder.path() / "run.h5"), expected);
+}
+
 TEST(ChangeOfViews, RefusesWhatIsNoView) {
     Solver solver = solver_of_a_view("srr");
     View view = into_the_room;

@@ -14,7 +14,7 @@ LAYERS = [
 INNER_LAYERS = {
     "solver": [
         "light", "clusters", "importance", "sampling", "noise", "deposit", "transport", "state", "shrinkage", "error", "refinement", "iteration",
-        "methods", "methods/baselines", "methods/particles", ".",
+        "methods", "methods/baselines", "methods/links", "methods/particles", ".",
     ],
     "render": ["smooth", "lights", "paths", "pictures", "."],
     "exports": ["hdf5", "records", "mesh", "lightmap", "vertices", "files", "gltf", "foreign", "."],

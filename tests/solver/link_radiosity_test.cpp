@@ -8,7 +8,7 @@
 // the spread of the form factor; if rays, links or the smallest area are not limited; or if sweeps end before the light
 // has converged.
 
-#include "interflect/solver/methods/baselines/link_radiosity.h"
+#include "interflect/solver/methods/links/link_radiosity.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
-#include "interflect/solver/methods/baselines/exchange.h"
+#include "interflect/solver/methods/links/exchange.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/form_factors.h"

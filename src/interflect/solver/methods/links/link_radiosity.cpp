@@ -1,9 +1,8 @@
-#include "interflect/solver/methods/baselines/link_radiosity.h"
+#include "interflect/solver/methods/links/link_radiosity.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <string>
 
@@ -31,39 +30,46 @@ constexpr double settled = 1e-2, negligible_change = 1e-6;
 constexpr double bound_if_blocked = 1.0 / 16;
 /// Maximum rays of the four links that replace one.
 constexpr std::int64_t rays_per_division = std::int64_t{4} * 2 * 16;
-constexpr std::size_t pairs_per_task = 256, patches_per_task = 8;
+constexpr std::size_t pairs_per_task = 256;
+/// Rays of a quick link.
+constexpr double rays_of_quick_link = 2 * 4;
+/// Share of the rays that links between all patches may need: 707 patches at 20 million rays. 1,902 patches need 0.7 of
+/// the rays, and then have 1.6 times the error of clusters (docs/results.md).
+constexpr double share_of_pairs = 0.1;
+/// Partial sums of light from clusters. The number of threads must not change their order.
+constexpr std::size_t cluster_sums = 8;
 
-struct Sphere {
-    V3f centre;
-    float radius;
-};
-
-Sphere sphere_around(const Scene& scene, const Patch& patch) {
-    Sphere sphere{PatchGeometry(scene, patch).centre(), 0};
-    for (int k = 0; k < patch.vertex_count(); ++k) {
-        const V3f& corner = scene.vertices[patch.vertices[static_cast<std::size_t>(k)]];
-        sphere.radius = std::max(sphere.radius, (corner - sphere.centre).length());
-    }
-    return sphere;
-}
-
-/// Upper bound for surfaces inside two spheres [m^2].
-double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double area_b) {
-    const double gap = std::max(0.0f, (a.centre - b.centre).length() - a.radius - b.radius);
-    return area_a * area_b / (std::numbers::pi * gap * gap);
+template <class T>
+void gather_from_clusters(const ElementForest& forest, const ClusterExchange& clusters, std::span<const Link> links,
+                          const std::vector<T>& leaving, T (Link::*area_of)() const, std::vector<T>& received) {
+    if (std::none_of(links.begin(), links.end(), [](const Link& link) { return has_cluster(link.ends); })) return;
+    std::vector<std::vector<T>> sums(cluster_sums, std::vector<T>(forest.size(), T(0)));
+    parallel_for_ranges(cluster_sums, 1, [&](std::size_t part, std::size_t) {
+        const std::size_t begin = part * links.size() / cluster_sums, end = (part + 1) * links.size() / cluster_sums;
+        for (const Link& link : links.subspan(begin, end - begin))
+            if (has_cluster(link.ends))
+                clusters.transport(link.ends, (link.*area_of)() / static_cast<double>(link.exchange.area), leaving,
+                                   sums[part]);
+    });
+    parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
+        for (const std::vector<T>& sum : sums)
+            for (std::size_t e = begin; e < end; ++e) received[e] += sum[e];
+    });
 }
 
 /// @param area_of  Link::area or Link::mean_area.
 template <class T>
-std::vector<T> gather(const ElementForest& forest, std::span<const Link> links, const std::vector<T>& leaving,
-                      T (Link::*area_of)() const) {
+std::vector<T> gather(const ElementForest& forest, const ClusterExchange& clusters, std::span<const Link> links,
+                      const std::vector<T>& leaving, T (Link::*area_of)() const) {
     std::vector<T> received(forest.size(), T(0));
     for (const Link& link : links) {
         const auto [a, b] = link.ends;
+        if (has_cluster(link.ends)) continue;
         const T area = (link.*area_of)();
         received[a] += leaving[b] * area;
         received[b] += leaving[a] * area;
     }
+    gather_from_clusters(forest, clusters, links, leaving, area_of, received);
     for (std::uint32_t e = 0; e < forest.size(); ++e) received[e] /= forest.area(e);
     push(forest, received);
     pull(forest, received);
@@ -102,6 +108,8 @@ LinkedElements::LinkedElements(SolverState& state, std::size_t link_limit)
     : state_(state),
       forest_(*state.forest),
       estimator_(state.scene, *state.forest, state.ray_caster, state.options.seed),
+      tree_(*state.forest, patches_to_cluster(state)),
+      clusters_(*state.forest, tree_, estimator_, state.options.seed),
       link_limit_(link_limit),
       refines_(state.options.method.refines) {}
 
@@ -115,39 +123,22 @@ void LinkedElements::require_room_for(std::size_t more) const {
 }
 
 void LinkedElements::prepare(SolverState&) {
-    if (candidates_.empty()) find_patches_to_link();
+    if (candidates_.empty()) find_first_links();
     link_candidates();
 }
 
-void LinkedElements::find_patches_to_link() {
-    double surface = 0;
-    std::vector<Sphere> spheres;
-    for (const Patch& patch : state_.scene.patches) spheres.push_back(sphere_around(state_.scene, patch));
-    for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) surface += forest_.area(i);
-    const auto emits = [&](std::uint32_t i) { return channel_sum(state_.materials.exitance(i)) > 0; };
-    // A reflector of average brightness sends at most the threshold over this exchange.
-    const auto is_weak = [&](std::uint32_t i, std::uint32_t j) {
-        return !emits(i) && !emits(j) &&
-               largest_exchange(spheres[i], spheres[j], forest_.area(i), forest_.area(j)) <
-                   state_.options.experimental.epsilon * surface;
-    };
+/// Links all pairs of patches if that leaves most of the rays for refinement, else clusters.
+void LinkedElements::find_first_links() {
+    const double pairs = 0.5 * forest_.patch_count() * (forest_.patch_count() - 1.0);
+    const auto rays = static_cast<double>(std::min(state_.options.limits.rays, SolveOptions().limits.rays));
+    const bool links_patches = tree_.clusters().empty() || pairs * rays_of_quick_link <= share_of_pairs * rays;
+    candidates_ = links_patches ? pairs_of_patches(state_, estimator_, link_limit_)
+                                : pairs_of_clusters(state_, estimator_, tree_, clusters_, link_limit_);
+}
 
-    std::vector<std::vector<LinkCandidate>> of_patch(forest_.patch_count());
-    std::atomic<std::size_t> count{0};
-    parallel_for_ranges(
-        of_patch.size(), patches_per_task, state_.stop.within_process(), [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end && count <= link_limit_; ++i) {
-                const auto a = static_cast<std::uint32_t>(i);
-                for (std::uint32_t b = a + 1; b < forest_.patch_count(); ++b)
-                    if (estimator_.face_each_other({a, b}))
-                        of_patch[i].push_back({{a, b}, is_weak(a, b) ? Effort::quick : Effort::thorough});
-                count += of_patch[i].size();
-            }
-        });
-    require_room_for(count);
-    candidates_.reserve(count);
-    for (const std::vector<LinkCandidate>& some : of_patch)
-        candidates_.insert(candidates_.end(), some.begin(), some.end());
+Exchange LinkedElements::estimate(const LinkCandidate& candidate, std::int64_t& rays) const {
+    const auto& [ends, effort] = candidate;
+    return has_cluster(ends) ? clusters_.estimate(ends, effort, rays) : estimator_.estimate(ends, effort, rays);
 }
 
 /// Drops pairs without unoccluded exchange.
@@ -155,13 +146,13 @@ void LinkedElements::link_candidates() {
     require_room_for(candidates_.size());
     std::vector<Link> made(candidates_.size());
     std::atomic<std::int64_t> rays{0};
-    parallel_for_ranges(
-        made.size(), pairs_per_task, state_.stop.within_process(), [&](std::size_t begin, std::size_t end) {
-            std::int64_t used = 0;
-            for (std::size_t i = begin; i < end; ++i)
-                made[i] = {candidates_[i].ends, estimator_.estimate(candidates_[i].ends, candidates_[i].effort, used)};
-            rays += used;
-        });
+    parallel_for_ranges(made.size(), pairs_per_task, state_.stop.within_process(),
+                        [&](std::size_t begin, std::size_t end) {
+                            std::int64_t used = 0;
+                            for (std::size_t i = begin; i < end; ++i)
+                                made[i] = {candidates_[i].ends, estimate(candidates_[i], used)};
+                            rays += used;
+                        });
     rays_ += rays;
     links_.insert(links_.end(), made.begin(), made.end());
     std::erase_if(links_, [](const Link& l) { return l.exchange.area == 0; });
@@ -170,7 +161,8 @@ void LinkedElements::link_candidates() {
 
 RgbD LinkedElements::gather_light() {
     const std::vector<Rgb> b = present_radiosity(state_);
-    const std::vector<RgbD> received = gather(forest_, links_, std::vector<RgbD>(b.begin(), b.end()), &Link::area);
+    const std::vector<RgbD> received =
+        gather(forest_, clusters_, links_, std::vector<RgbD>(b.begin(), b.end()), &Link::area);
     RelativeChange change;
     RgbD escaped = integral(forest_, b);
     for (std::uint32_t e = 0; e < forest_.size(); ++e) {
@@ -192,7 +184,7 @@ void LinkedElements::gather_importance() {
     for (std::uint32_t e = 0; e < forest_.size(); ++e)
         reflected[e] = static_cast<double>(state_.materials.mean_reflectance(forest_.patch(e), e)) * psi[e];
     if (state_.materials.has_textures()) pull(forest_, reflected);
-    const std::vector<double> received = gather(forest_, links_, reflected, &Link::mean_area);
+    const std::vector<double> received = gather(forest_, clusters_, links_, reflected, &Link::mean_area);
     RelativeChange change;
     for (std::uint32_t e = 0; e < forest_.size(); ++e) {
         float& importance = state_.solution.indirect_importance[e];
@@ -204,24 +196,47 @@ void LinkedElements::gather_importance() {
 
 namespace {
 
-struct RadiosityRange {
-    std::vector<Rgb> least, most;
+/// One value for each element and cluster.
+template <class T>
+struct EndValues {
+    std::vector<T> of_element, of_cluster;
 
-    RadiosityRange(const ElementForest& forest, const std::vector<Rgb>& b) : least(b), most(b) {
+    const T& operator[](std::uint32_t end) const {
+        return is_cluster(end) ? of_cluster[end - first_cluster] : of_element[end];
+    }
+};
+
+template <class T>
+EndValues<T> mean_values(const ElementForest& forest, const PatchTree& tree, std::vector<T> of_element) {
+    const auto area = [&](std::uint32_t end) { return is_cluster(end) ? tree.cluster(end).area : forest.area(end); };
+    std::vector<T> of_cluster = tree.pulled(of_element, [&](const PatchTree::Cluster& cluster, const T& x, const T& y) {
+        const float area_x = area(cluster.children[0]), area_y = area(cluster.children[1]);
+        return T((x * area_x + y * area_y) / (area_x + area_y));
+    });
+    return {std::move(of_element), std::move(of_cluster)};
+}
+
+struct RadiosityRange {
+    EndValues<Rgb> least, most;
+
+    RadiosityRange(const ElementForest& forest, const PatchTree& tree, const std::vector<Rgb>& b)
+        : least{b, {}}, most{b, {}} {
         for (std::uint32_t e = forest.size(); e-- > forest.patch_count();) {
-            Rgb &low = least[forest.parent(e)], &high = most[forest.parent(e)];
-            for (int c = 0; c < 3; ++c) {
-                low[c] = std::min(low[c], least[e][c]);
-                high[c] = std::max(high[c], most[e][c]);
-            }
+            Rgb &low = least.of_element[forest.parent(e)], &high = most.of_element[forest.parent(e)];
+            low = smaller(low, least[e]);
+            high = larger(high, most[e]);
         }
+        least.of_cluster =
+            tree.pulled(least.of_element, [](const auto&, const Rgb& x, const Rgb& y) { return smaller(x, y); });
+        most.of_cluster =
+            tree.pulled(most.of_element, [](const auto&, const Rgb& x, const Rgb& y) { return larger(x, y); });
     }
 };
 
 /// Returns [m^2], including partial occlusion.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
-    if (transmittance == 0) return exchange.area * bound_if_blocked;
+    if (transmittance == 0 && exchange.variation == 0) return exchange.area * bound_if_blocked;
     return exchange.variation * exchange.area + (1 - exchange.variation) * transmittance * spread;
 }
 
@@ -230,20 +245,24 @@ double error_bound(const Exchange& exchange, float spread) {
 /// Each end has an error bound as receiver, with the other's radiosity, and as source, with the range of its own.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const Solution& solution = state_.solution;
-    const std::vector<Rgb> b = radiosity(state_.materials, forest_, solution.irradiance);
-    const RadiosityRange range(forest_, b);
+    const EndValues<Rgb> b = mean_values(forest_, tree_, radiosity(state_.materials, forest_, solution.irradiance));
+    const RadiosityRange range(forest_, tree_, b.of_element);
     const ImportanceUse use = importance_use(solution);
-    const std::vector<float> psi =
-        use == ImportanceUse::off ? std::vector<float>(b.size(), 1.0f) : total_importance(solution);
+    const EndValues<float> psi =
+        mean_values(forest_, tree_,
+                    use == ImportanceUse::off ? std::vector<float>(forest_.size(), 1.0f) : total_importance(solution));
+    std::vector<Rgb> of_element;
+    for (std::uint32_t e = 0; e < forest_.size(); ++e)
+        of_element.push_back(state_.materials.surface(forest_.patch(e), e).reflectance);
+    const EndValues<Rgb> rho = mean_values(forest_, tree_, std::move(of_element));
     const double threshold = solution.options.experimental.epsilon * reference_power(solution) *
-                             (use == ImportanceUse::off ? 1 : reference_importance(solution, psi));
+                             (use == ImportanceUse::off ? 1 : reference_importance(solution, psi.of_element));
     std::vector<RefinementCandidate> candidates;
     if (!(threshold > 0)) return candidates;
     const auto weight = [&](std::uint32_t divided, std::uint32_t other) {
-        const Rgb rho = state_.materials.surface(forest_.patch(divided), divided).reflectance,
-                  rho_other = state_.materials.surface(forest_.patch(other), other).reflectance;
-        const double as_receiver = largest_channel(rho * b[other]) * psi[divided];
-        const double as_source = largest_channel(rho_other * (range.most[divided] - range.least[divided])) * psi[other];
+        const double as_receiver = largest_channel(rho[divided] * b[other]) * psi[divided];
+        const double as_source =
+            largest_channel(rho[other] * (range.most[divided] - range.least[divided])) * psi[other];
         return may_divide(divided) ? std::max(as_receiver, as_source) : 0.0;
     };
     for (std::size_t i = 0; i < links_.size(); ++i) {
@@ -251,13 +270,20 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
         const double over_a = weight(ends.a, ends.b) * error_bound(exchange, exchange.spread_over_a);
         const double over_b = weight(ends.b, ends.a) * error_bound(exchange, exchange.spread_over_b);
         if (std::max(over_a, over_b) > threshold)
-            candidates.push_back({i, over_a > over_b ? ends.a : ends.b, std::max(over_a, over_b) / threshold});
+            candidates.push_back({i, divided_end(ends, over_a, over_b), std::max(over_a, over_b) / threshold});
     }
     return candidates;
 }
 
-bool LinkedElements::may_divide(std::uint32_t element) const {
-    return forest_.area(element) >= 4.0 * static_cast<double>(state_.floor.default_min_area());
+/// Returns the end with the larger bound; of a cluster and another end, the larger one.
+std::uint32_t LinkedElements::divided_end(const ElementPair& ends, double over_a, double over_b) const {
+    if (has_cluster(ends) && over_a > 0 && over_b > 0)
+        return clusters_.sphere(ends.a).radius >= clusters_.sphere(ends.b).radius ? ends.a : ends.b;
+    return over_a > over_b ? ends.a : ends.b;
+}
+
+bool LinkedElements::may_divide(std::uint32_t end) const {
+    return is_cluster(end) || forest_.area(end) >= 4.0 * static_cast<double>(state_.floor.default_min_area());
 }
 
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
@@ -295,12 +321,17 @@ void LinkedElements::subdivide_links() {
         Link& link = links_[candidate.link];
         const std::uint32_t divided = candidate.divided;
         const std::uint32_t other = link.ends.a == divided ? link.ends.b : link.ends.a;
-        const std::uint32_t child =
-            forest_.is_leaf(divided) ? forest_.subdivide(divided) : forest_.first_child(divided);
-        if (child == none) continue;
         const bool is_occluded = link.exchange.transmittance == Rgb(0) || link.exchange.variation > 0;
         const Effort effort = is_occluded ? Effort::thorough : Effort::quick;
-        for (std::uint32_t k = 0; k < 4; ++k) candidates_.push_back({{child + k, other}, effort});
+        if (is_cluster(divided)) {
+            for (const std::uint32_t child : tree_.cluster(divided).children)
+                candidates_.push_back({{child, other}, effort});
+        } else {
+            const std::uint32_t child =
+                forest_.is_leaf(divided) ? forest_.subdivide(divided) : forest_.first_child(divided);
+            if (child == none) continue;
+            for (std::uint32_t k = 0; k < 4; ++k) candidates_.push_back({{child + k, other}, effort});
+        }
         link.exchange.area = 0;  // link_candidates() removes it
     }
     describe_new_elements(before);
@@ -345,7 +376,10 @@ void LinkedElements::change_views(SolverState& state) {
 
 bool LinkedElements::fits(const SolverState& state) const {
     const std::uint32_t elements = state.forest->size();
-    const auto joins_elements = [&](const auto& link) { return link.ends.a < elements && link.ends.b < elements; };
+    const auto exists = [&](std::uint32_t end) {
+        return is_cluster(end) ? end - first_cluster < tree_.clusters().size() : end < elements;
+    };
+    const auto joins_elements = [&](const auto& link) { return exists(link.ends.a) && exists(link.ends.b); };
     return std::all_of(links_.begin(), links_.end(), joins_elements) &&
            std::all_of(candidates_.begin(), candidates_.end(), joins_elements);
 }

@@ -1,4 +1,4 @@
-#include "interflect/solver/methods/baselines/exchange.h"
+#include "interflect/solver/methods/links/exchange.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,31 +13,9 @@ namespace interflect::detail {
 
 namespace {
 
-struct Polygon {
-    static constexpr std::size_t capacity = 8;  // clipping adds one corner
-
-    std::array<V3d, capacity> corner;
-    std::size_t count = 0;
-
-    void add(const V3d& c) { corner[count++] = c; }
-    std::span<const V3d> corners() const { return {corner.data(), count}; }
-};
-
-/// Counter-clockwise from the front.
-Polygon polygon_of(const ElementForest& forest, std::uint32_t e) {
-    const PatchGeometry& geometry = forest.geometry(forest.patch(e));
-    const Cell cell = forest.cell(e);
-    Polygon polygon;
-    polygon.add(V3d(geometry.point(cell.at(0, 0))));
-    polygon.add(V3d(geometry.point(cell.at(1, 0))));
-    if (!geometry.is_triangle()) polygon.add(V3d(geometry.point(cell.at(1, 1))));
-    polygon.add(V3d(geometry.point(cell.at(0, 1))));
-    return polygon;
-}
-
 /// Clips to the half-space above the plane through the origin (Sutherland and Hodgman 1974).
-Polygon clip_to_horizon(std::span<const V3d> polygon, const V3d& normal) {
-    Polygon above;
+ConvexPolygon clip_to_horizon(std::span<const V3d> polygon, const V3d& normal) {
+    ConvexPolygon above;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const V3d &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
         const double from_height = normal.dot(from), to_height = normal.dot(to);
@@ -85,10 +63,6 @@ struct Quadrature {
     }
 };
 
-std::uint64_t place(const ElementForest& forest, std::uint32_t e) {
-    return std::uint64_t{forest.patch(e)} << 32 | forest.path(e);
-}
-
 struct FormFactors {
     double mean = 0;
     double spread = 0;  // largest minus smallest, extrapolated to the edges
@@ -96,14 +70,11 @@ struct FormFactors {
 
 FormFactors form_factors(const ElementForest& forest, const Quadrature& points, std::uint32_t from, std::uint32_t to) {
     const V3d normal(forest.geometry(forest.patch(from)).normal());
-    const V3d normal_of_to(forest.geometry(forest.patch(to)).normal());
-    const Polygon polygon = polygon_of(forest, to);
+    const ConvexPolygon polygon(forest, to);
     FormFactors result;
     double least = 1, most = 0;
     for (std::size_t k = 0; k < points.count; ++k) {
-        const V3d x(points.point[k]);
-        const bool is_in_front = normal_of_to.dot(x - polygon.corner[0]) > 0;
-        const double f = is_in_front ? form_factor_to_polygon(x, normal, polygon.corners()) : 0;
+        const double f = polygon.form_factor_from(V3d(points.point[k]), normal);
         result.mean += points.weight[k] * f;
         least = std::min(least, f);
         most = std::max(most, f);
@@ -112,13 +83,9 @@ FormFactors form_factors(const ElementForest& forest, const Quadrature& points, 
     return result;
 }
 
-Rgb smaller(const Rgb& x, const Rgb& y) { return {std::min(x.x, y.x), std::min(x.y, y.y), std::min(x.z, y.z)}; }
-Rgb larger(const Rgb& x, const Rgb& y) { return {std::max(x.x, y.x), std::max(x.y, y.y), std::max(x.z, y.z)}; }
-
 struct LinesOfSight {
     const ElementForest& forest;
-    const RayCaster& ray_caster;
-    const Panes& panes;
+    const ExchangeEstimator& estimator;
     std::uint64_t seed;
     std::int64_t& rays;
 
@@ -144,10 +111,7 @@ struct LinesOfSight {
             const float kernel = cosines / (std::numbers::pi_v<float> * d.length2() + disk);
             const double along_line = points.weight[k] * static_cast<double>(kernel);
             all += along_line;
-            // Both directions: the back of a one-sided face stops no ray, and rays hit only one of two coincident
-            // faces.
-            Rgb line = transmittance(small, x, normal_x, large, y);
-            if (line != Rgb(0)) line = smaller(line, transmittance(large, y, normal_y, small, x));
+            const Rgb line = estimator.transmittance({small, x}, {large, y}, rays);
             free += RgbD(line) * along_line;
             least = smaller(least, line);
             most = larger(most, line);
@@ -155,33 +119,21 @@ struct LinesOfSight {
         exchange.transmittance = all > 0 ? Rgb(free / all) : Rgb(1);  // 1: no sampled line joins the two fronts
         exchange.variation = all > 0 ? largest_channel(most - least) : 0;
     }
-
-    /// Returns the transmittance of panes; 0 if another surface blocks the ray.
-    Rgb transmittance(std::uint32_t source, const V3f& from, const V3f& normal, std::uint32_t element, const V3f& to) {
-        const V3f origin = from + normal * ray_caster.ray_offset(forest.patch(source));
-        const Ray ray{origin, (to - origin).normalized()};
-        Hit hit;
-        ray_caster.trace(std::span(&ray, 1), std::span(&hit, 1));
-        ++rays;
-        const std::uint32_t target = forest.patch(element);
-        if (hit.patch == target) return Rgb(1);
-        std::vector<Panes::HitBehind> behind;
-        panes.trace(std::span(&ray, 1), std::span(&hit, 1), behind);
-        const auto found =
-            std::find_if(behind.begin(), behind.end(), [&](const auto& b) { return b.hit.patch == target; });
-        return found == behind.end() ? Rgb(0) : found->transmittance;
-    }
 };
 
 }  // namespace
 
+std::uint64_t place(const ElementForest& forest, std::uint32_t e) {
+    return std::uint64_t{forest.patch(e)} << 32 | forest.path(e);
+}
+
 double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V3d> polygon) {
-    Polygon seen;
+    ConvexPolygon seen;
     for (const V3d& corner : polygon) seen.add(corner - x);
     seen = clip_to_horizon(seen.corners(), normal);
     double sum = 0;
-    for (std::size_t i = 0; i < seen.count; ++i) {
-        const V3d &r = seen.corner[i], &s = seen.corner[(i + 1) % seen.count];
+    for (std::size_t i = 0; i < seen.corners().size(); ++i) {
+        const V3d &r = seen.corners()[i], &s = seen.corners()[(i + 1) % seen.corners().size()];
         const V3d across = s.cross(r);  // polygons facing x are counter-clockwise from x
         const double length = across.length();
         if (length > 0) sum += std::atan2(length, r.dot(s)) * normal.dot(across) / length;
@@ -189,12 +141,26 @@ double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V
     return std::max(0.0, sum / (2 * std::numbers::pi));
 }
 
+ConvexPolygon::ConvexPolygon(const ElementForest& forest, std::uint32_t e)
+    : normal_(forest.geometry(forest.patch(e)).normal()) {
+    const PatchGeometry& geometry = forest.geometry(forest.patch(e));
+    const Cell cell = forest.cell(e);
+    add(V3d(geometry.point(cell.at(0, 0))));
+    add(V3d(geometry.point(cell.at(1, 0))));
+    if (!geometry.is_triangle()) add(V3d(geometry.point(cell.at(1, 1))));
+    add(V3d(geometry.point(cell.at(0, 1))));
+}
+
+double ConvexPolygon::form_factor_from(const V3d& x, const V3d& normal) const {
+    return normal_.dot(x - corner_[0]) > 0 ? form_factor_to_polygon(x, normal, corners()) : 0;
+}
+
 bool ExchangeEstimator::face_each_other(const ElementPair& pair) const {
     const auto reaches_above = [&](std::uint32_t e, std::uint32_t ground) {
         const V3d normal(forest_.geometry(forest_.patch(ground)).normal());
-        const double height = normal.dot(polygon_of(forest_, ground).corner[0]) +
+        const double height = normal.dot(ConvexPolygon(forest_, ground).corners()[0]) +
                               static_cast<double>(ray_caster_.ray_offset(forest_.patch(ground)));
-        const Polygon polygon = polygon_of(forest_, e);
+        const ConvexPolygon polygon(forest_, e);
         return std::any_of(polygon.corners().begin(), polygon.corners().end(),
                            [&](const V3d& corner) { return normal.dot(corner) > height; });
     };
@@ -212,12 +178,32 @@ Exchange ExchangeEstimator::estimate(const ElementPair& pair, Effort effort, std
     if (exchange.area == 0) return exchange;
     exchange.spread_over_a = static_cast<float>(area_a * from_a.spread);
     exchange.spread_over_b = static_cast<float>(area_b * from_b.spread);
-    LinesOfSight lines{forest_, ray_caster_, panes_, seed_, rays};
+    LinesOfSight lines{forest_, *this, seed_, rays};
     if (a_is_smaller)
         lines.sample(pair.a, pair.b, points_of_a, exchange);
     else
         lines.sample(pair.b, pair.a, points_of_b, exchange);
     return exchange;
+}
+
+Rgb ExchangeEstimator::transmittance(const PointOfElement& x, const PointOfElement& y, std::int64_t& rays) const {
+    // Both directions: rays pass the back of a one-sided face, and hit only one of two coincident faces.
+    const Rgb line = one_way(x, y, rays);
+    return line != Rgb(0) ? smaller(line, one_way(y, x, rays)) : line;
+}
+
+Rgb ExchangeEstimator::one_way(const PointOfElement& from, const PointOfElement& to, std::int64_t& rays) const {
+    const std::uint32_t source = forest_.patch(from.element), target = forest_.patch(to.element);
+    const V3f origin = from.position + forest_.geometry(source).normal() * ray_caster_.ray_offset(source);
+    const Ray ray{origin, (to.position - origin).normalized()};
+    Hit hit;
+    ray_caster_.trace(std::span(&ray, 1), std::span(&hit, 1));
+    ++rays;
+    if (hit.patch == target) return Rgb(1);
+    std::vector<Panes::HitBehind> behind;
+    panes_.trace(std::span(&ray, 1), std::span(&hit, 1), behind);
+    const auto found = std::find_if(behind.begin(), behind.end(), [&](const auto& b) { return b.hit.patch == target; });
+    return found == behind.end() ? Rgb(0) : found->transmittance;
 }
 
 }  // namespace interflect::detail

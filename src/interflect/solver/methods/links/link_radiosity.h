@@ -7,7 +7,10 @@
 #include "interflect/base/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/iteration/iteration_method.h"
-#include "interflect/solver/methods/baselines/exchange.h"
+#include "interflect/solver/methods/links/cluster_exchange.h"
+#include "interflect/solver/methods/links/exchange.h"
+#include "interflect/solver/methods/links/first_links.h"
+#include "interflect/solver/methods/links/patch_tree.h"
 
 namespace interflect::detail {
 
@@ -24,23 +27,21 @@ struct Link {
     double mean_area() const { return channel_sum(area()) / 3; }
 };
 
-struct LinkCandidate {
-    ElementPair ends;
-    Effort effort;
-};
-
 struct RefinementCandidate;
 
 /// Hierarchical radiosity (Hanrahan et al. 1991) for Eq. 1, Prikryl et al. 2000; deterministic. A sweep gathers one
-/// bounce. Only visibility is sampled.
+/// bounce. Only visibility is sampled. With ExperimentalOptions::clusters, scenes of many patches have links between
+/// clusters (Smits et al. 1994; ClusterExchange).
 ///
-/// Four links to the children of one end replace a link if its error bound exceeds epsilon times reference_power(). The
-/// bound is rho_i B_j A_i times the variation of F_ij over an element, including partial occlusion. With importance, it
-/// is weighted by psi_i / psi_max (Eq. 15; Smits et al. 1992).
+/// Links to the four children of one end, or to the two parts of a cluster, replace a link if its error bound exceeds
+/// epsilon times reference_power(). The bound is rho_i B_j A_i times the variation of F_ij over an element, including
+/// partial occlusion. With importance, it is weighted by psi_i / psi_max (Eq. 15; Smits et al. 1992).
 ///
 /// The run ends when light and links have settled. It stays within limits.rays (except for the first links),
 /// max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
-/// escaped_power is the error of the form factors. Cost: O(patches^2 + links).
+/// escaped_power is the error of the form factors. Cost: O(patches^2 + links), with clusters about O(patches
+/// log(patches)
+/// + links); a sweep costs the number of members of all links.
 class LinkedElements : public IterationMethod {
   public:
     /// The state must outlive this.
@@ -62,18 +63,22 @@ class LinkedElements : public IterationMethod {
     RgbD gather_light();
     void gather_importance();
     bool refine_links();
-    void find_patches_to_link();
+    void find_first_links();
+    Exchange estimate(const LinkCandidate& candidate, std::int64_t& rays) const;
     void link_candidates();
     void subdivide_links();
     void require_room_for(std::size_t more) const;
     std::vector<RefinementCandidate> refinement_candidates() const;
-    bool may_divide(std::uint32_t element) const;
+    std::uint32_t divided_end(const ElementPair& ends, double over_a, double over_b) const;
+    bool may_divide(std::uint32_t end) const;
     void keep_affordable(std::vector<RefinementCandidate>& candidates) const;
     void describe_new_elements(std::uint32_t first);
 
     SolverState& state_;
     ElementForest& forest_;
     ExchangeEstimator estimator_;
+    PatchTree tree_;
+    ClusterExchange clusters_;
     std::size_t link_limit_;
     std::vector<Link> links_;
     std::vector<LinkCandidate> candidates_;

@@ -2,6 +2,7 @@
 
 #include <ImathVec.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/panes.h"
+#include "interflect/solver/methods/links/patch_tree.h"
 
 namespace interflect::detail {
 
@@ -22,9 +24,36 @@ using V3d = Imath::V3d;
 /// @param polygon  Three to seven corners [m], counter-clockwise from the lit side.
 double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V3d> polygon);
 
-struct ElementPair {
-    std::uint32_t a, b;
+/// Per channel.
+inline Rgb smaller(const Rgb& x, const Rgb& y) { return {std::min(x.x, y.x), std::min(x.y, y.y), std::min(x.z, y.z)}; }
+inline Rgb larger(const Rgb& x, const Rgb& y) { return {std::max(x.x, y.x), std::max(x.y, y.y), std::max(x.z, y.z)}; }
+
+/// Counter-clockwise from the front.
+class ConvexPolygon {
+  public:
+    ConvexPolygon() = default;
+    ConvexPolygon(const ElementForest& forest, std::uint32_t element);
+
+    void add(const V3d& corner) { corner_[count_++] = corner; }
+    std::span<const V3d> corners() const { return {corner_.data(), count_}; }
+    /// Unoccluded form factor from a differential area, 0 if it is behind the element.
+    double form_factor_from(const V3d& x, const V3d& normal) const;
+
+  private:
+    static constexpr std::size_t capacity = 8;  // clipping adds one corner
+
+    V3d normal_{0, 0, 0};
+    std::array<V3d, capacity> corner_;
+    std::size_t count_ = 0;
 };
+
+struct PointOfElement {
+    std::uint32_t element;
+    V3f position;
+};
+
+/// Identifies an element among all that the forest may ever have.
+std::uint64_t place(const ElementForest& forest, std::uint32_t element);
 
 struct Exchange {
     /// Unoccluded A_a F_ab = A_b F_ba [m^2].
@@ -37,7 +66,7 @@ struct Exchange {
     float variation = 0;
 };
 
-/// Points per side of the smaller element.
+/// Points per side of the smaller element; lines of sight are its square.
 enum class Effort { quick = 2, thorough = 4 };
 
 /// Thread-safe. Integrates Lambert's form factor to the larger element over the smaller (Gaussian quadrature). A line
@@ -53,7 +82,13 @@ class ExchangeEstimator {
     /// @param rays  Incremented.
     Exchange estimate(const ElementPair& pair, Effort effort, std::int64_t& rays) const;
 
+    /// Returns the transmittance of the panes between two points; 0 if another surface hides one from the other.
+    /// @param rays  Incremented.
+    Rgb transmittance(const PointOfElement& x, const PointOfElement& y, std::int64_t& rays) const;
+
   private:
+    Rgb one_way(const PointOfElement& from, const PointOfElement& to, std::int64_t& rays) const;
+
     const ElementForest& forest_;
     const RayCaster& ray_caster_;
     Panes panes_;

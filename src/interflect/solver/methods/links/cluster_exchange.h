@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/elements/forest.h"
+#include "interflect/solver/methods/links/exchange.h"
+#include "interflect/solver/methods/links/patch_tree.h"
+
+namespace interflect::detail {
+
+/// Exchange of a cluster with a cluster or an element, after Smits, Arvo and Greenberg 1994. For members p and q,
+/// A_p F_pq = T s w_p w_q [m^2], so a link costs the sum of the members instead of their product. All pairs of a link
+/// share one sampled transmittance T.
+///
+/// Distant ends: w_p = A_p cos / |p - c|^2 towards the centre c of the other end, s = |c - c'|^2 / pi. The relative
+/// error is of second order in radius over distance. A near element and a cluster: w_p = A_p F_p towards the element by
+/// Lambert's formula, s w_q = 1.
+class ClusterExchange {
+  public:
+    ClusterExchange(const ElementForest& forest, const PatchTree& tree, const ExchangeEstimator& estimator,
+                    std::uint64_t seed)
+        : forest_(forest), tree_(tree), estimator_(estimator), seed_(seed) {}
+
+    Sphere sphere(std::uint32_t end) const;
+    /// Whether the approximation holds for all members, without occlusion.
+    bool is_valid(const ElementPair& pair) const;
+
+    /// Samples the transmittance. Thread-safe.
+    /// @param rays  Incremented.
+    Exchange estimate(const ElementPair& pair, Effort effort, std::int64_t& rays) const;
+
+    /// Adds the power [W or lm] that each member receives from the other end.
+    /// @param leaving   Radiosity per element.
+    template <class T>
+    void transport(const ElementPair& pair, const T& transmittance, const std::vector<T>& leaving,
+                   std::vector<T>& received) const {
+        const Factors factors(*this, pair);
+        T from_a(0), from_b(0);
+        for (const Facet& p : factors.a.facets()) from_a += leaving[p.element] * factors.weight_a(p);
+        for (const Facet& q : factors.b.facets()) from_b += leaving[q.element] * factors.weight_b(q);
+        from_a *= transmittance * factors.scale;
+        from_b *= transmittance * factors.scale;
+        for (const Facet& p : factors.a.facets()) received[p.element] += from_b * factors.weight_a(p);
+        for (const Facet& q : factors.b.facets()) received[q.element] += from_a * factors.weight_b(q);
+    }
+
+  private:
+    struct End {
+        Sphere sphere;
+        Facet element;
+        std::span<const Facet> patches;  // of a cluster
+
+        std::span<const Facet> facets() const { return patches.empty() ? std::span(&element, 1) : patches; }
+    };
+    struct Weight {
+        enum class Kind { by_point, by_polygon, one } kind = Kind::one;
+        V3f point{0, 0, 0};
+        ConvexPolygon polygon;
+
+        double operator()(const Facet& facet) const;
+    };
+    struct Factors {
+        End a, b;
+        Weight weight_a, weight_b;
+        double scale = 1;
+
+        Factors(const ClusterExchange& exchange, const ElementPair& pair);
+    };
+
+    End end(std::uint32_t end) const;
+
+    const ElementForest& forest_;
+    const PatchTree& tree_;
+    const ExchangeEstimator& estimator_;
+    std::uint64_t seed_;
+};
+
+}  // namespace interflect::detail

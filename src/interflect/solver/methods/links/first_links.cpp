@@ -1,0 +1,127 @@
+#include "interflect/solver/methods/links/first_links.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "interflect/base/parallel.h"
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+namespace {
+
+constexpr std::size_t patches_per_task = 8;
+
+bool emits(const SolverState& state, std::uint32_t patch) { return channel_sum(state.materials.exitance(patch)) > 0; }
+
+/// Upper bound for surfaces inside two spheres [m^2].
+double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double area_b) {
+    const double gap = std::max(0.0f, (a.centre - b.centre).length() - a.radius - b.radius);
+    return area_a * area_b / (std::numbers::pi * gap * gap);
+}
+
+/// Chooses the effort for pairs of patches.
+class PatchPairs {
+  public:
+    PatchPairs(const SolverState& state, const ExchangeEstimator& estimator)
+        : state_(state), forest_(*state.forest), estimator_(estimator) {
+        for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) {
+            spheres_.push_back(sphere_around(forest_, i));
+            surface_ += forest_.area(i);
+        }
+    }
+
+    void add(std::uint32_t i, std::uint32_t j, std::vector<LinkCandidate>& candidates) const {
+        if (estimator_.face_each_other({i, j}))
+            candidates.push_back({{i, j}, is_weak(i, j) ? Effort::quick : Effort::thorough});
+    }
+
+  private:
+    /// A reflector of average brightness sends at most the threshold over this exchange.
+    bool is_weak(std::uint32_t i, std::uint32_t j) const {
+        return !emits(state_, i) && !emits(state_, j) &&
+               largest_exchange(spheres_[i], spheres_[j], forest_.area(i), forest_.area(j)) <
+                   state_.options.experimental.epsilon * surface_;
+    }
+
+    const SolverState& state_;
+    const ElementForest& forest_;
+    const ExchangeEstimator& estimator_;
+    std::vector<Sphere> spheres_;
+    double surface_ = 0;  // [m^2]
+};
+
+/// Divides pairs until the exchange of clusters is valid.
+struct PairDivision {
+    const PatchTree& tree;
+    const ClusterExchange& exchange;
+    const PatchPairs& of_patches;
+    std::size_t limit;
+    std::vector<LinkCandidate> candidates = {};
+
+    void add(std::uint32_t a, std::uint32_t b) {
+        if (candidates.size() > limit) return;
+        if (!is_cluster(a) && !is_cluster(b)) return of_patches.add(a, b, candidates);
+        if (exchange.is_valid({a, b})) return candidates.push_back({{a, b}, Effort::quick});
+        const bool divides_a =
+            is_cluster(a) && (!is_cluster(b) || tree.cluster(a).sphere.radius >= tree.cluster(b).sphere.radius);
+        for (const std::uint32_t child : tree.cluster(divides_a ? a : b).children) add(child, divides_a ? b : a);
+    }
+
+    void add_within(std::uint32_t end) {
+        if (!is_cluster(end)) return;
+        const auto& [first, second] = tree.cluster(end).children;
+        add_within(first);
+        add_within(second);
+        add(first, second);
+    }
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> patches_to_cluster(const SolverState& state) {
+    std::vector<std::uint32_t> patches;
+    if (!state.options.experimental.clusters || state.forest->capacity() > first_cluster) return patches;
+    for (std::uint32_t p = 0; p < state.forest->patch_count(); ++p)
+        if (!emits(state, p)) patches.push_back(p);
+    return patches;
+}
+
+std::vector<LinkCandidate> pairs_of_patches(const SolverState& state, const ExchangeEstimator& estimator,
+                                            std::size_t limit) {
+    const PatchPairs pairs(state, estimator);
+    const std::uint32_t patches = state.forest->patch_count();
+    std::vector<std::vector<LinkCandidate>> of_patch(patches);
+    std::atomic<std::size_t> count{0};
+    parallel_for_ranges(of_patch.size(), patches_per_task, state.stop.within_process(),
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t i = begin; i < end && count <= limit; ++i) {
+                                for (auto b = static_cast<std::uint32_t>(i + 1); b < patches; ++b)
+                                    pairs.add(static_cast<std::uint32_t>(i), b, of_patch[i]);
+                                count += of_patch[i].size();
+                            }
+                        });
+    std::vector<LinkCandidate> candidates;
+    candidates.reserve(count);
+    for (const std::vector<LinkCandidate>& some : of_patch)
+        candidates.insert(candidates.end(), some.begin(), some.end());
+    return candidates;
+}
+
+std::vector<LinkCandidate> pairs_of_clusters(const SolverState& state, const ExchangeEstimator& estimator,
+                                             const PatchTree& tree, const ClusterExchange& exchange,
+                                             std::size_t limit) {
+    const PatchPairs of_patches(state, estimator);
+    PairDivision division{tree, exchange, of_patches, limit};
+    const std::uint32_t patches = state.forest->patch_count();
+    for (std::uint32_t a = 0; a < patches && division.candidates.size() <= limit; ++a)
+        if (emits(state, a))
+            for (std::uint32_t b = 0; b < patches; ++b)
+                if (b != a && (b > a || !emits(state, b))) division.add(a, b);
+    division.add_within(first_cluster);
+    return std::move(division.candidates);
+}
+
+}  // namespace interflect::detail

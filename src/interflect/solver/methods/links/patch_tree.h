@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/elements/forest.h"
+
+namespace interflect::detail {
+
+/// An end of a link is an element or, from this index on, a cluster of a PatchTree.
+inline constexpr std::uint32_t first_cluster = std::uint32_t{1} << 31;
+constexpr bool is_cluster(std::uint32_t end) { return end >= first_cluster; }
+
+/// Two ends of a link.
+struct ElementPair {
+    std::uint32_t a, b;
+};
+
+constexpr bool has_cluster(const ElementPair& pair) { return is_cluster(pair.a) || is_cluster(pair.b); }
+
+struct Sphere {
+    V3f centre;
+    float radius;
+};
+
+/// Flat surface, described by its centre and area.
+struct Facet {
+    V3f centre;
+    V3f area_vector;  ///< Unit normal times area [m^2].
+    std::uint32_t element;
+};
+
+Facet facet_of(const ElementForest& forest, std::uint32_t element);
+/// Contains the element; the centre is the mean of its corners.
+Sphere sphere_around(const ElementForest& forest, std::uint32_t element);
+
+/// Binary tree of clusters: groups of at least two patches that are near each other, whatever they face.
+class PatchTree {
+  public:
+    struct Cluster {
+        std::uint32_t first_facet, end_facet;
+        std::array<std::uint32_t, 2> children;  ///< Clusters or patches.
+        Sphere sphere;                          ///< Around the area-weighted mean of the patches.
+        float largest_radius;                   ///< Largest radius of a patch [m].
+        float area;                             ///< [m^2]
+    };
+
+    PatchTree() = default;
+    PatchTree(const ElementForest& forest, std::vector<std::uint32_t> patches);
+
+    /// Parents first; the first is the root. Empty for fewer than two patches.
+    std::span<const Cluster> clusters() const { return clusters_; }
+    const Cluster& cluster(std::uint32_t end) const { return clusters_[end - first_cluster]; }
+    std::span<const Facet> facets(std::uint32_t end) const {
+        return std::span(facets_).subspan(cluster(end).first_facet, cluster(end).end_facet - cluster(end).first_facet);
+    }
+
+    /// Combines values of patches to values of clusters: combine(cluster, of_child_0, of_child_1).
+    template <class T, class Combine>
+    std::vector<T> pulled(const std::vector<T>& of_patch, const Combine& combine) const {
+        std::vector<T> of_cluster(clusters_.size());
+        const auto value = [&](std::uint32_t end) {
+            return is_cluster(end) ? of_cluster[end - first_cluster] : of_patch[end];
+        };
+        for (std::size_t i = clusters_.size(); i-- > 0;)
+            of_cluster[i] = combine(clusters_[i], value(clusters_[i].children[0]), value(clusters_[i].children[1]));
+        return of_cluster;
+    }
+
+  private:
+    std::vector<Cluster> clusters_;
+    std::vector<Facet> facets_;
+};
+
+}  // namespace interflect::detail
