@@ -30,11 +30,11 @@ namespace {
 
 std::shared_ptr<Ranks> crew;
 
-/// What the first process does next, and the others with it.
+/// Command of the first process to the others.
 struct Order {
     enum class Kind { solve, advance, plan, end_of_run, dismiss } kind;
     Limits limits = {};
-    std::size_t bytes = 0;  ///< Of the run that follows.
+    std::size_t bytes = 0;  ///< Size of the checkpoint that follows.
     int threads = 0;
 };
 
@@ -98,7 +98,8 @@ std::string content_of(const std::filesystem::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What determines the bits of results: the program, and the instructions that libraries choose from.
+/// Results have equal bits if the program and the instruction set of the processor are equal (libraries use the
+/// latter).
 struct Fingerprint {
     std::uint32_t program, instructions;
     bool operator==(const Fingerprint&) const = default;

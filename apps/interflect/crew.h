@@ -15,13 +15,13 @@ namespace interflect::command {
 /// the same bits.
 bool join_crew();
 
-/// Waits for runs of the first process and solves them with it, until it leaves. @throws what a Solver throws.
+/// Helps to solve the runs of the first process until dismiss_crew(). @throws the exceptions of Solver.
 void serve_crew();
 
 /// The first process calls this at its end, also after an error outside runs.
 void dismiss_crew();
 
-/// After an error in a run, ends all processes with this exit code. Does nothing without a crew.
+/// Ends all processes with this exit code, after an error in a run. No effect without other processes.
 void abort_crew(int exit_code);
 
 /// A run that the whole crew solves. Without a crew it is the Solver alone.

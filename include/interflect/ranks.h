@@ -21,11 +21,11 @@ class Ranks {
     virtual int rank() const = 0;   ///< From 0.
     virtual int count() const = 0;  ///< At least 1.
 
-    /// Sends parts[r] to rank r. @return  What each rank sent to this one.
+    /// Sends parts[r] to rank r. @return  Received bytes, by sender.
     virtual std::vector<Bytes> exchange(const std::vector<Bytes>& parts) = 0;
     /// Returns the bytes of all ranks, whose numbers may differ.
     virtual std::vector<Bytes> gather(std::span<const std::byte> bytes) = 0;
-    /// Replaces the bytes by those of rank 0. All ranks have equally many.
+    /// Copies the bytes of rank 0 to all ranks; equal sizes.
     virtual void broadcast(std::span<std::byte> bytes) = 0;
     /// Ends all processes at once, for faults of one.
     [[noreturn]] virtual void abort(int exit_code) = 0;

@@ -210,7 +210,7 @@ TEST(PhotonMesh, ReflectsLightWhereItArrives) {
     const std::uint32_t wall = add_rectangle(scene, {1.5f, 0, 0}, {0, 2, 0}, {0, 0, 3}, 0, 1, 1, true);
     scene.luminaires = {{"", 0, PointLight{{0.5f, 1, 2}, Rgb(10)}}};
     SolveOptions options = mesh_options(20'000);
-    options.experimental.clusters = false;  // they lend light to the dark wall, 1e-6 of that of others
+    options.experimental.clusters = false;  // the dark wall would receive 1e-6 of the light of its cluster
     const Solution s = solve(scene, RayCaster(scene), options);
     EXPECT_GT(s.irradiance[0].x, 1);
     EXPECT_GT(s.irradiance[wall].x + s.irradiance[wall + 1].x, 1);

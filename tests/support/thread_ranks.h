@@ -16,7 +16,7 @@ class ThreadRanks {
   public:
     explicit ThreadRanks(int count) : sent_(static_cast<std::size_t>(count)), barrier_(count) {}
 
-    /// Calls body(ranks) in each and waits for all. Throws what the first that failed has thrown.
+    /// Calls body(ranks) in every thread and waits for the end. Rethrows the first exception.
     template <class Body>
     void run(const Body& body) {
         std::vector<std::exception_ptr> errors(sent_.size());

@@ -8,15 +8,14 @@
 
 namespace interflect::detail {
 
-/// A stop on which all ranks agree: that of the first. Loops of one process, which cannot know it, then run to their
-/// end.
+/// The stop of rank 0, for all ranks. Loops within one process cannot know it and run to their end.
 class CommonStop {
   public:
     CommonStop() = default;
     CommonStop(const std::atomic<bool>* flag, Ranks* ranks) : requested_(flag), ranks_(ranks) {}
 
     void limit_time(StopRequest::Clock::time_point start, double seconds) { requested_.limit_time(start, seconds); }
-    /// For loops of this process; never due if there are others.
+    /// For loops within this process; never due with several ranks.
     const StopRequest& within_process() const { return ranks_ ? never_ : requested_; }
     /// The following are collective.
     bool is_due() const { return of_first_rank(ranks_, requested_.is_due()); }

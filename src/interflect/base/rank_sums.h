@@ -59,7 +59,7 @@ class SparseSums {
     Ranks::Bytes bytes_;
 };
 
-/// Adds the sums of all ranks. Rank r adds those of the r-th part of the elements, and sends the results to all.
+/// Adds the sums of all ranks. Rank r does this for the r-th part of the elements and sends the results to the others.
 /// @param take  take(element, sums) moves the sums of this process there.
 /// @param add   add(element, sums) receives the sums over all ranks.
 template <class Take, class Add>

@@ -43,7 +43,7 @@ class ElementForest {
     std::uint32_t path(std::uint32_t e) const {
         return is_root(e) ? 1 : block_of(e).parent_path << 2 | number_in_block(e);
     }
-    /// Returns the element with this path(); none if it does not exist.
+    /// Returns the element with this path(), or none.
     std::uint32_t at_path(std::uint32_t patch, std::uint32_t path) const;
     Cell cell(std::uint32_t e) const;
     const PatchGeometry& geometry(std::uint32_t patch) const { return geometry_[patch]; }

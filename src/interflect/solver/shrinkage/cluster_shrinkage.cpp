@@ -89,7 +89,7 @@ struct Region {
     /// Returns 1 + x (visibility - y), which keeps the power and makes `after` equal to `before`. Where little is
     /// hidden, y = 0.
     float factor(double seen, int c) const {
-        constexpr double most = 0.5;  // change of what is hidden
+        constexpr double most = 0.5;  // change of hidden patches
         const auto change = [&](double y) { return (before[c] - after[c]) / (after_visible[c] - y * after[c]); };
         if (!(after_visible[c] > 0)) return 1;
         double y = power_visible[c] / power[c];
@@ -190,8 +190,8 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
     return means;
 }
 
-/// Clusters preserve the means of areas. Pictures show parts of them, which may be brighter than what is hidden: what
-/// is seen becomes brighter and what is hidden darker, so that the power stays, too.
+/// Clusters preserve the mean over their area, but visible patches may be brighter than hidden ones. Visible patches
+/// are scaled to the mean of the pictures before the reduction, hidden ones to keep the power.
 void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
     const ElementForest& forest = *state_->forest;
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();

@@ -75,7 +75,7 @@ struct SolverState {
 
     void begin_work(const Monitor& m);
     void end_work() { earlier_seconds = seconds(); }
-    /// Of the first rank [s].
+    /// Time on the clock of rank 0 [s].
     double seconds_of_this_call() const {
         const std::chrono::duration<double> passed = StopRequest::Clock::now() - start_of_this_call;
         return of_first_rank(monitor.ranks, passed.count());
