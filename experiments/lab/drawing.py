@@ -78,7 +78,9 @@ def panels(
 
 
 def style_of(number: int) -> dict:
-    return {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
+    again, index = divmod(number, len(COLOURS))  # a second round is dashed, with empty markers
+    dashed = {"linestyle": "--", "markerfacecolor": "white"} if again else {}
+    return {"color": COLOURS[index], "marker": MARKERS[index]} | dashed
 
 
 def draw_curve(axes: Axes, c: Curve, label: str, number: int, **style) -> None:
