@@ -161,6 +161,21 @@ TEST(ClusterShrinkage, LightsPatchesThatNoRayHasHit) {
     for (const Rgb& h : box.state.solution.irradiance) ASSERT_GT(h.x, 0.1f);
 }
 
+// So it is after an iteration that found light on some patches for the first time. Seen to fail (NaN) when their payload
+// counts as 0.
+TEST(ClusterShrinkage, AcceptsPatchesWhoseNoiseIsNotKnownYet) {
+    Box box;
+    box.receive([](std::uint32_t) { return 2.0f; });
+    std::vector<float> variance(box.patches());
+    for (std::uint32_t p = 0; p < box.patches(); p += 2) variance[p] = 2 * Box::payload / box.area(p);
+    box.state.noise.set_variance(variance, box.state.history);
+    finish_solution(box.state);
+    for (std::uint32_t p = 0; p < box.patches(); ++p) {
+        ASSERT_TRUE(std::isfinite(box.state.solution.irradiance[p].x)) << p;
+        ASSERT_TRUE(std::isfinite(box.state.solution.standard_error[p])) << p;
+    }
+}
+
 class ClusterRisk : public testing::TestWithParam<float> {};
 INSTANTIATE_TEST_SUITE_P(Contrast, ClusterRisk, testing::Values(0.0f, 0.2f, 0.5f, 1.0f));
 

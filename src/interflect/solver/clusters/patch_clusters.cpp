@@ -8,7 +8,6 @@
 #include <iterator>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "interflect/base/parallel.h"
 
@@ -86,11 +85,9 @@ void divide(Range patches, int halvings, const std::vector<Place>& places, std::
 
 }  // namespace
 
-PatchClusters::PatchClusters(const ElementForest& forest, float length, float turn)
+PatchClusters::PatchClusters(const ElementForest& forest, std::vector<std::uint32_t> patches, float length, float turn)
     : patch_count_(forest.patch_count()) {
     const std::vector<Place> of_patch = places(forest, length, turn);
-    std::vector<std::uint32_t> patches(patch_count_);
-    std::iota(patches.begin(), patches.end(), 0u);
     std::vector<Range> ranges{patches};  // of the nodes
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const Range range = ranges[i];
@@ -109,11 +106,14 @@ PatchClusters::PatchClusters(const ElementForest& forest, float length, float tu
 
 std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster) {
     const float length = distance_of_surfaces(forest, ray_caster);
+    std::vector<std::uint32_t> patches;
+    for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
+        if (ray_caster.uncovered_share(p) > 0) patches.push_back(p);
     // A turn of 120 degrees about (1, 1, 1) would exchange the axes.
     std::vector<std::vector<PatchClusters>> made(trees);
     parallel_for_ranges(trees, 1, [&](std::size_t tree, std::size_t) {
         const float turn = static_cast<float>(tree) / trees * 2 * std::numbers::pi_v<float> / 3;
-        made[tree].emplace_back(forest, length, turn);
+        made[tree].emplace_back(forest, patches, length, turn);
     });
     std::vector<PatchClusters> all;
     all.reserve(trees);

@@ -23,9 +23,10 @@ class PatchClusters {
         bool is_patch() const { return first_child == none; }
     };
 
+    /// @param patches  To be divided.
     /// @param length  Distance over which irradiance changes about as much as from one direction to the opposite [m].
     /// @param turn  Angle by which the scene is turned before it is divided [radians].
-    PatchClusters(const ElementForest& forest, float length, float turn);
+    PatchClusters(const ElementForest& forest, std::vector<std::uint32_t> patches, float length, float turn);
 
     std::uint32_t patch_count() const { return patch_count_; }
     /// Parents first; children of a node are adjacent.
@@ -50,7 +51,8 @@ class PatchClusters {
     std::vector<Node> nodes_;
 };
 
-/// Returns trees with different boundaries between clusters, to be averaged.
+/// Returns trees with different boundaries between clusters, to be averaged. They lack patches that are wholly covered
+/// by others, and receive no light.
 std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster);
 
 }  // namespace interflect::detail

@@ -35,7 +35,8 @@ struct Sums {
 
 /// Returns the variance of a part's mean. @param least_payload  Of the cluster's parts.
 double variance_of(const Sums& part, double cluster_mean, double least_payload) {
-    const double payload = part.power > 0 ? part.payload() : least_payload;
+    const bool is_known = part.power > 0 && part.variance > 0;
+    const double payload = is_known ? part.payload() : least_payload;
     const double expected = cluster_mean * part.area / payload,
                  contributions = std::max(part.contributions(), expected),
                  measured = contributions / (contributions + contributions_of_half_trust);
@@ -150,7 +151,7 @@ void ClusterShrinkage::measure_parts() {
 
 /// From the scene to the patches.
 std::vector<Rgb> ClusterShrinkage::reduce() const {
-    std::vector<Rgb> means(clusters_->patch_count());
+    std::vector<Rgb> means(irradiance_.begin(), irradiance_.begin() + clusters_->patch_count());
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
     std::vector<Rgb> before(nodes.size(), Rgb(0));
     for (std::size_t i = nodes.size(); i-- > 0;) {
