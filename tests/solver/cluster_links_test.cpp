@@ -1,7 +1,7 @@
 // Links of clusters in `hr`, against links of all pairs of patches, which tests/solver/link_radiosity_test.cpp compares
 // with closed forms. Deterministic: the tolerances are about twice the observed differences.
 //
-// Seen to fail if facets lack their area, the scale lacks 1/pi, a divided pair lacks a child, the parts of a cluster
+// Seen to fail if members lack their area, the scale lacks 1/pi, a divided pair lacks a child, the parts of a cluster
 // are not linked, lines of sight are not traced, light flows in one direction only, the variation of equal lines is 0,
 // or importance lacks rho.
 
@@ -118,19 +118,19 @@ TEST(PatchTree, IsBinaryAndContainsEveryPatchOnce) {
         const PatchTree::Cluster& cluster = tree.clusters()[i];
         std::size_t below = 0;
         for (const std::uint32_t child : cluster.children) {
-            below += is_cluster(child) ? tree.facets(child).size() : 1;
+            below += is_cluster(child) ? tree.members(child).size() : 1;
             if (is_cluster(child))
                 EXPECT_GT(child, first_cluster + i) << "parents come first";
             else
                 found.insert(child);
         }
-        const std::span<const Facet> facets = tree.facets(first_cluster + i);
-        EXPECT_EQ(below, facets.size());
+        const std::span<const ClusterMember> members = tree.members(first_cluster + i);
+        EXPECT_EQ(below, members.size());
         double area = 0;
-        for (const Facet& facet : facets) {
-            area += static_cast<double>(forest.area(facet.element));
-            EXPECT_NEAR(facet.area_vector.length() / forest.area(facet.element), 1, 1e-5);
-            const Patch& patch = scene.patches[facet.element];
+        for (const ClusterMember& member : members) {
+            area += static_cast<double>(forest.area(member.element));
+            EXPECT_NEAR(member.area_vector.length() / forest.area(member.element), 1, 1e-5);
+            const Patch& patch = scene.patches[member.element];
             for (const std::uint32_t v :
                  std::span(patch.vertices).first(static_cast<std::size_t>(patch.vertex_count())))
                 EXPECT_LE((scene.vertices[v] - cluster.sphere.centre).length(), cluster.sphere.radius + 1e-5f);
@@ -186,11 +186,11 @@ struct TwoGroups {
         return all;
     }
     /// The same by pairs of patches.
-    std::vector<double> received_by_pairs(std::span<const Facet> a, std::span<const Facet> b) const {
+    std::vector<double> received_by_pairs(std::span<const ClusterMember> a, std::span<const ClusterMember> b) const {
         std::vector<double> all(forest.size(), 0);
         std::int64_t rays = 0;
-        for (const Facet& p : a)
-            for (const Facet& q : b) {
+        for (const ClusterMember& p : a)
+            for (const ClusterMember& q : b) {
                 const auto area =
                     static_cast<double>(patches.estimate({p.element, q.element}, Effort::thorough, rays).area);
                 all[p.element] += area;
@@ -219,7 +219,7 @@ TEST(ClusterExchange, OfDistantGroupsIsTheSumOverPairs) {
         const TwoGroups scene(distance);
         const auto [a, b] = scene.groups();
         ASSERT_TRUE(is_cluster(a) && is_cluster(b) && scene.clusters.is_valid({a, b}));
-        const std::vector<double> expected = scene.received_by_pairs(scene.tree.facets(a), scene.tree.facets(b));
+        const std::vector<double> expected = scene.received_by_pairs(scene.tree.members(a), scene.tree.members(b));
         EXPECT_NEAR(sum(scene.received({a, b})) / sum(expected), 1, 0.6 * tolerance) << distance;
         EXPECT_LT(relative_rms(scene.received({a, b}), expected), tolerance) << distance;
         std::int64_t rays = 0;
@@ -235,9 +235,9 @@ TEST(ClusterExchange, OfAGroupAndANearWallIsTheSumOverPatches) {
         for (const std::uint32_t side : {0u, 1u}) {
             const std::uint32_t wall = static_cast<std::uint32_t>(scene.scene.patches.size()) - 2 + side;
             ASSERT_TRUE(scene.clusters.is_valid({wall, group}));
-            const Facet facet = facet_of(scene.forest, wall);
+            const ClusterMember member = member_of(scene.forest, wall);
             const std::vector<double> expected =
-                scene.received_by_pairs(std::span(&facet, 1), scene.tree.facets(group));
+                scene.received_by_pairs(std::span(&member, 1), scene.tree.members(group));
             if (sum(expected) == 0) {
                 EXPECT_EQ(sum(scene.received({wall, group})), 0) << "behind the wall";
                 continue;

@@ -33,24 +33,24 @@ float likely_variation(double mean, double mean_square, std::size_t lines) {
 }
 
 struct Choice {
-    const Facet* facet;
+    const ClusterMember* member;
     float remainder;  // uniform in [0, 1)
 };
 
-/// Chooses facets with probability w / sum, by inversion of the uniform numbers `u`.
-void choose(std::span<const Facet> facets, const auto& weight, double sum, std::span<const float> u,
+/// Chooses members with probability w / sum, by inversion of the uniform numbers `u`.
+void choose(std::span<const ClusterMember> members, const auto& weight, double sum, std::span<const float> u,
             std::array<Choice, most_lines>& chosen) {
     std::array<std::size_t, most_lines> order{};
     std::iota(order.begin(), order.begin() + std::ssize(u), std::size_t{0});
     std::sort(order.begin(), order.begin() + std::ssize(u), [&](std::size_t i, std::size_t j) { return u[i] < u[j]; });
     double below = 0;
     std::size_t next = 0;
-    const Facet* last = nullptr;
-    for (const Facet& facet : facets) {
+    const ClusterMember* last = nullptr;
+    for (const ClusterMember& member : members) {
         if (next == u.size()) return;
-        const double w = weight(facet);
+        const double w = weight(member);
         if (!(w > 0)) continue;
-        last = &facet;
+        last = &member;
         for (; next < u.size() && u[order[next]] * sum < below + w; ++next) {
             const auto remainder = static_cast<float>((u[order[next]] * sum - below) / w);
             chosen[order[next]] = {last, std::clamp(remainder, 0.0f, 1.0f)};
@@ -63,8 +63,8 @@ void choose(std::span<const Facet> facets, const auto& weight, double sum, std::
 }  // namespace
 
 ClusterExchange::End ClusterExchange::end(std::uint32_t end) const {
-    if (is_cluster(end)) return {tree_.cluster(end).sphere, {}, tree_.facets(end)};
-    return {sphere_around(forest_, end), facet_of(forest_, end), {}};
+    if (is_cluster(end)) return {tree_.cluster(end).sphere, {}, tree_.members(end)};
+    return {sphere_around(forest_, end), member_of(forest_, end), {}};
 }
 
 Sphere ClusterExchange::sphere(std::uint32_t end) const {
@@ -84,15 +84,15 @@ bool ClusterExchange::is_valid(const ElementPair& pair) const {
     return patches.largest_radius < largest_opening * distance;
 }
 
-double ClusterExchange::Weight::operator()(const Facet& facet) const {
+double ClusterExchange::Weight::operator()(const ClusterMember& member) const {
     if (kind == Kind::one) return 1;
     if (kind == Kind::by_polygon) {
-        const V3d area_vector(facet.area_vector);
+        const V3d area_vector(member.area_vector);
         const double area = area_vector.length();
-        return area > 0 ? area * polygon.form_factor_from(V3d(facet.centre), area_vector / area) : 0;
+        return area > 0 ? area * polygon.form_factor_from(V3d(member.centre), area_vector / area) : 0;
     }
-    const V3d line(point - facet.centre);
-    const double distance_2 = line.length2(), height = V3d(facet.area_vector).dot(line);
+    const V3d line(point - member.centre);
+    const double distance_2 = line.length2(), height = V3d(member.area_vector).dot(line);
     return height > 0 ? height / (distance_2 * std::sqrt(distance_2)) : 0;
 }
 
@@ -114,7 +114,7 @@ Exchange ClusterExchange::estimate(const ElementPair& pair, Effort effort, std::
     const Factors factors(*this, pair);
     const auto sum = [](const End& end, const Weight& weight) {
         double all = 0;
-        for (const Facet& facet : end.facets()) all += weight(facet);
+        for (const ClusterMember& member : end.members()) all += weight(member);
         return all;
     };
     const double sum_a = sum(factors.a, factors.weight_a), sum_b = sum(factors.b, factors.weight_b);
@@ -129,10 +129,10 @@ Exchange ClusterExchange::estimate(const ElementPair& pair, Effort effort, std::
     PointBlock random;
     fill_points(PointSet::sobol, mix(mix(seed_, place_of(pair.a)), place_of(pair.b)), 0, lines, random);
     std::array<Choice, most_lines> ends_a, ends_b;
-    choose(factors.a.facets(), factors.weight_a, sum_a, std::span(random.coordinate[0]).first(lines), ends_a);
-    choose(factors.b.facets(), factors.weight_b, sum_b, std::span(random.coordinate[1]).first(lines), ends_b);
+    choose(factors.a.members(), factors.weight_a, sum_a, std::span(random.coordinate[0]).first(lines), ends_a);
+    choose(factors.b.members(), factors.weight_b, sum_b, std::span(random.coordinate[1]).first(lines), ends_b);
     const auto point_of = [&](const Choice& choice, float second) {
-        const std::uint32_t e = choice.facet->element;
+        const std::uint32_t e = choice.member->element;
         const PatchGeometry& geometry = forest_.geometry(forest_.patch(e));
         const Cell cell = forest_.cell(e);
         return geometry.point(geometry.uniform_parameters(choice.remainder, second, {cell.u, cell.v}, cell.size));
@@ -140,7 +140,7 @@ Exchange ClusterExchange::estimate(const ElementPair& pair, Effort effort, std::
     double all = 0, squares = 0, least_ratio = std::numeric_limits<double>::infinity(), most_ratio = 0;
     RgbD free(0, 0, 0);
     for (std::size_t k = 0; k < lines; ++k) {
-        const Facet &p = *ends_a[k].facet, &q = *ends_b[k].facet;
+        const ClusterMember &p = *ends_a[k].member, &q = *ends_b[k].member;
         const V3f x = point_of(ends_a[k], random.coordinate[2][k]), y = point_of(ends_b[k], random.coordinate[3][k]);
         const V3d d(y - x);
         const double disk = std::max(forest_.area(p.element), forest_.area(q.element)) / static_cast<double>(lines);

@@ -38,28 +38,28 @@ class ClusterExchange {
                    std::vector<T>& received) const {
         const Factors factors(*this, pair);
         T from_a(0), from_b(0);
-        for (const Facet& p : factors.a.facets()) from_a += leaving[p.element] * factors.weight_a(p);
-        for (const Facet& q : factors.b.facets()) from_b += leaving[q.element] * factors.weight_b(q);
+        for (const ClusterMember& p : factors.a.members()) from_a += leaving[p.element] * factors.weight_a(p);
+        for (const ClusterMember& q : factors.b.members()) from_b += leaving[q.element] * factors.weight_b(q);
         from_a *= transmittance * factors.scale;
         from_b *= transmittance * factors.scale;
-        for (const Facet& p : factors.a.facets()) received[p.element] += from_b * factors.weight_a(p);
-        for (const Facet& q : factors.b.facets()) received[q.element] += from_a * factors.weight_b(q);
+        for (const ClusterMember& p : factors.a.members()) received[p.element] += from_b * factors.weight_a(p);
+        for (const ClusterMember& q : factors.b.members()) received[q.element] += from_a * factors.weight_b(q);
     }
 
   private:
     struct End {
         Sphere sphere;
-        Facet element;
-        std::span<const Facet> patches;  // of a cluster
+        ClusterMember element;
+        std::span<const ClusterMember> patches;  // of a cluster
 
-        std::span<const Facet> facets() const { return patches.empty() ? std::span(&element, 1) : patches; }
+        std::span<const ClusterMember> members() const { return patches.empty() ? std::span(&element, 1) : patches; }
     };
     struct Weight {
         enum class Kind { by_point, by_polygon, one } kind = Kind::one;
         V3f point{0, 0, 0};
         ConvexPolygon polygon;
 
-        double operator()(const Facet& facet) const;
+        double operator()(const ClusterMember& member) const;
     };
     struct Factors {
         End a, b;

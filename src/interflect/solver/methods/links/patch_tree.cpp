@@ -10,40 +10,40 @@ namespace {
 
 using Imath::V3d;
 
-/// Moves the facets below the median along the longest side of their bounding box to the front.
-void halve(std::span<Facet> facets) {
+/// Moves the members below the median along the longest side of their bounding box to the front.
+void halve(std::span<ClusterMember> members) {
     Imath::Box3f box;
-    for (const Facet& facet : facets) box.extendBy(facet.centre);
+    for (const ClusterMember& member : members) box.extendBy(member.centre);
     const auto axis = static_cast<int>(box.majorAxis());
-    std::nth_element(facets.begin(), facets.begin() + static_cast<std::ptrdiff_t>(facets.size() / 2), facets.end(),
-                     [axis](const Facet& x, const Facet& y) {
+    std::nth_element(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(members.size() / 2), members.end(),
+                     [axis](const ClusterMember& x, const ClusterMember& y) {
                          return x.centre[axis] != y.centre[axis] ? x.centre[axis] < y.centre[axis]
                                                                  : x.element < y.element;
                      });
 }
 
-PatchTree::Cluster cluster_of(const ElementForest& forest, std::span<const Facet> facets) {
+PatchTree::Cluster cluster_of(const ElementForest& forest, std::span<const ClusterMember> members) {
     PatchTree::Cluster cluster{};
     V3d sum(0, 0, 0);
     double area = 0;
-    for (const Facet& facet : facets) {
-        area += forest.area(facet.element);
-        sum += V3d(facet.centre) * static_cast<double>(forest.area(facet.element));
+    for (const ClusterMember& member : members) {
+        area += forest.area(member.element);
+        sum += V3d(member.centre) * static_cast<double>(forest.area(member.element));
     }
     cluster.area = static_cast<float>(area);
     cluster.sphere.centre = V3f(sum / area);
-    for (const Facet& facet : facets) {
-        const float radius = sphere_around(forest, facet.element).radius;
+    for (const ClusterMember& member : members) {
+        const float radius = sphere_around(forest, member.element).radius;
         cluster.largest_radius = std::max(cluster.largest_radius, radius);
         cluster.sphere.radius =
-            std::max(cluster.sphere.radius, (facet.centre - cluster.sphere.centre).length() + radius);
+            std::max(cluster.sphere.radius, (member.centre - cluster.sphere.centre).length() + radius);
     }
     return cluster;
 }
 
 }  // namespace
 
-Facet facet_of(const ElementForest& forest, std::uint32_t element) {
+ClusterMember member_of(const ElementForest& forest, std::uint32_t element) {
     const PatchGeometry& geometry = forest.geometry(forest.patch(element));
     const V3f centre = geometry.point(forest.cell(element).centre(geometry.is_triangle()));
     return {centre, geometry.normal() * forest.area(element), element};
@@ -62,15 +62,15 @@ Sphere sphere_around(const ElementForest& forest, std::uint32_t element) {
 }
 
 PatchTree::PatchTree(const ElementForest& forest, std::vector<std::uint32_t> patches) {
-    for (const std::uint32_t patch : patches) facets_.push_back(facet_of(forest, patch));
-    if (facets_.size() < 2) return;
-    std::vector<std::span<Facet>> ranges{facets_};  // of the clusters
+    for (const std::uint32_t patch : patches) members_.push_back(member_of(forest, patch));
+    if (members_.size() < 2) return;
+    std::vector<std::span<ClusterMember>> ranges{members_};  // of the clusters
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-        const std::span<Facet> range = ranges[i];
+        const std::span<ClusterMember> range = ranges[i];
         halve(range);
         Cluster cluster = cluster_of(forest, range);
-        cluster.first_facet = static_cast<std::uint32_t>(range.data() - facets_.data());
-        cluster.end_facet = cluster.first_facet + static_cast<std::uint32_t>(range.size());
+        cluster.first_member = static_cast<std::uint32_t>(range.data() - members_.data());
+        cluster.end_member = cluster.first_member + static_cast<std::uint32_t>(range.size());
         const std::array halves{range.first(range.size() / 2), range.subspan(range.size() / 2)};
         for (std::size_t k = 0; k < 2; ++k) {
             cluster.children[k] = halves[k].size() == 1 ? halves[k].front().element

@@ -27,13 +27,13 @@ struct Sphere {
 };
 
 /// Flat surface, described by its centre and area.
-struct Facet {
+struct ClusterMember {
     V3f centre;
     V3f area_vector;  ///< Unit normal times area [m^2].
     std::uint32_t element;
 };
 
-Facet facet_of(const ElementForest& forest, std::uint32_t element);
+ClusterMember member_of(const ElementForest& forest, std::uint32_t element);
 /// Contains the element; the centre is the mean of its corners.
 Sphere sphere_around(const ElementForest& forest, std::uint32_t element);
 
@@ -41,7 +41,7 @@ Sphere sphere_around(const ElementForest& forest, std::uint32_t element);
 class PatchTree {
   public:
     struct Cluster {
-        std::uint32_t first_facet, end_facet;
+        std::uint32_t first_member, end_member;
         std::array<std::uint32_t, 2> children;  ///< Clusters or patches.
         Sphere sphere;                          ///< Around the area-weighted mean of the patches.
         float largest_radius;                   ///< Largest radius of a patch [m].
@@ -54,8 +54,9 @@ class PatchTree {
     /// Parents first; the first is the root. Empty for fewer than two patches.
     std::span<const Cluster> clusters() const { return clusters_; }
     const Cluster& cluster(std::uint32_t end) const { return clusters_[end - first_cluster]; }
-    std::span<const Facet> facets(std::uint32_t end) const {
-        return std::span(facets_).subspan(cluster(end).first_facet, cluster(end).end_facet - cluster(end).first_facet);
+    std::span<const ClusterMember> members(std::uint32_t end) const {
+        return std::span(members_).subspan(cluster(end).first_member,
+                                           cluster(end).end_member - cluster(end).first_member);
     }
 
     /// Combines values of patches to values of clusters: combine(cluster, of_child_0, of_child_1).
@@ -72,7 +73,7 @@ class PatchTree {
 
   private:
     std::vector<Cluster> clusters_;
-    std::vector<Facet> facets_;
+    std::vector<ClusterMember> members_;
 };
 
 }  // namespace interflect::detail
