@@ -28,6 +28,7 @@ NAMESPACE = re.compile(r"^namespace interflect\b(?!::detail\b).*", re.MULTILINE)
 DETAIL = re.compile(r"^namespace (?:interflect::)?detail \{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
 FORWARD_DECLARATION = re.compile(r"(class|struct) \w+;")
 LITERAL = re.compile(r"""'\\?.'|"(?:[^"\\\n]|\\.)*\"""")
+TYPE = re.compile(r"^(?:class|struct) (\w+)(?: final)?(?: :[^;{]*)?\s*\{", re.MULTILINE)
 OPTION = re.compile(r"--[a-z]")
 USES = re.compile(r"\bUSES\s+([a-z_ \n]+)")
 
@@ -53,6 +54,7 @@ def faults(root: Path) -> list[str]:
     for header in sorted(library.rglob("*.h")):
         found += [f"{header}: '{line}' is for public headers: expected 'namespace interflect::detail'"
                   for line in NAMESPACE.findall(header.read_text())]
+    found += repeated_types([*public, *library.rglob("*.h")])
     for source in sorted([*public, *library.rglob("*.h"), *library.rglob("*.cpp")]):
         found += [f"{source}: {literal} names an option of the command line, which other programs do not have"
                   for literal in LITERAL.findall(source.read_text()) if OPTION.search(literal)]
@@ -99,6 +101,16 @@ def inner_faults(outer: Path) -> list[str]:
 def declared_uses(build_file: Path) -> list[str]:
     match = USES.search(build_file.read_text())
     return match.group(1).split() if match else []
+
+
+def repeated_types(headers: list[Path]) -> list[str]:
+    """Finds types of one name in two headers. Their functions would have one name, too, and the linker would keep one."""
+    found, first = [], {}
+    for header in sorted(headers):
+        for name in TYPE.findall(header.read_text()):
+            if first.setdefault(name, header) != header:
+                found.append(f"{header}: another type is called {name} in {first[name]}")
+    return found
 
 
 def header_faults(header: Path) -> list[str]:

@@ -57,6 +57,11 @@ class Checker(unittest.TestCase):
         self.write("base/CMakeLists.txt", "interflect_folder(base SOURCES colour.cpp USES scene)")
         self.assert_only_fault("base/CMakeLists.txt", "USES scene")
 
+    def test_two_types_of_one_name(self):
+        self.write("base/facet.h", "#pragma once\nstruct Facet {\n    int patch;\n};\n")
+        self.write("base/other.h", "#pragma once\nstruct Facet : Base {\n    float area;\n};\n")
+        self.assert_only_fault("base/other.h", "another type is called Facet")
+
     def test_unknown_layer(self):
         self.write("gadgets/CMakeLists.txt", "interflect_folder(gadgets SOURCES gadget.cpp)")
         self.assert_only_fault("gadgets", "not one of the layers")
