@@ -61,7 +61,7 @@ Sphere sphere_around(const ElementForest& forest, std::uint32_t element) {
     return sphere;
 }
 
-PatchTree::PatchTree(const ElementForest& forest, std::vector<std::uint32_t> patches) {
+PatchTree::PatchTree(const ElementForest& forest, const std::vector<std::uint32_t>& patches) {
     for (const std::uint32_t patch : patches) members_.push_back(member_of(forest, patch));
     if (members_.size() < 2) return;
     std::vector<std::span<ClusterMember>> ranges{members_};  // of the clusters

@@ -49,7 +49,7 @@ class PatchTree {
     };
 
     PatchTree() = default;
-    PatchTree(const ElementForest& forest, std::vector<std::uint32_t> patches);
+    PatchTree(const ElementForest& forest, const std::vector<std::uint32_t>& patches);
 
     /// Parents first; the first is the root. Empty for fewer than two patches.
     std::span<const Cluster> clusters() const { return clusters_; }
