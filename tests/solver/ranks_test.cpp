@@ -60,7 +60,7 @@ TEST_P(SharedRun, HasTheBitsOfOneProcess) {
     if (GetParam().has_groups) scene.light_groups = {{"lamps", "lamp"}};
     const RayCaster ray_caster(scene);
     SolveOptions options{.method = find_method("ihsrr")};
-    options.limits.rays = 100'000;
+    options.limits.rays = 30'000;
     options.views = {{View{"", {1, 1, 1}, {3, 2, 0.5}}}};
     GetParam().set(options);
     const Solution alone = solve(scene, ray_caster, options);
