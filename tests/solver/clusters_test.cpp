@@ -161,8 +161,8 @@ TEST(ClusterShrinkage, LightsPatchesThatNoRayHasHit) {
     for (const Rgb& h : box.state.solution.irradiance) ASSERT_GT(h.x, 0.1f);
 }
 
-// So it is after an iteration that found light on some patches for the first time. Seen to fail (NaN) when their payload
-// counts as 0.
+// So it is after an iteration that found light on some patches for the first time. Seen to fail (NaN) when their
+// payload counts as 0.
 TEST(ClusterShrinkage, AcceptsPatchesWhoseNoiseIsNotKnownYet) {
     Box box;
     box.receive([](std::uint32_t) { return 2.0f; });
