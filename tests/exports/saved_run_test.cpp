@@ -309,6 +309,15 @@ TEST(ChangeOfViews, HasTheSameBitsWhenSavedAndOpenedOnTheWay) {
     }
 }
 
+/// Goes on to the end of the run. With a file, saves and opens the run after every iteration.
+void finish(Solver& solver, const fs::path& file) {
+    for (bool is_finished = false; !is_finished; is_finished = solver.advance({.time = 0}).is_finished) {
+        if (file.empty()) continue;
+        solver.save(file);
+        solver = Solver::open(file);
+    }
+}
+
 /// A run with few rays whose views change after some iterations. With a file, it is saved and opened after each later
 /// iteration.
 Solution changed_after(int iterations, RefinementCriterion criterion, const fs::path& file) {
@@ -320,11 +329,7 @@ Solution changed_after(int iterations, RefinementCriterion criterion, const fs::
     Solver solver(open_room(), options);
     for (int i = 0; i < iterations; ++i) solver.advance({.time = 0});
     solver.set_views({{turned(25)}});
-    for (bool is_finished = false; !is_finished; is_finished = solver.advance({.time = 0}).is_finished) {
-        if (file.empty()) continue;
-        solver.save(file);
-        solver = Solver::open(file);
-    }
+    finish(solver, file);
     return solver.solution();
 }
 
@@ -352,11 +357,7 @@ Solution linked_by_clusters(const fs::path& file) {
     for (const std::int64_t rays : {200'000, 300'000}) {
         if (rays > 200'000) solver.set_views({{turned(25)}});
         solver.set_plan({.rays = rays});
-        for (bool is_finished = false; !is_finished; is_finished = solver.advance({.time = 0}).is_finished) {
-            if (file.empty()) continue;
-            solver.save(file);
-            solver = Solver::open(file);
-        }
+        finish(solver, file);
     }
     return solver.solution();
 }
