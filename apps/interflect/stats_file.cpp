@@ -34,6 +34,12 @@ Json header_of(const Scene& scene, int threads, const SolveOptions& o, const Rgb
 Json line_of(const IterationReport& report) {
     Json line{{"iteration", report.iteration}, {"seconds", report.seconds}};
     line.update(json_of(report));
+    if (report.traffic.empty()) return line;
+    line["ranks"] = report.traffic.size();
+    for (const Ranks::Traffic& of_rank : report.traffic) {
+        line["sent_bytes"].push_back(of_rank.bytes);
+        line["exchange_seconds"].push_back(of_rank.seconds);
+    }
     return line;
 }
 

@@ -30,11 +30,12 @@ class Ranks {
     /// Ends all processes at once, for faults of one.
     [[noreturn]] virtual void abort(int exit_code) = 0;
 
-    /// Work of the functions above so far, in this process.
+    /// Work of the functions above.
     struct Traffic {
         std::int64_t bytes = 0;  ///< Sent to other ranks.
         double seconds = 0;      ///< Including the time in which this process waited for others.
     };
+    /// Of this process so far.
     virtual Traffic traffic() const = 0;
 };
 

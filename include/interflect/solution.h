@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "interflect/core.h"
+#include "interflect/ranks.h"
 #include "interflect/scene.h"
 #include "interflect/solve_options.h"
 
@@ -42,6 +43,9 @@ struct IterationReport {
     /// Share of all hits whose places refinement has lost; method photon-mesh only. Not in the history of solution
     /// files.
     double discarded_hits = 0;
+    /// What the processes have sent since the report before, by rank; empty if one process works alone. Not in solution
+    /// files and checkpoints.
+    std::vector<Ranks::Traffic> traffic = {};
 };
 
 /// Solution and history of a run. Vectors have one entry per element of the forest; inner elements hold the mean of

@@ -191,11 +191,11 @@ TEST_P(ClusterRisk, IsAboutTheErrorThatIsLeft) {
     for (int trial = 0; trial < trials; ++trial) {
         box.receive(truth);
         const ClusterShrinkage shrinkage(box.state, box.state.clusters.front(), box.state.solution.irradiance);
-        std::vector<float> noise(box.patches(), 0.0f), bias(box.patches(), 0.0f);
-        shrinkage.add_errors(noise, bias, 1, [](std::size_t) { return 1.0f; });
+        std::vector<ClusterShrinkage::Errors> errors(box.patches());
+        shrinkage.measure_errors(errors, [](std::size_t) { return 1.0f; });
         for (std::uint32_t p = 0; p < box.patches(); ++p) {
-            estimated += static_cast<double>(box.area(p) * (noise[p] + bias[p])) / 6;
-            of_noise += static_cast<double>(box.area(p) * noise[p]) / 6;
+            estimated += static_cast<double>(box.area(p) * (errors[p].noise + errors[p].bias)) / 6;
+            of_noise += static_cast<double>(box.area(p) * errors[p].noise) / 6;
         }
         error += box.squared_error(shrinkage.means(), truth);
     }

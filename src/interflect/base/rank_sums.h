@@ -5,90 +5,47 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
+#include "interflect/base/packed_sums.h"
+#include "interflect/base/parallel.h"
 #include "interflect/ranks.h"
 
 namespace interflect::detail {
 
-/// Elements with a sum other than 0, as bytes: differences of their indices and the terms, seven bits in a byte
-/// (LEB128).
-class SparseSums {
-  public:
-    explicit SparseSums(std::size_t terms) : terms_(terms) {}
-
-    /// @param element  Above all before.
-    void append(std::size_t element, std::span<const std::int64_t> sums) {
-        std::uint64_t any = 0;
-        for (const std::int64_t s : sums) any |= static_cast<std::uint64_t>(s);
-        if (any == 0) return;
-        append(element - next_);
-        for (const std::int64_t s : sums) append(static_cast<std::uint64_t>(s));
-        next_ = element + 1;
-    }
-    const Ranks::Bytes& bytes() const { return bytes_; }
-
-    /// Calls body(element, sums) for the elements of `bytes`.
-    template <class Body>
-    void for_each(std::span<const std::byte> bytes, const Body& body) const {
-        std::vector<std::int64_t> sums(terms_);
-        std::size_t at = 0, element = 0;
-        const auto number = [&] {
-            std::uint64_t value = 0;
-            for (int shift = 0;; shift += 7) {
-                const auto byte = static_cast<std::uint64_t>(bytes[at++]);
-                value |= (byte & 127) << shift;
-                if (byte < 128) return value;
-            }
-        };
-        for (; at < bytes.size(); ++element) {
-            element += number();
-            for (std::int64_t& s : sums) s = static_cast<std::int64_t>(number());
-            body(element, std::span<const std::int64_t>(sums));
-        }
-    }
-
-  private:
-    void append(std::uint64_t value) {
-        for (; value >= 128; value >>= 7) bytes_.push_back(static_cast<std::byte>(value | 128));
-        bytes_.push_back(static_cast<std::byte>(value));
-    }
-
-    std::size_t terms_, next_ = 0;
-    Ranks::Bytes bytes_;
-};
-
-/// Adds the sums of all ranks. Rank r does this for the r-th part of the elements and sends the results to the others.
-/// @param take  take(element, sums) moves the sums of this process there.
-/// @param add   add(element, sums) receives the sums over all ranks.
-template <class Take, class Add>
-void add_over_ranks(Ranks& ranks, std::size_t elements, std::size_t terms, const Take& take, const Add& add) {
+/// Adds the integer sums of all ranks: each rank adds those of its part of the elements and sends the results to the
+/// others.
+/// @param sums  Has terms(); read(element, row); take(element, row), which also zeroes; add(element, row). A row has
+/// terms() numbers. Several threads call these for different elements.
+template <class Sums>
+void add_over_ranks(Ranks& ranks, std::size_t elements, Sums& sums) {
+    using Row = std::span<std::int64_t>;
+    using ConstRow = std::span<const std::int64_t>;
     const auto count = static_cast<std::size_t>(ranks.count()), own = static_cast<std::size_t>(ranks.rank());
     const auto begin_of = [&](std::size_t r) { return elements * r / count; };
-    std::vector<std::int64_t> sums(terms);
-    std::vector<Ranks::Bytes> parts;
-    for (std::size_t r = 0; r < count; ++r) {
-        SparseSums part(terms);
-        for (std::size_t e = begin_of(r); e < begin_of(r + 1); ++e) {
-            take(e, std::span(sums));
-            part.append(e - begin_of(r), sums);
-        }
-        parts.push_back(part.bytes());
-    }
-    std::vector<std::int64_t> of_all((begin_of(own + 1) - begin_of(own)) * terms);
-    const SparseSums reader(terms);
-    for (const Ranks::Bytes& bytes : ranks.exchange(parts))
-        reader.for_each(bytes, [&](std::size_t e, std::span<const std::int64_t> of_rank) {
-            for (std::size_t i = 0; i < terms; ++i) of_all[e * terms + i] += of_rank[i];
-        });
-    SparseSums result(terms);
-    for (std::size_t e = 0; e < of_all.size() / terms; ++e)
-        result.append(e, std::span(of_all).subspan(e * terms, terms));
-    const std::vector<Ranks::Bytes> results = ranks.gather(result.bytes());
+    const auto add = [&](std::size_t e, ConstRow row) { sums.add(e, row); };
+
+    std::vector<Ranks::Bytes> parts(count);
     for (std::size_t r = 0; r < count; ++r)
-        reader.for_each(results[r],
-                        [&](std::size_t e, std::span<const std::int64_t> all) { add(begin_of(r) + e, all); });
+        if (r != own)
+            parts[r] = PackedSums(begin_of(r), begin_of(r + 1), sums.terms(), [&](std::size_t e, Row row) {
+                           sums.take(e, row);
+                       }).bytes();
+    std::vector<std::span<const std::byte>> of_others;
+    const std::vector<Ranks::Bytes> received = ranks.exchange(parts);
+    for (std::size_t r = 0; r < count; ++r)
+        if (r != own) of_others.emplace_back(received[r]);
+    PackedSums::unpack(of_others, begin_of(own), begin_of(own + 1), sums.terms(), add);
+
+    const PackedSums result(begin_of(own), begin_of(own + 1), sums.terms(),
+                            [&](std::size_t e, Row row) { sums.read(e, row); });
+    const std::vector<Ranks::Bytes> results = ranks.gather(result.bytes());
+    for (std::size_t r = 0; r < count; ++r) {
+        const std::span<const std::byte> part = results[r];
+        if (r != own) PackedSums::unpack(std::span(&part, 1), begin_of(r), begin_of(r + 1), sums.terms(), add);
+    }
 }
 
 /// Returns the values of all ranks, in their order.
@@ -96,13 +53,52 @@ template <class T>
 std::vector<T> gather_over_ranks(Ranks& ranks, std::span<const T> values) {
     std::vector<T> all;
     for (const Ranks::Bytes& bytes : ranks.gather(std::as_bytes(values))) {
-        std::array<std::byte, sizeof(T)> of_value;
-        for (auto at = bytes.begin(); at != bytes.end(); at += sizeof(T)) {
-            std::copy_n(at, sizeof(T), of_value.begin());
+        all.reserve(all.size() + bytes.size() / sizeof(T));
+        for (std::size_t at = 0; at < bytes.size(); at += sizeof(T)) {
+            std::array<std::byte, sizeof(T)> of_value;
+            std::memcpy(of_value.data(), &bytes[at], sizeof(T));
             all.push_back(std::bit_cast<T>(of_value));
         }
     }
     return all;
+}
+
+/// Returns results of `items` independent pieces of work, each of `size` values: each rank does some pieces.
+/// @param work    work(item, values) sets the values. Called by several threads.
+/// @param ranks  Null: this process is alone.
+template <class T, class Work>
+std::vector<T> divide_over_ranks(Ranks* ranks, std::size_t items, std::size_t size, const Work& work) {
+    const std::size_t count = ranks ? static_cast<std::size_t>(ranks->count()) : 1;
+    const auto items_of = [&](std::size_t rank) { return (items + count - 1 - rank) / count; };
+    std::vector<T> all(items * size);
+    const auto values_of = [&](std::size_t item) { return std::span(all).subspan(item * size, size); };
+    const std::size_t own = ranks ? static_cast<std::size_t>(ranks->rank()) : 0;
+    parallel_for_ranges(items_of(own), 1, [&](std::size_t i, std::size_t) {
+        const std::size_t item = own + i * count;
+        work(item, values_of(item));
+    });
+    if (!ranks) return all;
+    std::vector<T> values;
+    for (std::size_t item = own; item < items; item += count)
+        values.insert(values.end(), values_of(item).begin(), values_of(item).end());
+    const std::vector<T> gathered = gather_over_ranks<T>(*ranks, values);
+    auto next = gathered.begin();
+    for (std::size_t rank = 0; rank < count; ++rank)
+        for (std::size_t item = rank; item < items; item += count, next += static_cast<std::ptrdiff_t>(size))
+            std::copy_n(next, size, values_of(item).begin());
+    return all;
+}
+
+/// parallel_sum() in which each rank adds some of the ranges. Equal bits for any number of them.
+template <class T, class Body>
+T parallel_sum(Ranks* ranks, std::size_t count, std::size_t grain, const T& zero, const Body& body) {
+    const std::vector<T> parts =
+        divide_over_ranks<T>(ranks, (count + grain - 1) / grain, 1, [&](std::size_t range, std::span<T> part) {
+            part[0] = body(range * grain, std::min(count, (range + 1) * grain));
+        });
+    T sum = zero;
+    for (const T& part : parts) sum += part;
+    return sum;
 }
 
 /// Returns the value of rank 0. @param ranks  Null: this process is alone.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -30,8 +31,23 @@ class ContributionSums {
 
     void begin_step(std::size_t elements);
     void clear(std::size_t elements) {
-        for (std::size_t e = 0; e < elements; ++e) sums_[e] = {};
-        for (std::size_t i = 0; i < elements * group_terms_; ++i) group_sums_[i] = 0;
+        for (std::size_t e = 0; e < elements; ++e) clear_one(e);
+    }
+    /// Of a contribution and the power of all groups, which read() and add() put in this order.
+    std::size_t terms() const { return Contribution().size() + group_terms_; }
+    void read(std::size_t element, std::span<std::int64_t> terms) const {
+        const Contribution& sum = sums_[element];
+        std::copy(sum.begin(), sum.end(), terms.begin());
+        for (std::size_t i = 0; i < group_terms_; ++i) terms[sum.size() + i] = group_sums_[element * group_terms_ + i];
+    }
+    void add(std::size_t element, std::span<const std::int64_t> terms) {
+        Contribution& sum = sums_[element];
+        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += terms[c];
+        for (std::size_t i = 0; i < group_terms_; ++i) group_sums_[element * group_terms_ + i] += terms[sum.size() + i];
+    }
+    void clear_one(std::size_t element) {
+        sums_[element] = {};
+        for (std::size_t i = 0; i < group_terms_; ++i) group_sums_[element * group_terms_ + i] = 0;
     }
     Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
     std::array<std::int64_t, 3> take(std::size_t element, std::size_t group) {

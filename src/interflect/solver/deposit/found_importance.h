@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "interflect/base/fixed_point.h"
@@ -20,8 +21,14 @@ class FoundImportance {
 
     /// Thread-safe.
     void add(std::size_t source, double found) { add_concurrently(sums_[source], unit_.from(found)); }
-    std::span<std::int64_t> sums() { return {&sums_[0], sums_.capacity()}; }
     double sum(std::size_t source) const { return unit_.to_number(sums_[source]); }
+
+    // For add_over_ranks():
+    std::size_t size() const { return sums_.capacity(); }
+    static std::size_t terms() { return 1; }
+    void read(std::size_t source, std::span<std::int64_t> sum) const { sum[0] = sums_[source]; }
+    void take(std::size_t source, std::span<std::int64_t> sum) { sum[0] = std::exchange(sums_[source], 0); }
+    void add(std::size_t source, std::span<const std::int64_t> sum) { sums_[source] += sum[0]; }
 
   private:
     FixedPoint unit_;

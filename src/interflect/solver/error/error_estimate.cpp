@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "interflect/base/parallel.h"
+#include "interflect/base/rank_sums.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/pixel_filter.h"
 #include "interflect/solver/shrinkage/cluster_shrinkage.h"
@@ -33,7 +36,7 @@ struct ErrorSums {
 
 ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const ElementErrors& errors) {
     const ElementForest& forest = *state.forest;
-    return parallel_sum(forest.size(), elements_per_task, ErrorSums(), [&](std::size_t begin, std::size_t end) {
+    const auto sum = [&](std::size_t begin, std::size_t end) {
         ErrorSums sums;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;
@@ -49,7 +52,8 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             sums.assumed_bias += w * shown_within(state, measure, e)[0] * variation * variation;
         }
         return sums;
-    });
+    };
+    return parallel_sum(state.stop.ranks(), forest.size(), elements_per_task, ErrorSums(), sum);
 }
 
 /// Extrapolates differences from parents to finer levels.
@@ -74,22 +78,38 @@ double squared_error_of_differences(const RiskCheck& check, double noise_of_diff
                                               : std::max(0.0, check.measured / check.weight);
 }
 
-void add_errors_of_patches(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {
+/// Sets the errors of the means that clusters have reduced, the average over the trees.
+void set_errors_of_clusters(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {
+    using Errors = ClusterShrinkage::Errors;
     const ElementForest& forest = *state.forest;
-    std::vector<float> pixels(state.clusters.empty() ? 0 : forest.patch_count());  // that a patch covers
-    parallel_for_ranges(pixels.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
+    const std::size_t patches = forest.patch_count(), trees = state.clusters.size();
+    std::vector<float> pixels(patches);  // that a patch covers
+    parallel_for_ranges(patches, elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p)
             pixels[p] = forest.area(p) / pixel_area(state, p);
     });
-    const float weight = 1 / static_cast<float>(state.clusters.size());
-    for (const PatchClusters& clusters : state.clusters) {
-        const std::vector<double> of_node = clusters.sums<double>([&](std::uint32_t p) { return pixels[p]; });
-        ClusterShrinkage(state, clusters, state.solution.irradiance)
-            .add_errors(errors.noise, errors.bias, weight, [&](std::size_t node) {
-                return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(of_node[node]);
-            });
-    }
-    if (!state.clusters.empty()) return;
+    const std::vector<Errors> of_trees = divide_over_ranks<Errors>(
+        state.stop.ranks(), trees, patches, [&](std::size_t tree, std::span<Errors> of_patches) {
+            const PatchClusters& clusters = state.clusters[tree];
+            const std::vector<double> of_node = clusters.sums<double>([&](std::uint32_t p) { return pixels[p]; });
+            ClusterShrinkage(state, clusters, state.solution.irradiance)
+                .measure_errors(of_patches, [&](std::size_t node) {
+                    return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(of_node[node]);
+                });
+        });
+    const float weight = 1 / static_cast<float>(trees);
+    parallel_for_ranges(patches, elements_per_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t tree = 0; tree < trees; ++tree)
+            for (std::size_t p = begin; p < end; ++p) {
+                const auto [noise, bias] = of_trees[tree * patches + p];
+                errors.noise[p] += weight * noise, errors.bias[p] += weight * bias;
+            }
+    });
+}
+
+void set_errors_of_patches(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {
+    if (!state.clusters.empty()) return set_errors_of_clusters(state, measure, errors);
+    const ElementForest& forest = *state.forest;
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto root = static_cast<std::uint32_t>(begin); root < end; ++root) {
             const float shown = shown_of_patch(state, measure, root);
@@ -106,7 +126,7 @@ ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
     ElementErrors errors;
     errors.noise.assign(forest.size(), 0);
     errors.bias.assign(forest.size(), 0);
-    add_errors_of_patches(state, measure, errors);
+    set_errors_of_patches(state, measure, errors);
     errors.noise_of_patch = errors.noise;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const SiblingVariation variation = sibling_variation(state, first);

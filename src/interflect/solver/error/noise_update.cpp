@@ -4,6 +4,7 @@
 #include <array>
 
 #include "interflect/base/parallel.h"
+#include "interflect/base/rank_sums.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/error_weight.h"
 #include "interflect/solver/error/pixel_filter.h"
@@ -58,13 +59,13 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
                 sum.within[level] += of_leaf * shown_of_level[level] * signal;
         }
     };
-    RiskCheck sum = parallel_sum((forest.size() - roots) / 4, elements_per_task, RiskCheck(),
-                                 [&](std::size_t begin, std::size_t end) {
-                                     RiskCheck part;
-                                     for (std::size_t i = begin; i < end; ++i)
-                                         check_siblings(roots + 4 * static_cast<std::uint32_t>(i), part);
-                                     return part;
-                                 });
+    const auto check = [&](std::size_t begin, std::size_t end) {
+        RiskCheck part;
+        for (std::size_t i = begin; i < end; ++i) check_siblings(roots + 4 * static_cast<std::uint32_t>(i), part);
+        return part;
+    };
+    RiskCheck sum =
+        parallel_sum(state.stop.ranks(), (forest.size() - roots) / 4, elements_per_task, RiskCheck(), check);
     sum.weight = 1;
     return sum;
 }

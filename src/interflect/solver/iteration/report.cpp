@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
+#include "interflect/base/rank_sums.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/error_estimate.h"
 
@@ -16,6 +19,14 @@ double fraction_done(const Limits& limits, const IterationReport& report) {
     fraction = std::max(fraction, report.seconds / limits.time);
     if (limits.until > 0) fraction = std::max(fraction, std::pow(limits.until / report.error_estimate, 2));
     return std::clamp(fraction, 0.0, 1.0);
+}
+
+std::vector<Ranks::Traffic> traffic_since_last_report(SolverState& state) {
+    Ranks* const ranks = state.monitor.ranks;
+    if (!ranks) return {};
+    const Ranks::Traffic so_far = ranks->traffic(), before = std::exchange(state.reported_traffic, so_far);
+    const Ranks::Traffic own{so_far.bytes - before.bytes, so_far.seconds - before.seconds};
+    return gather_over_ranks<Ranks::Traffic>(*ranks, std::span(&own, 1));
 }
 
 }  // namespace
@@ -40,6 +51,7 @@ void append_report(SolverState& state, int iteration) {
     r.largest_payload = state.payloads.largest_over_mean();
     r.high_payload = state.payloads.quantile_over_mean(share_with_more);
     r.discarded_hits = state.discarded_hits;
+    r.traffic = traffic_since_last_report(state);
     state.solution.iterations.push_back(r);
     if (state.monitor.on_progress)
         state.monitor.on_progress({.rays = r.rays,

@@ -16,11 +16,13 @@ class ClusterShrinkage {
     /// elements may follow.
     ClusterShrinkage(const SolverState& state, const PatchClusters& clusters, std::span<const Rgb> irradiance);
 
-    /// Adds the errors of the reduced means of patches, as squared luminance.
-    /// @param weight  Factor of the errors.
+    struct Errors {
+        float noise = 0, bias = 0;
+    };
+    /// Sets the errors of the reduced means of patches, as squared luminance.
     /// @param shown  Returns the share of variance that pictures show of a node, by its index.
     template <class Shown>
-    void add_errors(std::span<float> noise, std::span<float> bias, float weight, const Shown& shown) const;
+    void measure_errors(std::span<Errors> of_patches, const Shown& shown) const;
 
     /// Returns the reduced means of the patches.
     std::vector<Rgb> means() const;
@@ -43,17 +45,13 @@ class ClusterShrinkage {
 };
 
 template <class Shown>
-void ClusterShrinkage::add_errors(std::span<float> noise, std::span<float> bias, float weight,
-                                  const Shown& shown) const {
-    struct Errors {
-        float noise, bias;
-    };
+void ClusterShrinkage::measure_errors(std::span<Errors> of_patches, const Shown& shown) const {
     std::vector<Errors> errors(parts_.size());
     errors[0] = {shown(0) * parts_[0].variance, 0};
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const auto [first, count] = clusters_->nodes()[i];
         if (first == none) {
-            noise[count] += weight * errors[i].noise, bias[count] += weight * errors[i].bias;
+            of_patches[count] = errors[i];
             continue;
         }
         for (std::uint32_t k = first; k < first + count; ++k) {

@@ -64,6 +64,13 @@ void SolverState::begin_work(const Monitor& m) {
     monitor = m;
     stop = CommonStop(m.stop, m.ranks);
     start_of_this_call = StopRequest::Clock::now();
+    reported_traffic = m.ranks ? m.ranks->traffic() : Ranks::Traffic();
+}
+
+void SolverState::end_work() {
+    earlier_seconds = seconds();
+    monitor = {};
+    stop = {};
 }
 
 void set_sources(SolverState& state, const Scene& lit) {

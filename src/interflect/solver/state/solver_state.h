@@ -67,14 +67,15 @@ struct SolverState {
     double escaped_power_rays = 0;         // rays in this mean
     double discarded_hits = 0;             // see IterationReport
 
-    // The work in progress:
+    // The work in progress, which alone may be shared with other ranks:
     Monitor monitor;
     CommonStop stop;  // after a first estimate, also by the time limit
     StopRequest::Clock::time_point start_of_this_call;
     double earlier_seconds = 0;
+    Ranks::Traffic reported_traffic;
 
     void begin_work(const Monitor& m);
-    void end_work() { earlier_seconds = seconds(); }
+    void end_work();
     /// Time on the clock of rank 0 [s].
     double seconds_of_this_call() const {
         const std::chrono::duration<double> passed = StopRequest::Clock::now() - start_of_this_call;

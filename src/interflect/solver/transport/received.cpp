@@ -18,22 +18,13 @@ class RenumberedSums {
 
     Contribution take(std::uint32_t e) { return sums_.take(number(e)); }
     std::array<std::int64_t, 3> take(std::uint32_t e, std::size_t group) { return sums_.take(number(e), group); }
-    /// Terms of all groups follow one another.
-    std::size_t terms() const { return Contribution().size() + 3 * sums_.groups(); }
-    void take(std::uint32_t e, std::span<std::int64_t> terms) {
-        std::ranges::copy(take(e), terms.begin());
-        for (std::size_t g = 0; g < sums_.groups(); ++g)
-            std::ranges::copy(take(e, g), terms.begin() + static_cast<std::ptrdiff_t>(first_term(g)));
+    std::size_t terms() const { return sums_.terms(); }
+    void read(std::size_t e, std::span<std::int64_t> terms) const { sums_.read(number(e), terms); }
+    void take(std::size_t e, std::span<std::int64_t> terms) {
+        sums_.read(number(e), terms);
+        sums_.clear_one(number(e));
     }
-    void add(std::uint32_t e, std::span<const std::int64_t> terms) {
-        Contribution contribution;
-        std::copy_n(terms.begin(), contribution.size(), contribution.begin());
-        sums_.add(number(e), contribution);
-        for (std::size_t g = 0; g < sums_.groups(); ++g) {
-            const std::size_t first = first_term(g);
-            sums_.add(number(e), g, {terms[first], terms[first + 1], terms[first + 2]});
-        }
-    }
+    void add(std::size_t e, std::span<const std::int64_t> terms) { sums_.add(number(e), terms); }
     void move(std::uint32_t from, std::uint32_t to) {
         sums_.add(number(to), take(from));
         for (std::size_t g = 0; g < sums_.groups(); ++g) sums_.add(number(to), g, take(from, g));
@@ -43,20 +34,12 @@ class RenumberedSums {
     }
 
   private:
-    static std::size_t first_term(std::size_t group) { return Contribution().size() + 3 * group; }
-    std::uint32_t number(std::uint32_t e) const { return e < old_size_ ? e : old_numbers_[e - old_size_]; }
+    std::size_t number(std::size_t e) const { return e < old_size_ ? e : old_numbers_[e - old_size_]; }
 
     ContributionSums& sums_;
     std::uint32_t old_size_;
     std::vector<std::uint32_t> old_numbers_;
 };
-
-void add_contributions(Ranks& ranks, std::size_t elements, RenumberedSums& sums) {
-    add_over_ranks(
-        ranks, elements, sums.terms(),
-        [&](std::size_t e, std::span<std::int64_t> terms) { sums.take(static_cast<std::uint32_t>(e), terms); },
-        [&](std::size_t e, std::span<const std::int64_t> terms) { sums.add(static_cast<std::uint32_t>(e), terms); });
-}
 
 void drop_excess(ElementForest& forest, RenumberedSums& sums, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
@@ -143,7 +126,7 @@ Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_s
                  const PayloadTotals& payload, const ContributionUnits& units, const FoundImportance* importance,
                  ContributionSums& sums, Ranks* ranks) {
     RenumberedSums renumbered(sums, old_size, forest.put_in_order(old_size));
-    if (ranks) add_contributions(*ranks, forest.size(), renumbered);
+    if (ranks) add_over_ranks(*ranks, forest.size(), renumbered);
     drop_excess(forest, renumbered, step.oracle.max_elements, old_size);
     Received received;
     step.oracle.importance = std::vector<float>();

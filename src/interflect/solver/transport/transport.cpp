@@ -152,19 +152,25 @@ void walk(const TransportStep& step, const StepData& data, const Walks& walks, s
     walks.follow(first_ray, walkers, buffers.descent);
 }
 
-struct RayRange {
-    std::size_t begin, end;
-};
-
-/// Returns the rays of this rank: whole batches, about equally many for all.
-RayRange rays_of_rank(const Ranks* ranks, std::size_t rays) {
-    if (!ranks) return {0, rays};
+/// Calls body(begin, end) for batches of rays: of several ranks each has every count-th batch, so that all have about
+/// the same work. @throws Interrupted if `stop` is due before the last batch.
+template <class Body>
+void for_batches_of_rank(std::size_t rays, const CommonStop& stop, const Body& body) {
+    const Ranks* const ranks = stop.ranks();
+    if (!ranks) return parallel_for_ranges(rays, batch_rays, stop.within_process(), body);
+    /// Seconds of work, between which rank 0 may stop all.
+    constexpr std::size_t batches_at_once = 4096;
+    const auto rank = static_cast<std::size_t>(ranks->rank()), count = static_cast<std::size_t>(ranks->count());
     const std::size_t batches = (rays + batch_rays - 1) / batch_rays;
-    const auto begin_of = [&](int r) {
-        return std::min(rays,
-                        batches * static_cast<std::size_t>(r) / static_cast<std::size_t>(ranks->count()) * batch_rays);
-    };
-    return {begin_of(ranks->rank()), begin_of(ranks->rank() + 1)};
+    for (std::size_t first = 0; first < batches; first += batches_at_once * count) {
+        if (stop.is_due()) throw Interrupted();
+        const std::size_t in_all = std::min(batches_at_once * count, batches - first);
+        const std::size_t own = (in_all + count - 1 - rank) / count;
+        parallel_for_ranges(own, 1, [&](std::size_t begin, std::size_t) {
+            const std::size_t batch = first + begin * count + rank;
+            body(batch * batch_rays, std::min(rays, (batch + 1) * batch_rays));
+        });
+    }
 }
 
 /// Makes the elements from `old_size` on that other ranks have made.
@@ -182,13 +188,6 @@ void make_elements_of_ranks(Ranks& ranks, ElementForest& forest, std::uint32_t o
         const std::uint32_t element = forest.at_path(p.patch, p.path);
         if (element != none && forest.is_leaf(element)) forest.subdivide(element);
     }
-}
-
-void add_importance(Ranks& ranks, FoundImportance& found) {
-    const std::span<std::int64_t> sums = found.sums();
-    add_over_ranks(
-        ranks, sums.size(), 1, [&](std::size_t e, std::span<std::int64_t> sum) { sum[0] = std::exchange(sums[e], 0); },
-        [&](std::size_t e, std::span<const std::int64_t> sum) { sums[e] = sum[0]; });
 }
 
 Escaped sum_over_ranks(Ranks& ranks, const Escaped& own) {
@@ -214,17 +213,13 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
         return ThreadBuffers(
             {materials, forest, step, old_size, sums, found_importance ? &*found_importance : nullptr});
     });
-    const RayRange own = rays_of_rank(stop.ranks(), static_cast<std::size_t>(step.rays));
     try {
-        parallel_for_ranges(own.end - own.begin, batch_rays, stop.within_process(),
-                            [&](std::size_t first, std::size_t last) {
-                                const std::size_t begin = own.begin + first, end = own.begin + last;
-                                ThreadBuffers& buffers = all_buffers.local();
-                                trace(data, ray_caster, begin, end, buffers);
-                                deposit(step, data, buffers);
-                                if (step.completes_by_walks) walk(step, data, walks, begin, buffers);
-                            });
-        if (stop.ranks() && stop.is_due()) throw Interrupted();
+        for_batches_of_rank(static_cast<std::size_t>(step.rays), stop, [&](std::size_t begin, std::size_t end) {
+            ThreadBuffers& buffers = all_buffers.local();
+            trace(data, ray_caster, begin, end, buffers);
+            deposit(step, data, buffers);
+            if (step.completes_by_walks) walk(step, data, walks, begin, buffers);
+        });
     } catch (const Interrupted&) {
         sums.clear(forest.size());
         drop_new_elements(forest, old_size);
@@ -239,7 +234,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     }
     if (stop.ranks()) {
         make_elements_of_ranks(*stop.ranks(), forest, old_size);
-        if (found_importance) add_importance(*stop.ranks(), *found_importance);
+        if (found_importance) add_over_ranks(*stop.ranks(), found_importance->size(), *found_importance);
         start_points = gather_over_ranks<StartPoint>(*stop.ranks(), start_points);
         escaped = sum_over_ranks(*stop.ranks(), escaped);
     }
