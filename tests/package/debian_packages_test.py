@@ -5,6 +5,7 @@ import gzip
 import os
 import re
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -13,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 COMMAND = Path(os.environ["INTERFLECT_COMMAND"])
 BUILD = COMMAND.parents[1]
 CACHE = (BUILD / "CMakeCache.txt").read_text()
-DATE = "1700000000"  # [s]
+DATE = "1700000000"  # [s]: 14 November 2023, 22:13:20
 
 OPTION = re.compile(r"^  (-\S+)", re.MULTILINE)  # names as in the help: '-o,--output' or '--clusters,--no-clusters{false}'
 SYSTEM_LIBRARIES = {"libc6", "libgcc-s1", "libstdc++6", "libopenmpi3"}  # under their own licences, or only in builds with MPI
@@ -166,10 +167,20 @@ class DebianPackages(unittest.TestCase):
                         self.assertNotIn(str(path).encode(), content, name)
 
     def test_the_same_bytes_a_second_time(self):
-        again = make_packages(self.folder / "second")
+        again = make_packages(self.folder / "again")
         self.assertEqual(set(again), {"interflect", "libinterflect-dev"})
         for name, path in again.items():
             self.assertEqual(path.read_bytes(), self.packages[name].read_bytes(), name)
+
+    def test_documents_are_dated_by_source_date_epoch_alone(self):
+        run(sys.executable, "-B", ROOT / "packaging/make_documents.py", COMMAND, "9.9", "Nobody <nobody@packages.invalid>",
+            self.folder / "documents", env=os.environ | {"SOURCE_DATE_EPOCH": DATE})
+        compressed = sorted((self.folder / "documents").rglob("*.gz"))
+        self.assertEqual(len(compressed), len(self.pages) + 1)
+        for path in compressed:
+            content = path.read_bytes()
+            self.assertEqual(content[4:8], bytes(4), f"{path.name}: RFC 1952: no date")
+            self.assertRegex(gzip.decompress(content).decode(), "2023-11-14|Tue, 14 Nov 2023 22:13:20 .0000", path.name)
 
 
 if __name__ == "__main__":
