@@ -23,7 +23,7 @@ class Entry:
 
     @property
     def choices(self) -> list[str]:
-        """The accepted words, if the help lists nothing else."""
+        """The accepted words; empty if other values are possible."""
         words = self.value.partition("=")[0].split("|")
         return words if all(re.fullmatch(r"-?[a-z][a-z0-9/-]*", word) for word in words) else []
 
@@ -34,7 +34,7 @@ class Entry:
 
 @dataclass
 class Page:
-    """The help of the command or of one of its subcommands."""
+    """Help text of the command or of a subcommand."""
 
     words: list[str]  # such as ['interflect', 'make-scene', 'maze']
     summary: str

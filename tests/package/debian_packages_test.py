@@ -87,7 +87,7 @@ class DebianPackages(unittest.TestCase):
         self.assertEqual([name for name in self.files("interflect") if re.match("usr/(include|lib)/", name)], [])
 
     def test_dependencies(self):
-        """The command needs libraries only; the other package needs what scripts/setup installs for building."""
+        """The command depends on libraries only, the other package on development packages of scripts/setup."""
         depends = self.field("interflect", "Depends")
         self.assertIn("libembree3-3", depends)
         self.assertNotIn("-dev", depends)
