@@ -162,13 +162,13 @@ TEST_P(SavedRun, HasTheSameBitsInManyCalls) {
     }
 }
 
-TEST_P(SavedRun, HasTheSameBitsWhenSavedAndOpenedAfterEveryIteration) {
+TEST_P(SavedRun, HasTheSameBitsWhenSavedAndOpenedBeforeEveryIteration) {
     const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
     Solver solver(scene, GetParam().options);
-    while (!solver.advance({.time = 0}).is_finished) {
+    do {
         solver.save(file);
         solver = Solver::open(file);
-    }
+    } while (!solver.advance({.time = 0}).is_finished);
     expect_same(solver.solution(), expected);
 }
 

@@ -36,7 +36,8 @@ constexpr double large_share = 1e-3;
 /// their own (docs/method.md).
 class PhotonMesh final : public IterationMethod {
   public:
-    explicit PhotonMesh(const SolverState& state) : current_{sub_key(state.options.seed, WalkPurpose::light)} {}
+    explicit PhotonMesh(const SolverState& state)
+        : current_{sub_key(state.options.seed, WalkPurpose::light)}, hits_(state.forest->size()) {}
 
     void prepare(SolverState& state) override;
     void update_importance(SolverState&, IterationPlan&) override { before_ = current_; }
