@@ -4,8 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace interflect {
@@ -38,9 +41,18 @@ class Ranks {
     virtual Traffic traffic() const = 0;
 };
 
-/// Joins the processes that mpirun started.
+/// Rank of this process according to its launcher (mpirun, srun), before join_ranks(). Nothing if it was started alone.
+std::optional<int> launched_rank();
+
+/// Receives a sentence about a process that was lost, without a full stop. Called by another thread; all processes then
+/// end. At most one process reports a loss.
+using FaultReport = std::function<void(const std::string& fault)>;
+
+/// Joins the processes that mpirun started. If one of them dies or is stopped, or its machine is lost, all end within
+/// 10 s (60 s while they start).
 /// @return  Null if this process is alone.
-/// @throws std::runtime_error if it is not alone and Interflect was built without MPI.
-std::shared_ptr<Ranks> join_ranks();
+/// @throws std::runtime_error if it is not alone and Interflect was built without MPI, if MPI does not connect all
+/// processes of the launcher, or if MPI does not support several threads.
+std::shared_ptr<Ranks> join_ranks(const FaultReport& report);
 
 }  // namespace interflect

@@ -1,0 +1,21 @@
+#include "interflect/cluster/time_limit.h"
+
+#include <condition_variable>
+#include <cstdlib>
+#include <mutex>
+#include <utility>
+
+namespace interflect::detail {
+
+TimeLimit::TimeLimit(std::chrono::milliseconds limit, std::function<void()> report)
+    : thread_([limit, report = std::move(report)](const std::stop_token& is_over) {
+          std::mutex mutex;
+          std::condition_variable_any never;
+          std::unique_lock lock(mutex);
+          never.wait_for(lock, is_over, limit, [] { return false; });
+          if (is_over.stop_requested()) return;
+          report();
+          std::_Exit(EXIT_FAILURE);
+      }) {}
+
+}  // namespace interflect::detail
