@@ -75,6 +75,13 @@ void serve_run(const Order& order) {
     }
 }
 
+std::string difference_within_crew() try {
+    return detail::difference_among(*crew, detail::Fingerprint::of_this_process());
+} catch (const std::exception& e) {
+    end_crew_after_fault(e);
+    throw;
+}
+
 }  // namespace
 
 Role join_crew() {
@@ -83,7 +90,7 @@ Role join_crew() {
     if (!crew) return Role::first;
     const bool is_first = crew->rank() == 0;
     if (!is_first) ignore_stop_signals();
-    const std::string difference = detail::difference_among(*crew, detail::Fingerprint::of_this_process());
+    const std::string difference = difference_within_crew();
     if (difference.empty()) return is_first ? Role::first : Role::helper;
     crew.reset();
     if (is_first) throw std::runtime_error(difference);

@@ -87,12 +87,16 @@ class MpiRanks : public Ranks {
         MPI_Finalize();
     }
 
-    void start_heartbeat() {
+    /// Ends all processes if this one cannot start a thread.
+    void start_heartbeat() try {
         if (count_ == 1) return;
         heartbeat_.emplace([this](const std::string& fault) {
             report_(fault);
             abort(EXIT_FAILURE);
         });
+    } catch (const std::exception& e) {
+        report_(fmt::format("process {} cannot watch another: {}", rank_, e.what()));
+        abort(EXIT_FAILURE);
     }
 
     int rank() const override { return rank_; }

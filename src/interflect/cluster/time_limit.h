@@ -7,7 +7,7 @@
 namespace interflect::detail {
 
 /// Ends this process, with exit code 1, if this object lives too long. For operations of MPI that wait for all
-/// processes: one that is stopped would make the others wait for ever.
+/// processes: one that is stopped would make the others wait for ever. Without memory for a thread there is no limit.
 class TimeLimit {
   public:
     /// @param report  Called before the end, by another thread.

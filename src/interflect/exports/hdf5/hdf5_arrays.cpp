@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <stdexcept>
 
 namespace interflect::detail {
@@ -116,7 +117,7 @@ hid_t opened(std::span<const char> image) {
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_properties);
     keep_in_memory(access);
     // HDF5 copies the bytes and does not change them.
-    require(H5Pset_file_image(access, const_cast<char*>(image.data()), image.size()), "cannot keep a file in memory");
+    if (H5Pset_file_image(access, const_cast<char*>(image.data()), image.size()) < 0) throw std::bad_alloc();
     return H5Fopen("memory", H5F_ACC_RDONLY, access);
 }
 
