@@ -9,10 +9,10 @@ namespace interflect::command {
 /// Returns the message of an exception, with remedies if memory was exhausted.
 std::string explanation(const std::exception& error);
 
-/// Sets the file from which a run could go on after a fault; empty: none.
+/// Sets the last checkpoint of the run, for report_fault(); empty: no checkpoint.
 void set_last_checkpoint(const std::filesystem::path& file);
 
-/// Writes to stderr, from any thread, why several processes end, and how to go on from the last checkpoint.
+/// Writes to stderr why the processes end, and the command that resumes the last checkpoint. Thread-safe.
 /// @param fault  A sentence without a full stop.
 void report_fault(const std::string& fault);
 

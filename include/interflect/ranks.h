@@ -41,15 +41,16 @@ class Ranks {
     virtual Traffic traffic() const = 0;
 };
 
-/// Rank of this process according to its launcher (mpirun, srun), before join_ranks(). Nothing if it was started alone.
+/// Returns the rank that the launcher (mpirun, srun) gave this process, also before join_ranks(). Empty without a
+/// launcher.
 std::optional<int> launched_rank();
 
-/// Receives a sentence about a process that was lost, without a full stop. Called by another thread; all processes then
-/// end. At most one process reports a loss.
+/// Receives a sentence about a lost process, without a full stop. Called by another thread; then all processes end. One
+/// process reports each loss.
 using FaultReport = std::function<void(const std::string& fault)>;
 
-/// Joins the processes that mpirun started. If one of them dies or is stopped, or its machine is lost, all end within
-/// 10 s (60 s while they start).
+/// Joins the processes of mpirun. All end within 10 s (70 s during the start) after the death of a process, a SIGSTOP
+/// or the loss of a machine.
 /// @return  Null if this process is alone.
 /// @throws std::runtime_error if it is not alone and Interflect was built without MPI, if MPI does not connect all
 /// processes of the launcher, or if MPI does not support several threads.

@@ -29,7 +29,7 @@ def is_alive(process: int) -> bool:
 
 
 def rank_of(process: int) -> int | None:
-    """Returns None for a process that mpirun has not yet turned into the command."""
+    """Returns None before mpirun has started the command in this process."""
     try:
         variables = Path(f"/proc/{process}/environ").read_bytes().split(b"\0")
     except OSError:

@@ -1,4 +1,4 @@
-"""Faults of one of the processes of mpirun: a clear error and the end of all, and a checkpoint with which fewer go on."""
+"""Faults of one process of mpirun: one error, the end of all, and a checkpoint that fewer processes can resume."""
 
 import os
 import signal

@@ -17,7 +17,7 @@ using testing::AllOf;
 using testing::Each;
 using testing::HasSubstr;
 
-/// Returns what each of these processes finds.
+/// Returns the result in each of these processes.
 std::vector<std::string> differences(const std::vector<Fingerprint>& of_ranks) {
     std::vector<std::string> found(of_ranks.size());
     testing_support::ThreadRanks(static_cast<int>(of_ranks.size())).run([&](Ranks& ranks) {

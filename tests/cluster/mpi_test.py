@@ -23,7 +23,7 @@ class Mpi(CrewTest):
         self.assertEqual(messages.count("missing.mgf"), 1, messages)
 
     def test_another_build_is_refused(self):
-        """A byte after the end of an executable file changes nothing but its checksum."""
+        """An additional byte at the end of an executable file changes only its checksum."""
         other = self.folder / "other"
         shutil.copy(COMMAND, other)
         with other.open("ab") as file:

@@ -18,14 +18,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// mpirun kills the others one to two seconds after the death of a process; several beats fit in before.
+/// mpirun kills the other processes one to two seconds after a death; a report needs a few beats before.
 constexpr std::chrono::milliseconds beat = 250ms;
-/// With the two seconds that mpirun takes to end all, a fault ends the job within 10 s.
+/// mpirun needs two more seconds to end all processes; the sum must stay below 10 s.
 constexpr std::chrono::milliseconds max_silence = 7s;
-/// Interval at the end, where all wait for the last beats.
+/// Interval at the end of the job, when all processes wait for the last beats.
 constexpr std::chrono::milliseconds last_beat = 5ms;
 
-/// One byte, so that a beat is sent without waiting for its receiver.
+/// One byte: MPI sends short messages without waiting for the receiver.
 enum class Beat : unsigned char { alive, last };
 
 /// Beats of the previous process.
@@ -33,7 +33,7 @@ class Listener {
   public:
     Listener(MPI_Comm ring, int previous) : ring_(ring), previous_(previous) { listen(); }
 
-    /// Returns whether there were any beats since the last call.
+    /// Returns true after new beats since the last call.
     bool hears() {
         bool is_heard = false;
         while (!has_ended_) {

@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// What one process needs to watch another.
+/// Host and number of a process, for other processes.
 struct ProcessIdentity {
     std::array<char, 64> host{};        ///< Name, ends with 0.
     std::array<char, 36> kernel{};      ///< Boot ID: equal for processes under the same kernel.
@@ -19,15 +19,15 @@ struct ProcessIdentity {
     pid_t process = 0;
 
     static ProcessIdentity own();
-    /// Returns whether this process can see that `other` has ended, and it has.
+    /// Returns true if `other` has ended. Always false for a process on another machine or in another container.
     bool sees_end_of(const ProcessIdentity& other) const;
 };
 
-/// A thread in each process that sends signs of life to the next one, in a ring, and watches the previous one. The
-/// process after a stopped or dead one notices, so each such gap in the ring is reported once.
+/// A thread in each process that sends beats to the next process of a ring and watches the previous one. Exactly one
+/// process follows each gap in the ring and reports it.
 ///
-/// It notices a process that is stopped (SIGSTOP, a frozen machine, a cut network) within `max_silence`, and one that
-/// has ended on the same machine within `beat`. It does not notice a solver that computes for ever.
+/// Detects SIGSTOP, a frozen machine and a broken network after 7 s, and the death of a process on the same machine
+/// after 0.25 s. An endless loop in the solver remains undetected, because a step has no time limit.
 class Heartbeat {
   public:
     /// Collective. At least two processes.

@@ -4,8 +4,8 @@
 
 namespace interflect::detail {
 
-/// Returns the number of processes that a launcher (mpirun, srun, mpiexec) started together, 0 if the launcher does not
-/// say, or nothing for a process that was started alone. Reads the environment.
+/// Returns the number of processes of a launcher (mpirun, srun, mpiexec), 0 if it is unknown. Empty without a launcher.
+/// Reads the environment.
 std::optional<int> launched_processes();
 
 }  // namespace interflect::detail

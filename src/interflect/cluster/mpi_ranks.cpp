@@ -32,7 +32,7 @@ constexpr std::chrono::seconds finish_limit = 6s;
 /// Time for MPI_Abort() to reach mpirun, which may be stopped.
 constexpr std::chrono::seconds abort_limit = 2s;
 
-/// Only process 0 reports an end that takes too long, unless it is the one that is stopped.
+/// Process 0 reports first; its exit ends the others before they report the same.
 TimeLimit common_limit(int rank, std::chrono::milliseconds limit, const FaultReport& report, const char* fault) {
     constexpr std::chrono::seconds head_start = 1s;
     return {limit + (rank == 0 ? 0s : head_start), [=] { report(fault); }};
@@ -204,9 +204,9 @@ std::shared_ptr<Ranks> join_ranks(const FaultReport& report) {
     }
     const auto ranks = std::make_shared<MpiRanks>(report);
     if (*launched > ranks->count())
-        throw std::runtime_error(fmt::format(
-            "{} processes were started, but MPI connects {}: start them with mpirun, or with srun --mpi=pmix",
-            *launched, ranks->count()));
+        throw std::runtime_error(
+            fmt::format("{} processes were started, but MPI connects {}: start them with mpirun, or with srun and PMIx",
+                        *launched, ranks->count()));
     if (provided < MPI_THREAD_MULTIPLE && ranks->count() > 1)
         throw std::runtime_error("this MPI library supports only one thread: processes could not watch each other");
     ranks->start_heartbeat();

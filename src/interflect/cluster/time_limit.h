@@ -6,10 +6,11 @@
 
 namespace interflect::detail {
 
-/// Ends this process, with exit code 1, if this object lives too long. For operations of MPI that wait for all
-/// processes: one that is stopped would make the others wait for ever. Without memory for a thread there is no limit.
+/// Ends this process with exit code 1 if this object exists for too long. Protects functions of MPI that wait for all
+/// processes. Without memory for a thread there is no limit.
 class TimeLimit {
   public:
+    /// @param limit   Rounded up to 100 ms.
     /// @param report  Called before the end, by another thread.
     TimeLimit(std::chrono::milliseconds limit, std::function<void()> report);
 

@@ -233,7 +233,7 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
 }
 
 struct VerifiedFile {
-    bool has_checksums;  // or needs none
+    bool has_checksums;  // true for a memory image
     Hdf5Reader arrays;
 };
 
