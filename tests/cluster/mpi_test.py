@@ -2,10 +2,11 @@
 
 import shutil
 import signal
+import subprocess
 import unittest
 
 from command import BAD_INPUT, COMMAND, FAILED, INTERRUPTED
-from crew import CrewTest, solve, with_checkpoints
+from crew import ENVIRONMENT, CrewTest, solve, with_checkpoints
 
 
 class Mpi(CrewTest):
@@ -34,6 +35,17 @@ class Mpi(CrewTest):
         self.assertEqual(process.returncode, FAILED)
         self.assertEqual(messages.count("error: process 2 runs another build"), 1, messages)
         self.assertFalse((self.folder / "out.h5").exists())
+
+    def test_processes_without_connection_are_refused(self):
+        """As srun starts them without support of MPI."""
+        for variables in ({"SLURM_STEP_NUM_TASKS": "2"}, {"PMI_SIZE": "2"}, {"PMIX_RANK": "1"}):
+            with self.subTest(variables=variables):
+                result = subprocess.run(
+                    [COMMAND, "info", "room.mgf"],
+                    cwd=self.folder, env=ENVIRONMENT | variables, capture_output=True, text=True,
+                )
+                self.assertEqual(result.returncode, FAILED)
+                self.assertIn("several processes, but MPI connects 1", result.stderr)
 
     def test_a_forwarded_signal_ends_the_run_after_a_step(self):
         process = self.start(3, *with_checkpoints("1G"))

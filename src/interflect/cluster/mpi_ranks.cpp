@@ -203,10 +203,10 @@ std::shared_ptr<Ranks> join_ranks(const FaultReport& report) {
         MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided);
     }
     const auto ranks = std::make_shared<MpiRanks>(report);
-    if (*launched > ranks->count())
-        throw std::runtime_error(
-            fmt::format("{} processes were started, but MPI connects {}: start them with mpirun, or with srun and PMIx",
-                        *launched, ranks->count()));
+    if (std::max(*launched, launched_rank().value_or(0) + 1) > ranks->count())
+        throw std::runtime_error(fmt::format(
+            "a launcher started several processes, but MPI connects {}: start them with mpirun, or with srun and PMIx",
+            ranks->count()));
     if (provided < MPI_THREAD_MULTIPLE && ranks->count() > 1)
         throw std::runtime_error("this MPI library supports only one thread: processes could not watch each other");
     ranks->start_heartbeat();
