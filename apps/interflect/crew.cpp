@@ -4,25 +4,23 @@
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
-#include <unistd.h>
 
+#include <chrono>
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <optional>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <system_error>
+#include <thread>
 #include <utility>
-#include <vector>
 
 #include "apps/interflect/commands.h"
+#include "apps/interflect/faults.h"
+#include "apps/interflect/signals.h"
 #include "apps/interflect/threads.h"
-#include "interflect/base/crc32.h"
-#include "interflect/base/pending_file.h"
-#include "interflect/base/rank_sums.h"
+#include "interflect/cluster/fingerprint.h"
+#include "interflect/ranks.h"
 
 namespace interflect::command {
 
@@ -30,12 +28,16 @@ namespace {
 
 std::shared_ptr<Ranks> crew;
 
+/// mpirun kills all processes two seconds after one has called for the end.
+constexpr std::chrono::milliseconds time_to_end_processes{2500};
+
 /// Command of the first process to the others.
 struct Order {
     enum class Kind { solve, advance, plan, end_of_run, dismiss } kind;
     Limits limits = {};
-    std::size_t bytes = 0;  ///< Size of the checkpoint that follows.
+    std::size_t name_bytes = 0, bytes = 0;  ///< Sizes of the name of the checkpoint and of the run, which follow.
     int threads = 0;
+    bool has_checkpoint = false;  ///< The run was saved under this name.
 };
 
 template <class T>
@@ -53,91 +55,54 @@ Order receive_order() {
     return order;
 }
 
-/// A file of this process alone, removed with this.
-class ScratchFile {
-  public:
-    ScratchFile()
-        : file_(std::filesystem::temp_directory_path() / ("interflect-" + std::to_string(::getpid()) + ".h5")) {}
-    const std::filesystem::path& path() const { return file_.temporary_path(); }
-
-  private:
-    detail::PendingFile file_;  // never committed
-};
-
-Ranks::Bytes saved(const Solver& solver) {
-    const ScratchFile file;
-    solver.save(file.path());
-    Ranks::Bytes bytes(std::filesystem::file_size(file.path()));
-    std::ifstream(file.path(), std::ios::binary)
-        .read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    return bytes;
-}
-
-Solver receive_run(std::size_t size) {
-    Ranks::Bytes bytes(size);
-    crew->broadcast(bytes);
-    const ScratchFile file;
-    std::ofstream(file.path(), std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(size));
-    return Solver::open(file.path());
+std::string receive_text(std::size_t size) {
+    std::string text(size, '\0');
+    crew->broadcast(std::as_writable_bytes(std::span(text)));
+    return text;
 }
 
 void serve_run(const Order& order) {
     const ThreadLimit threads(order.threads);
-    Solver solver = receive_run(order.bytes);
+    const std::filesystem::path checkpoint = receive_text(order.name_bytes);
+    Solver solver = Solver::open_image(receive_text(order.bytes));
     for (Order next = receive_order(); next.kind != Order::Kind::end_of_run; next = receive_order()) {
-        if (next.kind == Order::Kind::advance)
+        if (next.kind == Order::Kind::advance) {
+            set_last_checkpoint(next.has_checkpoint ? checkpoint : "");
             solver.advance(next.limits, {.on_progress = {}, .ranks = crew.get()});
-        else
+        } else {
             solver.set_plan(next.limits);
+        }
     }
 }
 
-std::string content_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// Results have equal bits if the program and the instruction set of the processor are equal (libraries use the
-/// latter).
-struct Fingerprint {
-    std::uint32_t program, instructions;
-    bool operator==(const Fingerprint&) const = default;
-};
-
-Fingerprint fingerprint() {
-    const std::string program = content_of("/proc/self/exe"), processor = content_of("/proc/cpuinfo");
-    const std::size_t flags = processor.find("flags");
-    const std::string instructions =
-        flags == std::string::npos ? "" : processor.substr(flags, processor.find('\n', flags) - flags);
-    return {detail::crc32(program), detail::crc32(instructions)};
-}
-
-void require_equal_processes(Ranks& ranks) {
-    const Fingerprint own = fingerprint();
-    const std::vector<Fingerprint> all = detail::gather_over_ranks<Fingerprint>(ranks, std::span(&own, 1));
-    for (std::size_t r = 1; r < all.size(); ++r) {
-        if (all[r].program != all[0].program)
-            throw std::runtime_error(fmt::format(
-                "process {} runs another build of Interflect than process 0: start the same file everywhere", r));
-        if (all[r].instructions != all[0].instructions)
-            throw std::runtime_error(fmt::format(
-                "process {} has a processor with other instructions than process 0, so results would differ: "
-                "use machines of one type",
-                r));
-    }
+std::string difference_within_crew() try {
+    return detail::difference_among(*crew, detail::Fingerprint::of_this_process());
+} catch (const std::exception& e) {
+    end_crew_after_fault(e);
+    throw;
 }
 
 }  // namespace
 
-bool join_crew() {
-    crew = join_ranks();
-    if (crew) require_equal_processes(*crew);
-    return !crew || crew->rank() == 0;
+Role join_crew() {
+    if (launched_rank().value_or(0) > 0) ignore_stop_signals();
+    crew = join_ranks(report_fault);
+    if (!crew) return Role::first;
+    const bool is_first = crew->rank() == 0;
+    if (!is_first) ignore_stop_signals();
+    const std::string difference = difference_within_crew();
+    if (difference.empty()) return is_first ? Role::first : Role::helper;
+    crew.reset();
+    if (is_first) throw std::runtime_error(difference);
+    return Role::refused;
 }
 
-void abort_crew(int exit_code) {
-    if (crew && crew->count() > 1) crew->abort(exit_code);
+void end_crew_after_fault(const std::exception& error) {
+    if (!crew || crew->count() == 1) return;
+    // An error of all processes is reported by the first, which then ends the others.
+    if (crew->rank() > 0) std::this_thread::sleep_for(time_to_end_processes);
+    report_fault(fmt::format("{}: {}", name_of_process(crew->rank()), explanation(error)));
+    crew->abort(failed);
 }
 
 void serve_crew() {
@@ -150,28 +115,35 @@ void dismiss_crew() {
     crew.reset();
 }
 
-CrewRun::CrewRun(Solver& solver) : solver_(solver) {
+CrewRun::CrewRun(Solver& solver, std::filesystem::path checkpoint)
+    : solver_(solver), checkpoint_(std::move(checkpoint)) {
     if (!crew) return;
     if (const Method& method = solver.options().method; crew->count() > 1 && !method.shares_rays)
         spdlog::warn("{} does not divide its rays: each of the {} processes does all the work", method.name,
                      crew->count());
-    Ranks::Bytes run = saved(solver);
+    std::string run = solver.image(), name = checkpoint_.string();
     const auto threads =
         static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
     const bool is_limited = threads < tbb::info::default_concurrency();
-    give({.kind = Order::Kind::solve, .bytes = run.size(), .threads = is_limited ? threads : 0});
-    crew->broadcast(run);
+    give({.kind = Order::Kind::solve,
+          .name_bytes = name.size(),
+          .bytes = run.size(),
+          .threads = is_limited ? threads : 0});
+    for (std::string* text : {&name, &run}) crew->broadcast(std::as_writable_bytes(std::span(*text)));
 }
 
 CrewRun::~CrewRun() { give({.kind = Order::Kind::end_of_run}); }
 
 AdvanceReport CrewRun::advance(const Limits& limits, Monitor monitor) try {
-    give({.kind = Order::Kind::advance, .limits = limits});
+    std::error_code ignored;
+    const bool has_checkpoint = has_advanced_ && std::filesystem::exists(checkpoint_, ignored);
+    has_advanced_ = true;
+    if (has_checkpoint) set_last_checkpoint(checkpoint_);
+    give({.kind = Order::Kind::advance, .limits = limits, .has_checkpoint = has_checkpoint});
     monitor.ranks = crew.get();
     return solver_.advance(limits, monitor);
 } catch (const std::exception& e) {
-    if (crew) spdlog::error("{}", e.what());
-    abort_crew(failed);  // the others wait for this process in the midst of their work
+    end_crew_after_fault(e);  // the others wait for this process in the midst of their work
     throw;
 }
 

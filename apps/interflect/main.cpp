@@ -2,13 +2,11 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
-#include <new>
-#include <stdexcept>
 #include <string>
 
 #include "apps/interflect/commands.h"
 #include "apps/interflect/crew.h"
-#include "apps/interflect/machine_memory.h"
+#include "apps/interflect/faults.h"
 #include "apps/interflect/messages.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/standard_streams.h"
@@ -76,8 +74,7 @@ int serve() try {
     interflect::command::serve_crew();
     return interflect::command::done;
 } catch (const std::exception& e) {
-    spdlog::error("a helping process failed: {}", e.what());
-    interflect::command::abort_crew(interflect::command::failed);
+    interflect::command::end_crew_after_fault(e);
     return interflect::command::failed;
 }
 
@@ -88,16 +85,6 @@ void return_large_arrays() {
     mallopt(M_MMAP_THRESHOLD, large);
 }
 
-/// Reports a failed allocation that was not predicted.
-int run_out_of_memory() {
-    spdlog::error(
-        "there is not enough memory: the limits of this process (its machine, ulimit -v, control groups) leave {} MiB. "
-        "Less is needed by a smaller picture (--size), a coarser lightmap (--texels-per-metre), fewer elements "
-        "(--memory, --mesh-size) and a scene of fewer faces (--curve-divisions, --max-patches)",
-        interflect::command::usable_memory() >> 20);
-    return interflect::command::failed;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -106,17 +93,20 @@ int main(int argc, char** argv) try {
     handle_signals();
     return_large_arrays();
     interflect::command::log_to_stderr();
-    if (!join_crew()) return serve();
+    switch (join_crew()) {
+        case Role::helper:
+            return serve();
+        case Role::refused:
+            return failed;
+        case Role::first:
+            break;
+    }
     const Dismissal at_the_end;
     return run(argc, argv);
 } catch (const interflect::InputError& e) {
     spdlog::error("{}", e.what());
     return interflect::command::bad_input;
-} catch (const std::bad_alloc&) {
-    return run_out_of_memory();
-} catch (const std::length_error&) {  // an array beyond the address space
-    return run_out_of_memory();
 } catch (const std::exception& e) {
-    spdlog::error("{}", e.what());
+    spdlog::error("{}", interflect::command::explanation(e));
     return interflect::command::failed;
 }

@@ -145,7 +145,7 @@ Solution run_to_end(Solver solver, const Checkpoints& checkpoints, const EarlyLi
         if (!checkpoints.file.empty()) limits.time = checkpoints.every;
         Limits first = limits;
         if (early_light.use) first.time = std::min(first.time, early_light.after);
-        CrewRun run(solver);
+        CrewRun run(solver, checkpoints.file);
         AdvanceReport report = run.advance(first, monitor);
         if (early_light.use && !report.is_finished && !report.is_stopped)
             if (const std::optional<Limits> plan = early_light.use(solver.solution())) run.set_plan(*plan);

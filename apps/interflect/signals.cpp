@@ -15,7 +15,7 @@ using namespace detail;
 
 namespace {
 
-constexpr std::array<int, 3> stop_signals = {SIGINT, SIGTERM, SIGHUP};
+constexpr std::array stop_signals = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
 std::atomic<bool> first_only_stops{false}, stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // required in signal handlers
 
@@ -57,6 +57,10 @@ void handle_signals() {
 }
 
 void stop_on_signal() { first_only_stops = true; }
+
+void ignore_stop_signals() {
+    for (const int signal : stop_signals) std::signal(signal, SIG_IGN);
+}
 
 void end_on_signal() { first_only_stops = false; }
 

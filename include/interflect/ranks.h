@@ -4,8 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace interflect {
@@ -39,9 +42,19 @@ class Ranks {
     virtual Traffic traffic() const = 0;
 };
 
-/// Joins the processes that mpirun started.
+/// Returns the rank that the launcher (mpirun, srun) gave this process, also before join_ranks(). Empty without a
+/// launcher.
+std::optional<int> launched_rank();
+
+/// Receives a sentence about a lost process, without a full stop. Called by another thread; then all processes end. One
+/// process reports each loss.
+using FaultReport = std::function<void(const std::string& fault)>;
+
+/// Joins the processes of mpirun. All end within 10 s (70 s during the start) after the death of a process, a SIGSTOP
+/// or the loss of a machine.
 /// @return  Null if this process is alone.
-/// @throws std::runtime_error if it is not alone and Interflect was built without MPI.
-std::shared_ptr<Ranks> join_ranks();
+/// @throws std::runtime_error if it is not alone and Interflect was built without MPI, if MPI does not connect all
+/// processes of the launcher, or if MPI does not support several threads.
+std::shared_ptr<Ranks> join_ranks(const FaultReport& report);
 
 }  // namespace interflect

@@ -18,7 +18,8 @@ namespace interflect {
 
 namespace detail {
 struct Run;
-}
+struct SavedRun;
+}  // namespace detail
 
 /// State of a run when advance() returns.
 struct AdvanceReport {
@@ -82,11 +83,17 @@ class Solver {
     /// Writes the complete state to a solution file (docs/solution-file.md), through a temporary file.
     /// @throws std::runtime_error if it cannot be written.
     void save(const std::filesystem::path& path) const;
+    /// Returns the bytes of such a file without checksums, for another process of the same program.
+    std::string image() const;
     /// Reads a file of save(). @throws InputError for a file that is missing, damaged, without the state of a run, or
     /// of another version of Interflect.
     static Solver open(const std::filesystem::path& path);
+    /// Reads the bytes of image(). @throws std::runtime_error if they are damaged.
+    static Solver open_image(std::span<const char> image);
 
   private:
+    static Solver restored(detail::SavedRun&& saved);
+
     std::unique_ptr<detail::Run> run_;
 };
 

@@ -1,18 +1,51 @@
 #include <mpi.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
+#include "interflect/cluster/heartbeat.h"
+#include "interflect/cluster/launcher.h"
+#include "interflect/cluster/time_limit.h"
 #include "interflect/ranks.h"
 
 namespace interflect {
 
+using namespace detail;
+
 namespace {
 
+using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
+
+/// Clusters load the program from one server for all machines, so starts differ by tens of seconds.
+constexpr std::chrono::seconds start_limit = 60s;
+/// At the end all processes have just exchanged their last beats. With the two seconds in which mpirun ends the others,
+/// less than 10 s.
+constexpr std::chrono::seconds finish_limit = 6s;
+/// Time for MPI_Abort() to reach mpirun, which may be stopped.
+constexpr std::chrono::seconds abort_limit = 2s;
+
+/// Process 0 reports first; its exit ends the others before they report the same.
+TimeLimit common_limit(int rank, std::chrono::milliseconds limit, const FaultReport& report, const char* fault) {
+    constexpr std::chrono::seconds head_start = 1s;
+    return {limit + (rank == 0 ? 0s : head_start), [=] { report(fault); }};
+}
+
+/// @throws std::runtime_error if an MPI function failed.
+void require(int code) {
+    if (code == MPI_SUCCESS) return;
+    std::array<char, MPI_MAX_ERROR_STRING> text{};
+    int length = 0;
+    MPI_Error_string(code, text.data(), &length);
+    throw std::runtime_error(fmt::format("the connection of the processes failed: {}", text.data()));
+}
 
 int checked_size(std::size_t bytes) {
     if (bytes > static_cast<std::size_t>(std::numeric_limits<int>::max()))
@@ -43,11 +76,28 @@ struct Layout {
 
 class MpiRanks : public Ranks {
   public:
-    MpiRanks() {
+    explicit MpiRanks(FaultReport report) : report_(std::move(report)) {
+        MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
         MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
         MPI_Comm_size(MPI_COMM_WORLD, &count_);
     }
-    ~MpiRanks() override { MPI_Finalize(); }
+    ~MpiRanks() override {
+        heartbeat_.reset();
+        const TimeLimit limit = common_limit(rank_, finish_limit, report_, "a process was stopped at its end");
+        MPI_Finalize();
+    }
+
+    /// Ends all processes if this one cannot start a thread.
+    void start_heartbeat() try {
+        if (count_ == 1) return;
+        heartbeat_.emplace([this](const std::string& fault) {
+            report_(fault);
+            abort(EXIT_FAILURE);
+        });
+    } catch (const std::exception& e) {
+        report_(fmt::format("process {} cannot watch another: {}", rank_, e.what()));
+        abort(EXIT_FAILURE);
+    }
 
     int rank() const override { return rank_; }
     int count() const override { return count_; }
@@ -60,11 +110,12 @@ class MpiRanks : public Ranks {
             sizes.push_back(checked_size(part.size()));
             all.insert(all.end(), part.begin(), part.end());
         }
-        MPI_Alltoall(sizes.data(), 1, MPI_INT, sizes_here.data(), 1, MPI_INT, MPI_COMM_WORLD);
+        wait_for_all();
+        require(MPI_Alltoall(sizes.data(), 1, MPI_INT, sizes_here.data(), 1, MPI_INT, MPI_COMM_WORLD));
         const Layout out(sizes), in(sizes_here);
         Bytes received(in.bytes());
-        MPI_Alltoallv(all.data(), out.sizes.data(), out.places.data(), MPI_BYTE, received.data(), in.sizes.data(),
-                      in.places.data(), MPI_BYTE, MPI_COMM_WORLD);
+        require(MPI_Alltoallv(all.data(), out.sizes.data(), out.places.data(), MPI_BYTE, received.data(),
+                              in.sizes.data(), in.places.data(), MPI_BYTE, MPI_COMM_WORLD));
         traffic_.bytes += static_cast<std::int64_t>(all.size() - parts[static_cast<std::size_t>(rank_)].size());
         return in.parts_of(received);
     }
@@ -73,11 +124,12 @@ class MpiRanks : public Ranks {
         const Stopwatch stopwatch(traffic_);
         const int size = checked_size(bytes.size());
         std::vector<int> sizes(static_cast<std::size_t>(count_));
-        MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, MPI_COMM_WORLD);
+        wait_for_all();
+        require(MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, MPI_COMM_WORLD));
         const Layout in(sizes);
         Bytes received(in.bytes());
-        MPI_Allgatherv(bytes.data(), size, MPI_BYTE, received.data(), in.sizes.data(), in.places.data(), MPI_BYTE,
-                       MPI_COMM_WORLD);
+        require(MPI_Allgatherv(bytes.data(), size, MPI_BYTE, received.data(), in.sizes.data(), in.places.data(),
+                               MPI_BYTE, MPI_COMM_WORLD));
         traffic_.bytes += static_cast<std::int64_t>(bytes.size()) * (count_ - 1);
         return in.parts_of(received);
     }
@@ -87,12 +139,14 @@ class MpiRanks : public Ranks {
         constexpr std::size_t at_once = std::size_t{1} << 30;
         for (std::size_t begin = 0; begin < bytes.size(); begin += at_once) {
             const std::span<std::byte> part = bytes.subspan(begin, std::min(at_once, bytes.size() - begin));
-            MPI_Bcast(part.data(), static_cast<int>(part.size()), MPI_BYTE, 0, MPI_COMM_WORLD);
+            wait_for_all();
+            require(MPI_Bcast(part.data(), static_cast<int>(part.size()), MPI_BYTE, 0, MPI_COMM_WORLD));
         }
         if (rank_ == 0) traffic_.bytes += static_cast<std::int64_t>(bytes.size());
     }
 
     void abort(int exit_code) override {
+        const TimeLimit limit(abort_limit, [] {});
         MPI_Abort(MPI_COMM_WORLD, exit_code);
         std::abort();  // MPI_Abort() does not return
     }
@@ -112,18 +166,51 @@ class MpiRanks : public Ranks {
         Clock::time_point start_ = Clock::now();
     };
 
+    /// Waits almost without using the processor, which blocking functions of MPI would use fully. An interval between
+    /// two questions is 1/32 of the time waited, so it delays by 3% of that; after 160 ms they take 0.2% of a core.
+    void wait_for_all() const {
+        constexpr std::chrono::nanoseconds shortest = 50us, longest = 5ms;  // the shortest is the precision of sleep
+        MPI_Request all = MPI_REQUEST_NULL;
+        require(MPI_Ibarrier(MPI_COMM_WORLD, &all));
+        const Clock::time_point start = Clock::now();
+        for (;;) {
+            int are_here = 0;
+            require(MPI_Test(&all, &are_here, MPI_STATUS_IGNORE));
+            if (are_here) return;
+            const std::chrono::nanoseconds interval = std::min(longest, (Clock::now() - start) / 32);
+            if (interval < shortest)
+                std::this_thread::yield();
+            else
+                std::this_thread::sleep_for(interval);
+        }
+    }
+
+    FaultReport report_;
     int rank_ = 0, count_ = 1;
     Traffic traffic_;
+    std::optional<Heartbeat> heartbeat_;
 };
 
 }  // namespace
 
-std::shared_ptr<Ranks> join_ranks() {
-    const char* count = std::getenv("OMPI_COMM_WORLD_SIZE");
-    if (!count) return nullptr;  // not started by mpirun
+std::shared_ptr<Ranks> join_ranks(const FaultReport& report) {
+    const std::optional<int> launched = launched_processes();
+    if (!launched) return nullptr;
     int provided = 0;
-    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-    return std::make_shared<MpiRanks>();
+    {
+        const TimeLimit limit = common_limit(launched_rank().value_or(0), start_limit, report,
+                                             "not all processes have started within a minute: one is stopped");
+        MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided);
+    }
+    const auto ranks = std::make_shared<MpiRanks>(report);
+    if (std::max(*launched, launched_rank().value_or(0) + 1) > ranks->count())
+        throw std::runtime_error(fmt::format(
+            "a launcher started several processes, but MPI connects {}: start them with mpirun, or with srun and PMIx",
+            ranks->count()));
+    if (provided < MPI_THREAD_MULTIPLE && ranks->count() > 1)
+        throw std::runtime_error("this MPI library supports only one thread: processes could not watch each other");
+    ranks->start_heartbeat();
+    return ranks;
 }
 
 }  // namespace interflect

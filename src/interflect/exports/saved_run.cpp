@@ -24,32 +24,55 @@ void archive_options(StateArchive& archive, SolveOptions& options) {
         archive.by_value("options/max_elements", std::vector{options.refinement.max_elements}).at(0);
 }
 
+/// Calls write(scene, solution, state).
+template <class Write>
+void write_run(Run& run, Solution result, SolveOptions options, const Write& write) {
+    result.dimming = run.state.solution.dimming;
+    StateArchive state;
+    archive_options(state, options);
+    run.archive(state);
+    write(*run.undimmed_scene, result, state);
+}
+
 }  // namespace
 
 void Solver::save(const std::filesystem::path& path) const {
     PendingFile file(path);
-    Solution result = solution();  // before the archive refers to the solver's data
-    result.dimming = run_->state.solution.dimming;
-    StateArchive state;
-    SolveOptions saved = options();
-    archive_options(state, saved);
-    run_->archive(state);
-    write_solution(file.temporary_path(), *run_->undimmed_scene, result, &state);
+    write_run(*run_, solution(), options(),
+              [&](const Scene& scene, const Solution& solution, const StateArchive& state) {
+                  write_solution(file.temporary_path(), scene, solution, &state);
+              });
     file.commit();
 }
 
+std::string Solver::image() const {
+    std::string image;
+    write_run(*run_, solution(), options(),
+              [&](const Scene& scene, const Solution& solution, const StateArchive& state) {
+                  image = solution_image(scene, solution, state);
+              });
+    return image;
+}
+
 Solver Solver::open(const std::filesystem::path& path) {
-    auto [solved, state] = read_saved_run(path);
+    SavedRun saved = read_saved_run(path);
     try {
-        archive_options(state, solved.solution.options);
-        Solver solver(std::move(solved.scene), solved.solution.options);
-        solver.run_->archive(state);
-        return solver;
+        return restored(std::move(saved));
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("a run that cannot go on: {}", e.what()));
     }
+}
+
+Solver Solver::open_image(std::span<const char> image) { return restored(read_saved_image(image)); }
+
+Solver Solver::restored(SavedRun&& saved) {
+    auto& [solved, state] = saved;
+    archive_options(state, solved.solution.options);
+    Solver solver(std::move(solved.scene), solved.solution.options);
+    solver.run_->archive(state);
+    return solver;
 }
 
 }  // namespace interflect

@@ -233,7 +233,7 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
 }
 
 struct VerifiedFile {
-    bool has_checksums;
+    bool has_checksums;  // true for a memory image
     Hdf5Reader arrays;
 };
 
@@ -319,9 +319,21 @@ StateArchive read_state(const VerifiedFile& file) {
     return StateArchive(std::move(arrays));
 }
 
-std::vector<FileRange> write_hdf5(const std::filesystem::path& path, const std::string& description, const Scene& scene,
+/// @throws std::runtime_error for an invalid scene or solution.
+std::string description_of(const Scene& scene, const Solution& solution) {
+    try {
+        require_valid(scene);
+        require_valid(solution);
+        return describe(scene, solution, format_version);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) {
+        throw std::runtime_error(fmt::format("the solution is not written: {}", e.what()));
+    }
+}
+
+std::vector<FileRange> write_hdf5(Hdf5Writer& file, const std::string& description, const Scene& scene,
                                   const Solution& solution, const StateArchive* state) {
-    Hdf5Writer file(path, checksum_block_size);
     std::vector<FileRange> ranges = write_arrays(file, description, scene, solution);
     if (state)
         for (FileRange& range : write_state(file, *state)) ranges.push_back(std::move(range));
@@ -355,17 +367,20 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
 
 void detail::write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                             const StateArchive* state) {
-    std::string description;
-    try {
-        require_valid(scene);
-        require_valid(solution);
-        description = describe(scene, solution, format_version);
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& e) {
-        throw std::runtime_error(fmt::format("the solution is not written: {}", e.what()));
+    const std::string description = description_of(scene, solution);
+    std::vector<FileRange> ranges;
+    {
+        Hdf5Writer file(path, checksum_block_size);
+        ranges = write_hdf5(file, description, scene, solution, state);
     }
-    write_checksums(path, write_hdf5(path, description, scene, solution, state));
+    write_checksums(path, std::move(ranges));
+}
+
+std::string detail::solution_image(const Scene& scene, const Solution& solution, const StateArchive& state) {
+    const std::string description = description_of(scene, solution);
+    Hdf5Writer file;
+    write_hdf5(file, description, scene, solution, &state);
+    return file.image();
 }
 
 SolvedScene read_solution(const std::filesystem::path& path) {
@@ -382,6 +397,12 @@ SavedRun detail::read_saved_run(const std::filesystem::path& path) {
     const VerifiedFile file = read_or_refuse(path, unreadable, [&] { return verified(path); });
     SolvedScene solved = read_or_refuse(path, unreadable, [&] { return read_solved_scene(file); });
     return {std::move(solved), read_or_refuse(path, "a run that cannot go on", [&] { return read_state(file); })};
+}
+
+SavedRun detail::read_saved_image(std::span<const char> image) {
+    const VerifiedFile file{.has_checksums = true, .arrays = Hdf5Reader(image)};
+    SolvedScene solved = read_solved_scene(file);
+    return {std::move(solved), read_state(file)};
 }
 
 bool is_solution_file(const std::filesystem::path& path) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <stdexcept>
 
 namespace interflect::detail {
@@ -99,12 +100,25 @@ hid_t created(const std::filesystem::path& path, std::uint64_t user_block) {
     return H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT);
 }
 
+void keep_in_memory(hid_t access) {
+    constexpr std::size_t growth = std::size_t{1} << 24;  // [bytes]
+    require(H5Pset_fapl_core(access, growth, false), "cannot keep a file in memory");
+}
+
 hid_t created_in_memory() {
     prepare_hdf5();
-    constexpr std::size_t growth = std::size_t{1} << 24;  // [bytes]
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_properties);
-    require(H5Pset_fapl_core(access, growth, false), "cannot keep a file in memory");
+    keep_in_memory(access);
     return H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access);
+}
+
+hid_t opened(std::span<const char> image) {
+    prepare_hdf5();
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, no_properties);
+    keep_in_memory(access);
+    // HDF5 copies the bytes and does not change them.
+    if (H5Pset_file_image(access, const_cast<char*>(image.data()), image.size()) < 0) throw std::bad_alloc();
+    return H5Fopen("memory", H5F_ACC_RDONLY, access);
 }
 
 void write_attribute_of_type(hid_t file, const std::string& group, const char* name, hid_t type, hid_t space,
@@ -135,11 +149,17 @@ Hdf5Handle::Hdf5Handle(hid_t id, herr_t (*close)(hid_t), const char* what) : id_
     if (id < 0) throw std::runtime_error(fmt::format("HDF5: {}{}", what, reason_of_disk()));
 }
 
-Hdf5Reader::Hdf5Reader(const std::filesystem::path& path)
-    : file_(opened(path), H5Fclose, "not an HDF5 file"),
+template <class Source>
+Hdf5Reader::Hdf5Reader(Hdf5Lock lock, const Source& source)
+    : lock_(std::move(lock)),
+      file_(opened(source), H5Fclose, "not an HDF5 file"),
       links_(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, no_properties) {
     require(H5Pset_elink_cb(links_, refuse_other_files, nullptr), no_properties);
 }
+
+Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : Hdf5Reader(Hdf5Lock(), path) {}
+
+Hdf5Reader::Hdf5Reader(std::span<const char> image) : Hdf5Reader(Hdf5Lock(), image) {}
 
 bool Hdf5Reader::has(const std::string& name) const { return H5Lexists(file_, name.c_str(), links_) > 0; }
 

@@ -44,6 +44,8 @@ class Hdf5Lock {
 class Hdf5Reader {
   public:
     explicit Hdf5Reader(const std::filesystem::path& path);
+    /// Copies the bytes of Hdf5Writer::image().
+    explicit Hdf5Reader(std::span<const char> image);
 
     bool has(const std::string& name) const;
     /// Reads a two-dimensional array unless `columns` is 1.
@@ -51,6 +53,9 @@ class Hdf5Reader {
     std::vector<T> read(const std::string& name, std::size_t columns = 1) const;
 
   private:
+    template <class Source>
+    Hdf5Reader(Hdf5Lock lock, const Source& source);
+
     Hdf5Lock lock_;
     Hdf5Handle file_, links_;
 };
