@@ -23,6 +23,9 @@
 #include "interflect/base/crc32.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/base/rank_sums.h"
+#include "interflect/ray_caster.h"
+#include "interflect/render/light_help.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 
@@ -32,9 +35,9 @@ std::shared_ptr<Ranks> crew;
 
 /// Command of the first process to the others.
 struct Order {
-    enum class Kind { solve, advance, plan, end_of_run, dismiss } kind;
+    enum class Kind { solve, advance, plan, end_of_run, light, dismiss } kind;
     Limits limits = {};
-    std::size_t bytes = 0;  ///< Size of the checkpoint that follows.
+    std::size_t bytes = 0;  ///< Size of the solution file that follows.
     int threads = 0;
 };
 
@@ -64,30 +67,47 @@ class ScratchFile {
     detail::PendingFile file_;  // never committed
 };
 
-Ranks::Bytes saved(const Solver& solver) {
+/// Sends an order and a solution file.
+void give_file(Order order, const std::function<void(const std::filesystem::path&)>& write) {
     const ScratchFile file;
-    solver.save(file.path());
+    write(file.path());
     Ranks::Bytes bytes(std::filesystem::file_size(file.path()));
     std::ifstream(file.path(), std::ios::binary)
         .read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    return bytes;
+    const auto threads =
+        static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    order.threads = threads < tbb::info::default_concurrency() ? threads : 0;
+    order.bytes = bytes.size();
+    give(order);
+    crew->broadcast(bytes);
 }
 
-Solver receive_run(std::size_t size) {
+/// Returns read(path) of the file that follows an order.
+template <class Read>
+auto receive_file(std::size_t size, const Read& read) {
     Ranks::Bytes bytes(size);
     crew->broadcast(bytes);
     const ScratchFile file;
     std::ofstream(file.path(), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(size));
-    return Solver::open(file.path());
+    return read(file.path());
+}
+
+void serve_light(const Order& order) {
+    const ThreadLimit threads(order.threads);
+    const SolvedScene solved = receive_file(order.bytes, read_solution);
+    const RayCaster ray_caster(solved.scene);
+    help_with_light(solved.scene, &solved.solution, ray_caster, *crew);
 }
 
 void serve_run(const Order& order) {
     const ThreadLimit threads(order.threads);
-    Solver solver = receive_run(order.bytes);
+    Solver solver = receive_file(order.bytes, Solver::open);
     for (Order next = receive_order(); next.kind != Order::Kind::end_of_run; next = receive_order()) {
         if (next.kind == Order::Kind::advance)
             solver.advance(next.limits, {.on_progress = {}, .ranks = crew.get()});
+        else if (next.kind == Order::Kind::light)
+            serve_light(next);
         else
             solver.set_plan(next.limits);
     }
@@ -141,7 +161,8 @@ void abort_crew(int exit_code) {
 }
 
 void serve_crew() {
-    for (Order order = receive_order(); order.kind != Order::Kind::dismiss; order = receive_order()) serve_run(order);
+    for (Order order = receive_order(); order.kind != Order::Kind::dismiss; order = receive_order())
+        order.kind == Order::Kind::light ? serve_light(order) : serve_run(order);
     crew.reset();
 }
 
@@ -150,17 +171,18 @@ void dismiss_crew() {
     crew.reset();
 }
 
+Ranks* start_light_help(const std::function<void(const std::filesystem::path&)>& write) {
+    if (!crew || crew->count() == 1) return nullptr;
+    give_file({.kind = Order::Kind::light}, write);
+    return crew.get();
+}
+
 CrewRun::CrewRun(Solver& solver) : solver_(solver) {
     if (!crew) return;
     if (const Method& method = solver.options().method; crew->count() > 1 && !method.shares_rays)
         spdlog::warn("{} does not divide its rays: each of the {} processes does all the work", method.name,
                      crew->count());
-    Ranks::Bytes run = saved(solver);
-    const auto threads =
-        static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-    const bool is_limited = threads < tbb::info::default_concurrency();
-    give({.kind = Order::Kind::solve, .bytes = run.size(), .threads = is_limited ? threads : 0});
-    crew->broadcast(run);
+    give_file({.kind = Order::Kind::solve}, [&](const std::filesystem::path& path) { solver.save(path); });
 }
 
 CrewRun::~CrewRun() { give({.kind = Order::Kind::end_of_run}); }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "interflect/core.h"
@@ -15,7 +17,8 @@ namespace interflect::command {
 /// the same bits.
 bool join_crew();
 
-/// Helps to solve the runs of the first process until dismiss_crew(). @throws the exceptions of Solver.
+/// Helps the first process with its runs, and with its light (CrewLight), until dismiss_crew(). @throws the exceptions
+/// of Solver, of read_solution() and of drawing.
 void serve_crew();
 
 /// The first process calls this at its end, also after an error outside runs.
@@ -23,6 +26,11 @@ void dismiss_crew();
 
 /// Ends all processes with this exit code, after an error in a run. No effect without other processes.
 void abort_crew(int exit_code);
+
+/// Makes the others call help_with_light() with a solution file. Not while a CrewRun works.
+/// @param write  Writes the file.
+/// @return       Null without other processes.
+Ranks* start_light_help(const std::function<void(const std::filesystem::path&)>& write);
 
 /// A run that the whole crew solves. Without a crew it is the Solver alone.
 class CrewRun {

@@ -228,6 +228,8 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
                      const ExportOptions& options, Lightmap& lightmap) {
     SourceGroups groups = source_groups(scene);
     groups.names = solution.group_names;
+    // Other ranks have the sum of the groups only.
+    const Monitor alone{.on_progress = options.monitor.on_progress, .stop = options.monitor.stop};
     for (std::size_t g = 0; g < groups.size(); ++g) {
         std::vector<float> factors(groups.size(), 0);
         factors[g] = 1;
@@ -238,7 +240,7 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
         const auto count = static_cast<double>(groups.size()), before = static_cast<double>(g);
         lightmap.groups.push_back(lightmap.images);  // still black
         texels.evaluate(group_scene, BakedLight(group_scene, group_solution, options.bake, texel_sampling),
-                        monitor_section(options.monitor, before / count, (before + 1) / count), lightmap.groups.back());
+                        monitor_section(alone, before / count, (before + 1) / count), lightmap.groups.back());
     }
     for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
 }

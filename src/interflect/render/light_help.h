@@ -1,0 +1,18 @@
+#pragma once
+
+#include "interflect/ray_caster.h"
+#include "interflect/scene.h"
+#include "interflect/solution.h"
+
+namespace interflect::detail {
+
+/// Traces the share of this rank in the pictures, measurements and exports for which rank 0 passes Monitor::ranks,
+/// until rank 0 calls end_light_help(). For the other ranks.
+/// @param scene     With the bits of rank 0, as `solution`; light groups may not be dimmed meanwhile.
+/// @param solution  Null: rank 0 does not draw solutions.
+void help_with_light(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, Ranks& ranks);
+
+/// Ends help_with_light() in all other ranks.
+void end_light_help(Ranks& ranks);
+
+}  // namespace interflect::detail
