@@ -19,6 +19,7 @@ namespace {
 /// Solution files contain the scene: one without light, for what needs the scene alone.
 Solution dark_solution(const Scene& scene) {
     Solution dark;
+    dark.options.method = default_method(false);  // files name one
     dark.forest = std::make_shared<ElementForest>(scene, scene.patches.size());
     const std::size_t elements = dark.forest->size();
     dark.irradiance.assign(elements, Rgb(0));
