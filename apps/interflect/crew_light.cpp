@@ -35,9 +35,7 @@ void end_all(const std::exception& error, int exit_code) {
 
 }  // namespace
 
-CrewLight::~CrewLight() {
-    if (ranks_) end_light_help(*ranks_);
-}
+CrewLight::~CrewLight() { end_light_help(ranks_); }
 
 void CrewLight::start() {
     if (ranks_) return;

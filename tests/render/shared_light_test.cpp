@@ -11,6 +11,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/render/light_help.h"
+#include "interflect/render/sharing/light_order.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/thread_ranks.h"
@@ -32,6 +33,7 @@ Scene room() {
     add_rectangle(scene, {1, 1, 0.7f}, {1.5f, 0, 0}, {0, 1, 0}, 2, 1, 1, true);
     add_rectangle(scene, {2, 1, 2.4f}, {0, 0.5f, 0}, {0.5f, 0, 0}, 1, 1, 1, false);
     scene.luminaires = {{"", 0, PointLight{{0.3f, 0.4f, 2.1f}, {20, 30, 20}}}, {"", 0, SkyDome{{4, -0.7f}, Rgb(30)}}};
+    scene.light_groups = {{"lamps", "lamp"}};
     return scene;
 }
 
@@ -58,7 +60,7 @@ void with_helpers(int count, const std::function<void(const Monitor&)>& work, co
     ThreadRanks(count).run([&](Ranks& ranks) {
         if (ranks.rank() != 0) return help_with_light(lit().scene, &lit().solution, lit().ray_caster, ranks);
         work({.on_progress = {}, .stop = stop, .ranks = &ranks});
-        end_light_help(ranks);
+        end_light_help(&ranks);
     });
 }
 
@@ -158,6 +160,24 @@ TEST(SharedProbes, HaveTheBitsOfOneProcess) {
             EXPECT_EQ(shared[i].coefficients, alone[i].coefficients);
             EXPECT_EQ(shared[i].is_inside, alone[i].is_inside);
         }
+    });
+}
+
+TEST(SharedPicture, OfALightGroupHasTheBitsOfOneProcess) {
+    const Lit& all = lit();
+    const LightOfGroup lamps = light_of_group(all.scene, all.solution, 0);
+    EXPECT_NE(lamps.solution.irradiance, all.solution.irradiance);
+    const RayCaster ray_caster(lamps.scene);
+    PathOptions options;
+    options.width = 48, options.height = 32;
+    const auto drawn = [&](const Monitor& monitor) {
+        return gather(lamps.scene, lamps.solution, ray_caster, all.view, options, monitor);
+    };
+    const PathTracing alone = drawn({});
+    with_helpers(2, [&](const Monitor& monitor) {
+        give_order(monitor.ranks, {.kind = LightOrder::Kind::group, .group = 0});
+        expect_equal(drawn(monitor), alone);
+        end_light_help(monitor.ranks);
     });
 }
 

@@ -1,6 +1,8 @@
 #include "interflect/render/light_help.h"
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "interflect/core.h"
 #include "interflect/measure.h"
@@ -42,6 +44,11 @@ void help_with_light(const Scene& scene, const Solution* solution, const RayCast
                 case LightOrder::Kind::probes:
                     irradiance_probes(scene, *solution, ray_caster, order.probes, monitor);
                     break;
+                case LightOrder::Kind::group: {
+                    const LightOfGroup group = light_of_group(scene, *solution, order.group);
+                    help_with_light(group.scene, &group.solution, RayCaster(group.scene), ranks);
+                    break;
+                }
                 case LightOrder::Kind::end:
                     return;
             }
@@ -50,6 +57,17 @@ void help_with_light(const Scene& scene, const Solution* solution, const RayCast
     }
 }
 
-void end_light_help(Ranks& ranks) { give_order(&ranks, {}); }
+LightOfGroup light_of_group(const Scene& scene, const Solution& solution, std::size_t group) {
+    SourceGroups groups = source_groups(scene);
+    groups.names = solution.group_names;
+    std::vector<float> factors(groups.size(), 0);
+    factors[group] = 1;
+    LightOfGroup light{dimmed(scene, groups, factors), solution};
+    light.solution.irradiance = std::move(light.solution.groups[group]);
+    light.solution.groups.clear();
+    return light;
+}
+
+void end_light_help(Ranks* ranks) { give_order(ranks, {}); }
 
 }  // namespace interflect::detail

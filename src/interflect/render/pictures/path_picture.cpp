@@ -193,7 +193,8 @@ class PathPicture {
 
     void trace_chunk(std::vector<BatchOfPaths>& chunk) {
         if (chunk.empty() || is_over()) return chunk.clear();
-        counts_ += shared_.trace(chunk, [this] { return is_over(); });
+        counts_ += shared_.trace(
+            chunk, [this] { return is_over(); }, has_all_pixels_);
         for (const BatchOfPaths& batch : chunk) {
             if (!batch.done) continue;
             pixels_[batch.pixel].add(batch, static_cast<double>(s_.batch_size));
@@ -247,7 +248,7 @@ PathTracing draw(const PathScene& scene, const PathOptions& options, const Monit
                  const StopRequest& time_left, VirtualLights* virtual_lights = nullptr) {
     SharedBatches batches(scene, virtual_lights, monitor.ranks);
     if (batches.is_helper()) {
-        batches.help();
+        batches.help(time_left);
         return {};
     }
     PathPicture picture(scene, batches, options, monitor, time_left);

@@ -18,17 +18,19 @@ struct LightOrder {
         gauges,           ///< hybrid_irradiance()
         direct_gauges,    ///< direct_irradiance()
         probes,           ///< irradiance_probes()
+        group,            ///< help_with_light() with light_of_group().
         end,              ///< Ends help_with_light().
     };
     Kind kind = Kind::end;
-    PathOptions options{};         ///< Not for `probes`, which have `probes`.
+    PathOptions options{};         ///< Of paths.
     bool is_known = false;         ///< Paths end at the solution.
     bool is_interpolated = false;  ///< As KnownIrradiance::is_interpolated.
     ProbeOptions probes{};
+    std::size_t group = 0;  ///< Light group.
 };
 
 /// Sends an order to the other ranks. No effect for null and in other ranks than 0.
-/// @param start  Of the paths; not for `probes`.
+/// @param start  Of the paths.
 void give_order(Ranks* ranks, LightOrder order, const PathStart& start = {});
 
 struct ReceivedOrder {

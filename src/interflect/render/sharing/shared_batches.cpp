@@ -22,9 +22,9 @@ std::size_t SharedBatches::paths_at_once(const Ranks* ranks) {
     return paths_of_process * (ranks ? static_cast<std::size_t>(ranks->count()) : 1);
 }
 
-RayCounts SharedBatches::trace(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over) {
+RayCounts SharedBatches::trace(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over, bool is_limited) {
     if (ranks_) {
-        Chunk chunk{batches.size(), light_set_};
+        Chunk chunk{batches.size(), light_set_, is_limited};
         broadcast(*ranks_, std::span(&chunk, 1));
         std::vector<Key> keys;
         keys.reserve(batches.size());
@@ -46,7 +46,7 @@ void SharedBatches::end() {
     if (ranks_) broadcast(*ranks_, std::span(&chunk, 1));
 }
 
-void SharedBatches::help() {
+void SharedBatches::help(const StopRequest& time_left) {
     std::vector<Key> keys;
     for (;;) {
         Chunk chunk;
@@ -58,7 +58,7 @@ void SharedBatches::help() {
         std::vector<BatchOfPaths> batches;
         batches.reserve(keys.size());
         for (const Key& k : keys) batches.push_back({k.pixel, k.batch, k.first_point});
-        trace_own(batches, [] { return false; });
+        trace_own(batches, [&] { return chunk.is_limited && time_left.is_out_of_time(); });
     }
 }
 

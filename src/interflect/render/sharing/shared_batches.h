@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 
+#include "interflect/base/stop_request.h"
 #include "interflect/ranks.h"
 #include "interflect/render/lights/virtual_lights.h"
 #include "interflect/render/paths/path_wavefront.h"
@@ -20,14 +21,16 @@ class SharedBatches {
     SharedBatches(const PathScene& scene, VirtualLights* virtual_lights, Ranks* ranks)
         : scene_(scene), virtual_lights_(virtual_lights), ranks_(ranks) {}
 
-    /// Tiles for trace(), about: enough to occupy all processes.
+    /// Paths of one trace(), enough to occupy all processes.
     static std::size_t paths_at_once(const Ranks* ranks);
     bool is_helper() const { return ranks_ && ranks_->rank() != 0; }
 
     // Rank 0:
 
-    /// Sets BatchOfPaths::done. @param is_over  Omits the remaining tiles of this process; called once per tile.
-    RayCounts trace(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over);
+    /// Sets BatchOfPaths::done.
+    /// @param is_over     Omits the remaining tiles of this process; called once per tile.
+    /// @param is_limited  The other ranks omit tiles after PathOptions::time.
+    RayCounts trace(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over, bool is_limited);
     /// Later batches are lit by another set of virtual lights. Returns its number of rays; 0 without virtual lights.
     std::int64_t renew_virtual_lights();
     /// Ends help().
@@ -35,8 +38,8 @@ class SharedBatches {
 
     // Other ranks:
 
-    /// Traces the tiles of this rank until end().
-    void help();
+    /// Traces the tiles of this rank until end(). @param time_left  As PathOptions::time.
+    void help(const StopRequest& time_left);
 
   private:
     struct Key {
@@ -45,6 +48,7 @@ class SharedBatches {
     struct Chunk {
         std::size_t batches = 0;         // 0: the end
         std::uint32_t light_set = none;  // of virtual lights
+        bool is_limited = false;
     };
     RayCounts trace_own(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over);
 
