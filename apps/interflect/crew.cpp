@@ -20,7 +20,11 @@
 #include "apps/interflect/signals.h"
 #include "apps/interflect/threads.h"
 #include "interflect/cluster/fingerprint.h"
+#include "interflect/exports/saved_run.h"
 #include "interflect/ranks.h"
+#include "interflect/ray_caster.h"
+#include "interflect/render/light_help.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 
@@ -33,9 +37,10 @@ constexpr std::chrono::milliseconds time_to_end_processes{2500};
 
 /// Command of the first process to the others.
 struct Order {
-    enum class Kind { solve, advance, plan, end_of_run, dismiss } kind;
+    enum class Kind { solve, advance, plan, end_of_run, light, dismiss } kind;
     Limits limits = {};
-    std::size_t name_bytes = 0, bytes = 0;  ///< Sizes of the name of the checkpoint and of the run, which follow.
+    /// Sizes of the name of the checkpoint and of the run or solution, which follow.
+    std::size_t name_bytes = 0, bytes = 0;
     int threads = 0;
     bool has_checkpoint = false;  ///< The run was saved under this name.
 };
@@ -55,10 +60,26 @@ Order receive_order() {
     return order;
 }
 
+void give_text(std::string& text) { crew->broadcast(std::as_writable_bytes(std::span(text))); }
+
 std::string receive_text(std::size_t size) {
     std::string text(size, '\0');
     crew->broadcast(std::as_writable_bytes(std::span(text)));
     return text;
+}
+
+/// Returns the limit of threads that --threads set, 0 without one.
+int limit_of_threads() {
+    const auto threads =
+        static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    return threads < tbb::info::default_concurrency() ? threads : 0;
+}
+
+void serve_light(const Order& order) {
+    const ThreadLimit threads(order.threads);
+    const SolvedScene solved = detail::read_solution_image(receive_text(order.bytes));
+    const RayCaster ray_caster(solved.scene);
+    detail::help_with_light(solved.scene, &solved.solution, ray_caster, *crew);
 }
 
 void serve_run(const Order& order) {
@@ -69,6 +90,8 @@ void serve_run(const Order& order) {
         if (next.kind == Order::Kind::advance) {
             set_last_checkpoint(next.has_checkpoint ? checkpoint : "");
             solver.advance(next.limits, {.on_progress = {}, .ranks = crew.get()});
+        } else if (next.kind == Order::Kind::light) {
+            serve_light(next);
         } else {
             solver.set_plan(next.limits);
         }
@@ -78,7 +101,7 @@ void serve_run(const Order& order) {
 std::string difference_within_crew() try {
     return detail::difference_among(*crew, detail::Fingerprint::of_this_process());
 } catch (const std::exception& e) {
-    end_crew_after_fault(e);
+    end_crew_after_fault(e, failed);
     throw;
 }
 
@@ -97,22 +120,31 @@ Role join_crew() {
     return Role::refused;
 }
 
-void end_crew_after_fault(const std::exception& error) {
+void end_crew_after_fault(const std::exception& error, int exit_code) {
     if (!crew || crew->count() == 1) return;
     // An error of all processes is reported by the first, which then ends the others.
     if (crew->rank() > 0) std::this_thread::sleep_for(time_to_end_processes);
     report_fault(fmt::format("{}: {}", name_of_process(crew->rank()), explanation(error)));
-    crew->abort(failed);
+    crew->abort(exit_code);
 }
 
 void serve_crew() {
-    for (Order order = receive_order(); order.kind != Order::Kind::dismiss; order = receive_order()) serve_run(order);
+    for (Order order = receive_order(); order.kind != Order::Kind::dismiss; order = receive_order())
+        order.kind == Order::Kind::light ? serve_light(order) : serve_run(order);
     crew.reset();
 }
 
 void dismiss_crew() {
     give({.kind = Order::Kind::dismiss});
     crew.reset();
+}
+
+Ranks* start_light_help(const std::function<std::string()>& make_image) {
+    if (!crew || crew->count() == 1) return nullptr;
+    std::string image = make_image();
+    give({.kind = Order::Kind::light, .bytes = image.size(), .threads = limit_of_threads()});
+    give_text(image);
+    return crew.get();
 }
 
 CrewRun::CrewRun(Solver& solver, std::filesystem::path checkpoint)
@@ -122,14 +154,8 @@ CrewRun::CrewRun(Solver& solver, std::filesystem::path checkpoint)
         spdlog::warn("{} does not divide its rays: each of the {} processes does all the work", method.name,
                      crew->count());
     std::string run = solver.image(), name = checkpoint_.string();
-    const auto threads =
-        static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-    const bool is_limited = threads < tbb::info::default_concurrency();
-    give({.kind = Order::Kind::solve,
-          .name_bytes = name.size(),
-          .bytes = run.size(),
-          .threads = is_limited ? threads : 0});
-    for (std::string* text : {&name, &run}) crew->broadcast(std::as_writable_bytes(std::span(*text)));
+    give({.kind = Order::Kind::solve, .name_bytes = name.size(), .bytes = run.size(), .threads = limit_of_threads()});
+    give_text(name), give_text(run);
 }
 
 CrewRun::~CrewRun() { give({.kind = Order::Kind::end_of_run}); }
@@ -143,7 +169,7 @@ AdvanceReport CrewRun::advance(const Limits& limits, Monitor monitor) try {
     monitor.ranks = crew.get();
     return solver_.advance(limits, monitor);
 } catch (const std::exception& e) {
-    end_crew_after_fault(e);  // the others wait for this process in the midst of their work
+    end_crew_after_fault(e, failed);  // the others wait for this process in the midst of their work
     throw;
 }
 

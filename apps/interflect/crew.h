@@ -2,6 +2,8 @@
 
 #include <exception>
 #include <filesystem>
+#include <functional>
+#include <string>
 
 #include "interflect/core.h"
 #include "interflect/solver.h"
@@ -18,14 +20,20 @@ enum class Role {
 /// @throws std::runtime_error as join_ranks(), in the first process.
 Role join_crew();
 
-/// Helps to solve the runs of the first process until dismiss_crew(). @throws the exceptions of Solver.
+/// Helps the first process with its runs, and with its light (CrewLight), until dismiss_crew(). @throws the exceptions
+/// of Solver, of read_solution() and of drawing.
 void serve_crew();
 
 /// The first process calls this at its end, also after an error outside runs.
 void dismiss_crew();
 
-/// Reports the error of this process in a run and ends all processes. No effect without other processes.
-void end_crew_after_fault(const std::exception& error);
+/// Reports the error of this process in shared work and ends all processes. No effect without other processes.
+void end_crew_after_fault(const std::exception& error, int exit_code);
+
+/// Makes the others call help_with_light() with a solution. Not while a CrewRun works.
+/// @param make_image  Returns the solution as solution_image().
+/// @return            Null without other processes.
+Ranks* start_light_help(const std::function<std::string()>& make_image);
 
 /// A run that the whole crew solves. Without a crew it is the Solver alone.
 class CrewRun {

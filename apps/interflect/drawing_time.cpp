@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "apps/interflect/crew_light.h"
 #include "apps/interflect/signals.h"
 
 namespace interflect::command {
@@ -49,20 +50,28 @@ double seconds_of_process() { return seconds_since(process_start); }
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const Tracer& tracer, const PathOptions& options, bool filters) {
     constexpr double shortest = 1e-9;  // [s]; ends after two batches per pixel
+    CrewLight crew_light(scene, &solution);
+    const double sending = seconds_of([&] { crew_light.start(); });
+    PathTracing traced;
+    const auto seconds_to_draw = [&](const PathOptions& picture) {
+        return seconds_of([&] {
+            crew_light.share({{}, &stop_flag()}, [&](const Monitor& monitor) {
+                traced = tracer(scene, solution, ray_caster, view, picture, monitor);
+            });
+        });
+    };
     PathOptions one = options;
     one.time = shortest;
     one.width = one.height = 1;
-    const double preparation = seconds_of([&] { tracer(scene, solution, ray_caster, view, one, {{}, &stop_flag()}); });
+    const double preparation = seconds_to_draw(one);
     PathOptions small = options;
     small.time = shortest;
     const Growth& growth = tracer == static_cast<Tracer>(render_hybrid) ? of_hybrid : of_gathering;
     const double ratio = reduce(small.width, small.height, growth.reduction);
-    PathTracing traced;
-    const double drawing = seconds_of([&] {
-        traced = tracer(scene, solution, ray_caster, view, small, {{}, &stop_flag()});
-    });
+    const double drawing = seconds_to_draw(small);
     const double filtering = filters ? seconds_of([&] { denoise(traced.layers); }) : 0;
-    const double least = preparation + std::max(0.0, drawing - preparation) * std::pow(ratio, growth.exponent);
+    const double least =
+        sending + preparation + std::max(0.0, drawing - preparation) * std::pow(ratio, growth.exponent);
     return {least, 2 * least, ratio * filtering + writing * options.width * options.height};
 }
 

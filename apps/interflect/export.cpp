@@ -132,7 +132,8 @@ std::vector<std::filesystem::path> write(const std::filesystem::path& path, cons
     const auto export_light = [&] { return export_solution(path, solved.scene, solved.solution, options); };
     if (!traces_rays(path, options)) return export_light();
     std::vector<std::filesystem::path> written;
-    with_path_progress([&](const Monitor& monitor) {
+    CrewLight crew_light(solved.scene, &solved.solution);
+    with_path_progress(crew_light, [&](const Monitor& monitor) {
         options.monitor = monitor;
         options.monitor.on_progress = [&](const Progress& progress) {
             stop_on_signal();

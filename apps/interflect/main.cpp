@@ -74,7 +74,7 @@ int serve() try {
     interflect::command::serve_crew();
     return interflect::command::done;
 } catch (const std::exception& e) {
-    interflect::command::end_crew_after_fault(e);
+    interflect::command::end_crew_after_fault(e, interflect::command::failed);
     return interflect::command::failed;
 }
 

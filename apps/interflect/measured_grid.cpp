@@ -35,9 +35,9 @@ void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
 constexpr std::size_t max_compared = 256, min_of_grid = 8;
 
 /// Traces paths at evenly spread points of each grid, with the gathering's number of samples.
-void compare_with_paths(const Scene& scene, const RayCaster& ray_caster, const std::vector<MeasuringPoint>& points,
-                        const std::vector<MeasuredIrradiance>& measured, PathOptions options,
-                        std::vector<MeasuredGrid>& grids) {
+void compare_with_paths(CrewLight& crew_light, const Scene& scene, const RayCaster& ray_caster,
+                        const std::vector<MeasuringPoint>& points, const std::vector<MeasuredIrradiance>& measured,
+                        PathOptions options, std::vector<MeasuredGrid>& grids) {
     options.until = 0;
     ++options.seed;
     const std::size_t max_of_grid = std::max(min_of_grid, max_compared / grids.size());
@@ -53,7 +53,7 @@ void compare_with_paths(const Scene& scene, const RayCaster& ray_caster, const s
         first += size;
     }
     std::vector<MeasuredIrradiance> traced;
-    with_path_progress([&](const Monitor& monitor) {
+    with_path_progress(crew_light, [&](const Monitor& monitor) {
         traced = measure_irradiance(scene, nullptr, ray_caster, compared, options, monitor);
     });
     std::span<const MeasuredIrradiance> gathered = measured, rest = traced;
@@ -86,15 +86,17 @@ void warn_of_misplaced_points(const Scene& scene, const RayCaster& ray_caster, s
 std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                         std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
                                         const PathOptions& options) {
+    CrewLight crew_light(scene, solution);
     std::vector<MeasuredIrradiance> measured;
-    with_path_progress([&](const Monitor& monitor) {
+    with_path_progress(crew_light, [&](const Monitor& monitor) {
         measured = measure_irradiance(scene, solution, ray_caster, points, options, monitor);
     });
     warn_of_misplaced_points(scene, ray_caster, points, measured);
     std::vector<MeasuredGrid> result;
     result.reserve(grids.size());
     for (MeasuringGrid& grid : grids) result.push_back({std::move(grid), {}, 0, {}});
-    if (solution && !result.empty()) compare_with_paths(scene, ray_caster, points, measured, options, result);
+    if (solution && !result.empty())
+        compare_with_paths(crew_light, scene, ray_caster, points, measured, options, result);
     std::size_t next = 0, lost = 0;
     for (MeasuredGrid& of_grid : result) {
         MeasuringGrid& grid = of_grid.grid;

@@ -107,7 +107,8 @@ std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, 
         for (const Imath::V3d& eye : grid.points) eyes.push_back({eye, {}, Receiver::cylindrical});
     warn_of_misplaced_points(scene, ray_caster, eyes, {});
     std::vector<GlareRating> ratings;
-    with_path_progress([&](const Monitor& monitor) {
+    CrewLight crew_light(scene, solution);
+    with_path_progress(crew_light, [&](const Monitor& monitor) {
         ratings = rate_glare(scene, solution, ray_caster, observers, options, monitor);
     });
     std::vector<RatedGrid> result;

@@ -189,14 +189,14 @@ PathShading path_shading(const Scene& scene, const Solution* solution, const Ray
     };
     switch (arguments.shading) {
         case PictureShading::path:
-            return {"path tracing", from_scene(trace_paths), false};
+            return {"path tracing", from_scene(trace_paths), nullptr};
         case PictureShading::instant:
-            return {"instant radiosity", from_scene(render_instant), false,
+            return {"instant radiosity", from_scene(render_instant), nullptr,
                     static_cast<std::size_t>(arguments.light_walks) * bytes_per_light_walk};
         case PictureShading::gather:
-            return {"final gathering", from_solution(gather), true};
+            return {"final gathering", from_solution(gather), solution};
         default:
-            return {"hybrid shading", from_solution(render_hybrid), true};
+            return {"hybrid shading", from_solution(render_hybrid), solution};
     }
 }
 

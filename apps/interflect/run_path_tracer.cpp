@@ -122,8 +122,10 @@ PathTracing run_path_tracer(const Scene& scene, const PathShading& shading, cons
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
     PathTracing traced;
     stop_on_signal();
-    const double seconds = with_path_progress([&](const Monitor& monitor) { traced = shading.draw(options, monitor); });
-    if (shading.has_solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
+    CrewLight crew_light(scene, shading.solution);
+    const double seconds =
+        with_path_progress(crew_light, [&](const Monitor& monitor) { traced = shading.draw(options, monitor); });
+    if (shading.solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
         spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());
     if (arguments.denoise && traced.paths > 0) {

@@ -42,8 +42,8 @@ std::vector<ImageLayer> layers_of(const PathTracing& traced);
 struct PathShading {
     std::string name;
     std::function<PathTracing(const PathOptions&, const Monitor&)> draw;
-    bool has_solution;       ///< Smooth shading can replace it.
-    std::size_t memory = 0;  ///< Of virtual lights [bytes].
+    const Solution* solution;  ///< Smooth shading of it can replace the picture; null: drawn without a solution.
+    std::size_t memory = 0;    ///< Of virtual lights [bytes].
 };
 
 /// @throws std::runtime_error if a gathered or path-traced picture does not fit into memory.

@@ -106,8 +106,9 @@ struct Monitor {
     std::function<void(const Progress&)> on_progress;
     /// Once true, the work ends within milliseconds. May be set by another thread or a signal handler; may be null.
     const std::atomic<bool>* stop = nullptr;
-    /// Processes that share the work and make the same call; null: this one works alone. `stop` of the first one
-    /// counts, and ends the work after some seconds.
+    /// Processes that share the work; null: this one works alone. The others make the same call or, for pictures,
+    /// measurements and exports, wait for it (render/light_help.h). `stop` of the first one counts, and ends the work
+    /// after some seconds.
     Ranks* ranks = nullptr;
 };
 

@@ -5,8 +5,25 @@ import signal
 import subprocess
 import unittest
 
-from command import BAD_INPUT, COMMAND, FAILED, INTERRUPTED
+from command import BAD_INPUT, COMMAND, FAILED, INTERRUPTED, VIEW
 from crew import ENVIRONMENT, CrewTest, solve, with_checkpoints
+
+SMALL_PICTURE = ("--size", "64x48", "--samples", "16")
+# Commands whose light all processes compute, by the name of their output.
+OF_LIGHT = {
+    "path.exr": ("render", "room.mgf", *VIEW, "--shading", "path", *SMALL_PICTURE),
+    "instant.exr": ("render", "room.mgf", *VIEW, "--shading", "instant", "--light-walks", "1000", *SMALL_PICTURE),
+    "solved.exr": ("render", "room.mgf", *VIEW, "--rays", "100k", *SMALL_PICTURE),
+    "gather.exr": ("render", "light.h5", *VIEW, "--shading", "gather", "--until", "20%", *SMALL_PICTURE),
+    "hybrid.png": ("render", "light.h5", *VIEW, *SMALL_PICTURE),
+    "grid.csv": ("probe", "light.h5", "--plane", "0.8", "--samples", "64"),
+    "paths.csv": ("probe", "room.mgf", "--plane", "0.8", "--samples", "64", "--shading", "path"),
+    "map.gltf": ("export", "light.h5", "--lightmap", "--texels-per-metre", "8"),
+    "groups.gltf": ("export", "light.h5", "--lightmap", "--texels-per-metre", "4", "--lightmap-groups"),
+    "gathered.gltf": ("export", "light.h5", "--lightmap", "--texels-per-metre", "4", "--shading", "gather"),
+    "vertices.glb": ("export", "light.h5", "--max-triangles", "3000"),
+    "probes.json": ("export", "light.h5", "--probe-spacing", "0.7", "--probe-rays", "128"),
+}
 
 
 class Mpi(CrewTest):
@@ -17,6 +34,17 @@ class Mpi(CrewTest):
                 code, messages = self.run_ranks(ranks, *solve("500k"), "--threads", str(threads), "-o", "shared.h5")
                 self.assertEqual(code, 0, messages)
                 self.assertEqual(self.bytes("shared.h5"), self.bytes("alone.h5"))
+
+    def test_pictures_measurements_and_exports_have_the_bytes_of_one_process(self):
+        self.interflect("solve", "room.mgf", *VIEW, "--rays", "100k", "--light-groups", "-o", "light.h5")
+        (self.folder / "shared").mkdir()
+        for name, arguments in OF_LIGHT.items():
+            with self.subTest(name):
+                self.interflect(*arguments, "-o", name)
+                code, messages = self.run_ranks(3, *arguments, "--threads", "1", "-o", f"shared/{name}")
+                self.assertEqual(code, 0, messages)
+                for file in (self.folder / "shared").iterdir():
+                    self.assertEqual(file.read_bytes(), self.bytes(file.name), file)
 
     def test_the_first_process_alone_reports_errors(self):
         code, messages = self.run_ranks(3, "solve", "missing.mgf", "-o", "out.h5")

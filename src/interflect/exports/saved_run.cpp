@@ -49,7 +49,7 @@ std::string Solver::image() const {
     std::string image;
     write_run(*run_, solution(), options(),
               [&](const Scene& scene, const Solution& solution, const StateArchive& state) {
-                  image = solution_image(scene, solution, state);
+                  image = solution_image(scene, solution, &state);
               });
     return image;
 }

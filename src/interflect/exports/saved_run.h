@@ -19,12 +19,13 @@ SavedRun read_saved_run(const std::filesystem::path& path);
 
 /// Reads the bytes of solution_image(). @throws std::runtime_error
 SavedRun read_saved_image(std::span<const char> image);
+SolvedScene read_solution_image(std::span<const char> image);
 
 /// Omits a null state. @throws as the public write_solution().
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                     const StateArchive* state);
 
 /// Returns the bytes of such a file without checksums.
-std::string solution_image(const Scene& scene, const Solution& solution, const StateArchive& state);
+std::string solution_image(const Scene& scene, const Solution& solution, const StateArchive* state);
 
 }  // namespace interflect::detail

@@ -376,10 +376,10 @@ void detail::write_solution(const std::filesystem::path& path, const Scene& scen
     write_checksums(path, std::move(ranges));
 }
 
-std::string detail::solution_image(const Scene& scene, const Solution& solution, const StateArchive& state) {
+std::string detail::solution_image(const Scene& scene, const Solution& solution, const StateArchive* state) {
     const std::string description = description_of(scene, solution);
     Hdf5Writer file;
-    write_hdf5(file, description, scene, solution, &state);
+    write_hdf5(file, description, scene, solution, state);
     return file.image();
 }
 
@@ -403,6 +403,12 @@ SavedRun detail::read_saved_image(std::span<const char> image) {
     const VerifiedFile file{.has_checksums = true, .arrays = Hdf5Reader(image)};
     SolvedScene solved = read_solved_scene(file);
     return {std::move(solved), read_state(file)};
+}
+
+SolvedScene detail::read_solution_image(std::span<const char> image) {
+    SolvedScene solved = read_solved_scene({.has_checksums = true, .arrays = Hdf5Reader(image)});
+    apply_dimming(solved);
+    return solved;
 }
 
 bool is_solution_file(const std::filesystem::path& path) {

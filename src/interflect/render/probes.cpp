@@ -10,14 +10,16 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/common_stop.h"
 #include "interflect/base/random.h"
+#include "interflect/base/shared_ranges.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
 #include "interflect/luminaires/skies.h"
 #include "interflect/raycast/panes.h"
+#include "interflect/render/sharing/light_order.h"
 #include "interflect/render/smooth/element_vertices.h"
 #include "interflect/render/smooth/smooth_field.h"
 #include "interflect/render/sphere_quadrature.h"
@@ -213,21 +215,24 @@ ProbeGrid irradiance_probes(const Scene& scene, const Solution& solution, const 
     solution.forest->require_made_for(scene);
     ray_caster.require_made_for(scene);
     ProbeGrid grid = empty_grid(scene, options);
+    give_order(monitor.ranks, {.kind = LightOrder::Kind::probes, .probes = options});
     const LightAround light(scene, solution, ray_caster, options);
     const auto columns = static_cast<std::size_t>(grid.count[0]), rows = static_cast<std::size_t>(grid.count[1]);
-    const auto stopped = [&] { return monitor.stop && *monitor.stop; };
+    const CommonStop stop(monitor.stop, monitor.ranks);
     const auto measure = [&](std::size_t i) {
-        if (stopped()) return;
+        if (stop.within_process().is_due()) return;
         const std::size_t column = i % columns, row = i / columns % rows, level = i / columns / rows;
         const Imath::V3d number(static_cast<double>(column), static_cast<double>(row), static_cast<double>(level));
         grid.probes[i] = light.probe(V3f(grid.first - scene.origin + number * grid.step), i);
     };
-    const std::size_t per_report = std::max<std::size_t>(1, rays_per_report / light.rays());
+    const std::size_t ranks = monitor.ranks ? static_cast<std::size_t>(monitor.ranks->count()) : 1;
+    const std::size_t per_report = std::max<std::size_t>(1, ranks * rays_per_report / light.rays());
     for (std::size_t begin = 0; begin < grid.probes.size(); begin += per_report) {
         const std::size_t end = std::min(grid.probes.size(), begin + per_report);
-        parallel_for_ranges(end - begin, 1, [&](std::size_t i, std::size_t) { measure(begin + i); });
-        if (stopped())
+        parallel_for_own_ranges(monitor.ranks, end - begin, 1, [&](std::size_t i, std::size_t) { measure(begin + i); });
+        if (stop.is_due())
             throw Stopped(fmt::format("stopped at {} of {} probes, before all had light", begin, grid.probes.size()));
+        collect_ranges(monitor.ranks, std::span(grid.probes).subspan(begin, end - begin), 1, Destination::first_rank);
         if (monitor.on_progress)
             monitor.on_progress({static_cast<std::int64_t>(2 * end * light.rays()),
                                  static_cast<double>(end) / static_cast<double>(grid.probes.size()),

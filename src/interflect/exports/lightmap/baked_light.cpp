@@ -7,6 +7,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/measure.h"
 #include "interflect/render.h"
+#include "interflect/render/sharing/light_order.h"
 
 namespace interflect::detail {
 
@@ -71,7 +72,9 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std:
                                         float spacing, const Monitor& monitor) const {
     if (options_.shading == BakeShading::hybrid) {
         const std::vector<Gauge> places = gauges(points, spacing);
-        const std::vector<GaugeLight> light = hybrid_irradiance(*traced_, places, path_options(), monitor);
+        const PathOptions path = path_options();
+        give_order(monitor.ranks, {.kind = LightOrder::Kind::gauges, .options = path}, {{}, 0, places});
+        const std::vector<GaugeLight> light = hybrid_irradiance(*traced_, places, path, monitor);
         std::vector<Rgb> values;
         values.reserve(light.size());
         for (const GaugeLight& l : light) values.push_back(l.irradiance());
@@ -91,7 +94,9 @@ std::vector<SampledIrradiance> BakedLight::direct(std::span<const BakedPoint> po
                                                   const Monitor& monitor) const {
     PathOptions options = path_options();
     options.samples = std::min(options.samples, max_samples);
-    return direct_irradiance(*traced_, gauges(points, spacing), options, monitor);
+    const std::vector<Gauge> places = gauges(points, spacing);
+    give_order(monitor.ranks, {.kind = LightOrder::Kind::direct_gauges, .options = options}, {{}, 0, places});
+    return direct_irradiance(*traced_, places, options, monitor);
 }
 
 PathOptions BakedLight::path_options() const {

@@ -19,8 +19,10 @@
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/measure.h"
+#include "interflect/render/light_help.h"
 #include "interflect/render/paths/gauge.h"
 #include "interflect/render/pictures/path_picture.h"
+#include "interflect/render/sharing/light_order.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
@@ -226,19 +228,21 @@ void add(const std::vector<Image>& images, std::vector<Image>& sum) {
 /// Evaluates each group alone. Their sum, noise included, is the lightmap.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
                      const ExportOptions& options, Lightmap& lightmap) {
-    SourceGroups groups = source_groups(scene);
-    groups.names = solution.group_names;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        std::vector<float> factors(groups.size(), 0);
-        factors[g] = 1;
-        const Scene group_scene = dimmed(scene, groups, factors);
-        Solution group_solution = solution;
-        group_solution.irradiance = std::move(group_solution.groups[g]);
-        group_solution.groups.clear();
-        const auto count = static_cast<double>(groups.size()), before = static_cast<double>(g);
+    Ranks* const ranks = options.monitor.ranks;
+    const std::size_t count = solution.group_names.size();
+    for (std::size_t g = 0; g < count; ++g) {
+        const LightOfGroup group = light_of_group(scene, solution, g);
+        const auto fraction = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(count); };
         lightmap.groups.push_back(lightmap.images);  // still black
-        texels.evaluate(group_scene, BakedLight(group_scene, group_solution, options.bake, texel_sampling),
-                        monitor_section(options.monitor, before / count, (before + 1) / count), lightmap.groups.back());
+        give_order(ranks, {.kind = LightOrder::Kind::group, .group = g});
+        try {
+            texels.evaluate(group.scene, BakedLight(group.scene, group.solution, options.bake, texel_sampling),
+                            monitor_section(options.monitor, fraction(g), fraction(g + 1)), lightmap.groups.back());
+        } catch (const Stopped&) {
+            end_light_help(ranks);
+            throw;
+        }
+        end_light_help(ranks);
     }
     for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
 }

@@ -8,6 +8,7 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/base/shared_ranges.h"
 #include "interflect/geometry/tangent_frame.h"
 #include "interflect/render/paths/path_wavefront.h"
 
@@ -30,6 +31,8 @@ constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
 constexpr float covering_weight = 1.5f;
 constexpr std::size_t points_of_first_round = 256;  // the total doubles with each round
 constexpr std::size_t points_per_task = 1024, records_per_task = 64, groups_per_task = 128;
+/// Groups that each rank gathers between two questions whether to stop: some seconds of one thread.
+constexpr std::size_t groups_of_rank = 1 << 16;
 
 V3f nearest_on(const Contact& contact, const V3f& x) {
     const V3f along = contact.b - contact.a;
@@ -48,6 +51,33 @@ std::vector<Boxed> make_tree(const std::vector<Contact>& contacts) {
     return tree;
 }
 
+/// Light of a group of paths of a record.
+struct GatheredGroup {
+    std::uint32_t record = 0;
+    bool is_done = false;
+    float inverse_length = 0;  // as FirstHit::inverse_length, sum over the paths [1/m]
+    RgbD indirect{0, 0, 0};    // sum over the paths
+    std::int64_t rays = 0;     // of all groups of its task, in the first of them
+};
+
+/// Traces the batches, which all ranks share. @param scene  Gathers at the records.
+std::vector<GatheredGroup> gather_groups(const PathScene& scene, std::span<BatchOfPaths> batches,
+                                         const CommonStop& stop) {
+    std::vector<GatheredGroup> groups(batches.size());
+    parallel_for_own_ranges(stop.ranks(), batches.size(), groups_per_task, [&](std::size_t begin, std::size_t end) {
+        if (stop.within_process().is_due()) return;
+        PathWavefront wavefront(scene);
+        wavefront.trace(batches.subspan(begin, end - begin));
+        for (std::size_t i = begin; i < end; ++i) {
+            const BatchOfPaths& b = batches[i];
+            groups[i] = {b.pixel, b.done, static_cast<float>(b.first.inverse_length), b.indirect};
+        }
+        groups[begin].rays = wavefront.counts().rays;
+    });
+    collect_ranges(stop.ranks(), std::span(groups), groups_per_task, Destination::all_ranks);
+    return groups;
+}
+
 /// Returns a random permutation.
 std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> order(count);
@@ -64,38 +94,40 @@ std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
 
 IndirectField::IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor)
     : contacts_(scene.scene.contacts), contact_tree_(make_tree(contacts_)) {
-    cover(scene, points, monitor);
-    refine_noisy_records(scene, monitor.stop);
+    const CommonStop stop(monitor.stop, monitor.ranks);
+    cover(scene, points, monitor, stop);
+    refine_noisy_records(scene, stop);
 }
 
-void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor) {
+void IndirectField::cover(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor,
+                          const CommonStop& stop) {
     const std::vector<std::uint32_t> order = shuffled(points.size(), scene.options.seed);
     for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
         end = std::min(points.size(), std::max(points_of_first_round, 2 * begin));
-        if (monitor.stop && *monitor.stop) return;
         std::vector<SurfacePoint> candidates;
         for (std::size_t i = begin; i < end; ++i) candidates.push_back(points[order[i]]);
-        add_records(scene, uncovered_among(candidates), monitor.stop);
+        if (stop.is_due() || add_records(scene, uncovered_among(candidates, stop.ranks()), stop)) return;
         const double done = std::sqrt(static_cast<double>(end) / static_cast<double>(points.size()));
         if (monitor.on_progress) monitor.on_progress({rays_, done});
     }
 }
 
-std::vector<SurfacePoint> IndirectField::uncovered_among(std::span<const SurfacePoint> points) const {
+std::vector<SurfacePoint> IndirectField::uncovered_among(std::span<const SurfacePoint> points, Ranks* ranks) const {
     std::vector<std::uint8_t> is_covered(points.size(), 0);
-    parallel_for_ranges(points.size(), points_per_task, [&](std::size_t first, std::size_t last) {
+    parallel_for_own_ranges(ranks, points.size(), points_per_task, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i)
             is_covered[i] =
                 fit_at(points[i].position, points[i].normal, points[i].patch).values.weight() >= covering_weight;
     });
+    collect_ranges(ranks, std::span(is_covered), points_per_task, Destination::all_ranks);
     std::vector<SurfacePoint> uncovered;
     for (std::size_t i = 0; i < points.size(); ++i)
         if (is_covered[i] == 0) uncovered.push_back(points[i]);
     return uncovered;
 }
 
-void IndirectField::gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,
-                           const std::atomic<bool>* stop) {
+bool IndirectField::gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,
+                           const CommonStop& stop) {
     std::vector<Gauge> gauges;
     for (const Record& r : records_) gauges.push_back({.position = r.position, .normal = r.normal});
     std::vector<BatchOfPaths> batches;
@@ -110,36 +142,34 @@ void IndirectField::gather(const PathScene& scene, std::span<const std::uint32_t
     gathering.start = &start;
     gathering.batch_size = paths_per_group;
     gathering.is_indirect_only = true;
-    std::vector<std::int64_t> rays((batches.size() + groups_per_task - 1) / groups_per_task);
-    parallel_for_ranges(batches.size(), groups_per_task, [&](std::size_t begin, std::size_t end) {
-        if (stop && *stop) return;
-        PathWavefront wavefront(gathering);
-        wavefront.trace(std::span(batches).subspan(begin, end - begin));
-        rays[begin / groups_per_task] = wavefront.counts().rays;
-    });
-    rays_ = std::accumulate(rays.begin(), rays.end(), rays_);
     // Irradiance in pictures of irradiance, else radiance of a white surface.
     const double per_path =
         (scene.options.quantity == PathQuantity::irradiance ? 1 : std::numbers::pi) / paths_per_group;
-    for (const BatchOfPaths& batch : batches) {
-        if (!batch.done) continue;
-        Record& r = records_[batch.pixel];
-        r.gathered.add(batch.indirect * per_path);
-        r.inverse_length += static_cast<float>(batch.first.inverse_length);
+    const std::size_t at_once = stop.ranks() ? groups_of_rank * stop.ranks()->count() : batches.size();
+    for (std::size_t first = 0; first < batches.size(); first += at_once) {
+        const std::span<BatchOfPaths> some =
+            std::span(batches).subspan(first, std::min(at_once, batches.size() - first));
+        for (const GatheredGroup& group : gather_groups(gathering, some, stop)) {
+            rays_ += group.rays;
+            if (!group.is_done) continue;
+            Record& r = records_[group.record];
+            r.gathered.add(group.indirect * per_path);
+            r.inverse_length += group.inverse_length;
+        }
+        if (stop.is_due()) return true;
     }
+    return false;
 }
 
-void IndirectField::add_records(const PathScene& scene, std::span<const SurfacePoint> points,
-                                const std::atomic<bool>* stop) {
+bool IndirectField::add_records(const PathScene& scene, std::span<const SurfacePoint> points, const CommonStop& stop) {
     const std::size_t old_count = records_.size();
     for (const SurfacePoint& p : points)
         records_.push_back({.position = p.position, .normal = p.normal, .patch = p.patch});
     std::vector<std::uint32_t> added(points.size());
     std::iota(added.begin(), added.end(), static_cast<std::uint32_t>(old_count));
-    gather(scene, added, min_groups, stop);
-    if (stop && *stop) {
+    if (gather(scene, added, min_groups, stop)) {
         records_.resize(old_count);  // without a reach yet
-        return;
+        return true;
     }
     constexpr float paths_per_record = paths_per_group * min_groups;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -160,10 +190,11 @@ void IndirectField::add_records(const PathScene& scene, std::span<const SurfaceP
         tree_[i] = {{r.position - V3f(r.reach), r.position + V3f(r.reach)}, i};
     }
     arrange_box_tree(tree_);
+    return false;
 }
 
-void IndirectField::refine_noisy_records(const PathScene& scene, const std::atomic<bool>* stop) {
-    if (records_.empty()) return;
+void IndirectField::refine_noisy_records(const PathScene& scene, const CommonStop& stop) {
+    if (records_.empty() || stop.is_due()) return;
     const bool is_bake = !scene.start->camera;
     const float min_irradiance = min_share_of_mean * (is_bake ? log_mean_irradiance() : mean_irradiance());
     std::vector<float> needed(records_.size());
@@ -176,12 +207,12 @@ void IndirectField::refine_noisy_records(const PathScene& scene, const std::atom
         }
     });
     // Each round doubles the groups of noisy records.
-    for (std::size_t groups = min_groups; groups < max_groups && !(stop && *stop); groups *= 2) {
+    for (std::size_t groups = min_groups; groups < max_groups; groups *= 2) {
         std::vector<std::uint32_t> noisy;
         for (std::uint32_t i = 0; i < records_.size(); ++i)
             if (needed[i] > static_cast<float>(groups)) noisy.push_back(i);
         if (noisy.empty()) return;
-        gather(scene, noisy, groups, stop);
+        if (gather(scene, noisy, groups, stop)) return;
     }
 }
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "interflect/base/common_stop.h"
 #include "interflect/core.h"
 #include "interflect/geometry/box_tree.h"
 #include "interflect/render/paths/part_statistics.h"
@@ -32,7 +32,7 @@ class IndirectField {
   public:
     /// Makes records until all points are covered.
     /// @param scene  With a known solution; its batches are ignored.
-    /// If stopped, ends within milliseconds, with fewer records.
+    /// If stopped, ends with fewer records: within milliseconds, with several ranks within seconds. Collective.
     IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor);
 
     struct Light {
@@ -79,12 +79,14 @@ class IndirectField {
         std::uint32_t nearest = none;  // record
     };
     Fit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
-    void cover(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor);
-    std::vector<SurfacePoint> uncovered_among(std::span<const SurfacePoint> points) const;
-    void gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,
-                const std::atomic<bool>* stop);
-    void add_records(const PathScene& scene, std::span<const SurfacePoint> points, const std::atomic<bool>* stop);
-    void refine_noisy_records(const PathScene& scene, const std::atomic<bool>* stop);
+    void cover(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor,
+               const CommonStop& stop);
+    std::vector<SurfacePoint> uncovered_among(std::span<const SurfacePoint> points, Ranks* ranks) const;
+    /// Returns whether a stop was due.
+    bool gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,
+                const CommonStop& stop);
+    bool add_records(const PathScene& scene, std::span<const SurfacePoint> points, const CommonStop& stop);
+    void refine_noisy_records(const PathScene& scene, const CommonStop& stop);
     /// Over records, below.
     float mean_irradiance() const;
     /// Geometric mean, of lit records.

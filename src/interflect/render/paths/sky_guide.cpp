@@ -7,6 +7,7 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/base/shared_ranges.h"
 #include "interflect/geometry/tangent_frame.h"
 #include "interflect/render/paths/path_wavefront.h"
 
@@ -75,26 +76,29 @@ std::vector<std::uint32_t> groups_near(const IndirectField& field, std::span<con
 
 }  // namespace
 
-SkyGuide::SkyGuide(const PathScene& scene, const IndirectField& field, const std::atomic<bool>* stop) {
+SkyGuide::SkyGuide(const PathScene& scene, const IndirectField& field, const CommonStop& stop) {
     if (!scene.skies.can_sample() && !(channel_sum(scene.skies.uniform_radiance()) > 0)) return;
     groups_ = groups_of(field);
     const std::size_t count = groups_.empty() ? 0 : *std::max_element(groups_.begin(), groups_.end()) + std::size_t{1};
     std::vector<std::vector<SurfacePoint>> places(count);
     for (std::size_t i = 0; i < field.size(); ++i) places[groups_[i]].push_back(field.place(i));
 
+    const auto is_stopped = [&] { return stop.within_process().is_due(); };
     std::vector<Cells> light(count, Cells{});
-    rays_ = parallel_sum(count, place_groups_per_task, std::int64_t{0}, [&](std::size_t begin, std::size_t end) {
-        std::int64_t rays = 0;
-        for (std::size_t g = begin; g < end && !(stop && *stop); ++g) {
+    std::vector<std::int64_t> rays(count);
+    parallel_for_own_ranges(stop.ranks(), count, place_groups_per_task, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end && !is_stopped(); ++g) {
             const Search searched = search(scene, places[g], mix(mix(scene.options.seed, g), 1));
             light[g] = searched.light();
-            rays += searched.traced;
+            rays[g] = searched.traced;
         }
-        return rays;
     });
+    collect_ranges(stop.ranks(), std::span(light), place_groups_per_task, Destination::all_ranks);
+    collect_ranges(stop.ranks(), std::span(rays), place_groups_per_task, Destination::all_ranks);
+    rays_ = std::accumulate(rays.begin(), rays.end(), std::int64_t{0});
     densities_.resize(count);
     parallel_for_ranges(count, place_groups_per_task, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t g = begin; g < end && !(stop && *stop); ++g) {
+        for (std::size_t g = begin; g < end && !is_stopped(); ++g) {
             Cells around = light[g];
             for (const std::uint32_t near : groups_near(field, groups_, places[g]))
                 for (std::size_t c = 0; c < cells; ++c) around[c] += share_of_neighbours * light[near][c];

@@ -19,8 +19,9 @@ struct PathScene;
 /// projected solid angle, learned from their rays. Immutable, thread-safe.
 class SkyGuide {
   public:
-    /// Empty without skies. If stopped, ends within milliseconds, with fewer densities.
-    SkyGuide(const PathScene& scene, const IndirectField& field, const std::atomic<bool>* stop);
+    /// Empty without skies. If stopped, ends with fewer densities: within milliseconds; with several ranks it runs to
+    /// its end. Collective.
+    SkyGuide(const PathScene& scene, const IndirectField& field, const CommonStop& stop);
 
     /// Whether some ray from around a record has reached the sky.
     bool sees_sky(std::uint32_t record) const {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "interflect/base/monitor_section.h"
-#include "interflect/base/parallel.h"
+#include "interflect/base/shared_ranges.h"
 #include "interflect/render/paths/part_statistics.h"
 #include "interflect/render/paths/seen_light.h"
 #include "interflect/render/smooth/smooth_surfaces.h"
@@ -79,7 +79,7 @@ std::size_t TracedScene::batch_size(int samples, int batches) {
     return std::bit_floor(static_cast<unsigned>(std::clamp(samples / batches, 1, largest_batch)));
 }
 
-std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop) {
+std::vector<SurfacePoint> first_points(const PathScene& scene, const StopRequest& stop) {
     std::vector<SurfacePoint> points;
     for (const Gauge& g : scene.start->gauges) {
         const V3f start = g.patch == none ? g.position : scene.lifted(g.patch, g.position);
@@ -93,7 +93,7 @@ std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic
         static_cast<std::size_t>(scene.options.width) * static_cast<std::size_t>(scene.options.height);
     std::vector<std::vector<SurfacePoint>> found((pixels + paths_per_tile - 1) / paths_per_tile);
     parallel_for_ranges(pixels, paths_per_tile, [&](std::size_t begin, std::size_t end) {
-        if (stop && *stop) return;
+        if (stop.is_due()) return;
         std::vector<BatchOfPaths> batches;
         for (std::size_t i = begin; i < end; ++i) batches.push_back({.pixel = static_cast<std::uint32_t>(i)});
         PathWavefront wavefront(finding);
@@ -160,20 +160,28 @@ std::int64_t trace_gauges(const PathScene& paths, std::size_t first, std::span<G
 
 std::vector<GaugeLight> trace_all_gauges(const PathScene& paths, const Monitor& monitor) {
     const std::size_t gauges = paths.start->gauges.size();
-    std::vector<GaugeLight> irradiance(gauges);
+    std::vector<GaugeLight> irradiance;
     constexpr std::size_t per_tile = 256;
-    constexpr std::size_t tiles_per_report = 256;
+    constexpr std::size_t tiles_per_report = 256;  // of each rank
+    const CommonStop stop(monitor.stop, monitor.ranks);
+    const std::size_t at_once =
+        per_tile * tiles_per_report * (monitor.ranks ? static_cast<std::size_t>(monitor.ranks->count()) : 1);
     std::int64_t rays = 0;
-    for (std::size_t first = 0; first < gauges; first += per_tile * tiles_per_report) {
-        const std::size_t count = std::min(per_tile * tiles_per_report, gauges - first);
+    for (std::size_t first = 0; first < gauges; first += at_once) {
+        const std::size_t count = std::min(at_once, gauges - first);
+        std::vector<GaugeLight> light(count);
         std::vector<std::int64_t> rays_of_tile((count + per_tile - 1) / per_tile);
-        parallel_for_ranges(count, per_tile, [&](std::size_t begin, std::size_t end) {
-            if (monitor.stop && *monitor.stop) return;
+        parallel_for_own_ranges(monitor.ranks, count, per_tile, [&](std::size_t begin, std::size_t end) {
+            if (stop.within_process().is_due()) return;
             rays_of_tile[begin / per_tile] =
-                trace_gauges(paths, first + begin, std::span(irradiance).subspan(first + begin, end - begin));
+                trace_gauges(paths, first + begin, std::span(light).subspan(begin, end - begin));
         });
-        if (monitor.stop && *monitor.stop)
+        if (stop.is_due())
             throw Stopped(fmt::format("stopped when {} of {} texels or vertices had light", first, gauges));
+        collect_ranges(monitor.ranks, std::span(light), per_tile, Destination::first_rank);
+        collect_ranges(monitor.ranks, std::span(rays_of_tile), 1, Destination::first_rank);
+        if (monitor.ranks && monitor.ranks->rank() != 0) continue;
+        irradiance.insert(irradiance.end(), light.begin(), light.end());
         for (const std::int64_t of_tile : rays_of_tile) rays += of_tile;
         if (monitor.on_progress)
             monitor.on_progress({rays, static_cast<double>(first + count) / static_cast<double>(gauges)});
@@ -202,13 +210,14 @@ std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, std::span<co
     const PathStart start = start_at(gauges);
     PathScene paths = scene.paths(start, options, 1);
     paths.batch_size = batch_size_of_gauges(paths);
-    const std::vector<SurfacePoint> points = first_points(paths, monitor.stop);
+    const CommonStop stop(monitor.stop, monitor.ranks);
+    const std::vector<SurfacePoint> points = first_points(paths, stop.within_process());
     const KnownLight known = scene.known_light(paths, points);
     paths.known = &known;
     constexpr double share_of_records = 0.6;  // of the time; roughly
     const IndirectField field(paths, points, monitor_section(monitor, 0, share_of_records));
     paths.indirect_field = &field;
-    const SkyGuide guide(paths, field, monitor.stop);
+    const SkyGuide guide(paths, field, stop);
     paths.sky_guide = &guide;
     return trace_all_gauges(paths, monitor_section(monitor, share_of_records, 1, field.rays() + guide.rays()));
 }

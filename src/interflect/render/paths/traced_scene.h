@@ -65,8 +65,8 @@ class TracedScene {
 constexpr double hybrid_target = 0.06;
 
 /// First vertices: about one per pixel of the camera, or the gauges.
-/// @param stop  If set, some points are missing; may be null.
-std::vector<SurfacePoint> first_points(const PathScene& scene, const std::atomic<bool>* stop);
+/// @param stop  If due within this process, some points are missing.
+std::vector<SurfacePoint> first_points(const PathScene& scene, const StopRequest& stop);
 
 struct SampledIrradiance {
     Rgb irradiance;           ///< [as H]
@@ -84,7 +84,8 @@ struct GaugeLight {
 /// only chance finds, two batches of them if the estimated relative error is below options.until or, without it,
 /// hybrid_target.
 /// @param scene  With interpolated KnownIrradiance.
-/// @return       Per gauge; the same bits for any number of threads. @throws Stopped
+/// @return       Per gauge, in rank 0 only; the same bits for any number of threads and ranks. Collective.
+/// @throws Stopped, in all ranks.
 std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
                                           const PathOptions& options, const Monitor& monitor);
 /// The direct part.

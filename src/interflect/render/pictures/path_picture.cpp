@@ -11,14 +11,16 @@
 #include <tuple>
 #include <vector>
 
+#include "interflect/base/common_stop.h"
 #include "interflect/base/monitor_section.h"
-#include "interflect/base/parallel.h"
 #include "interflect/base/stop_request.h"
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/render/paths/indirect_field.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/pictures/pixel_statistics.h"
+#include "interflect/render/sharing/light_order.h"
+#include "interflect/render/sharing/shared_batches.h"
 #include "interflect/render/smooth/smooth_normals.h"
 #include "interflect/render/smooth/smooth_surfaces.h"
 
@@ -33,21 +35,19 @@ constexpr int min_batches = 8;
 constexpr std::uint32_t starting_batches = 2;
 /// Minimum of hybrid shading, whose batches look up indirect and unoccluded light; maximum within a time limit.
 constexpr std::size_t small_batch = 2;
-constexpr std::size_t paths_per_chunk = std::size_t{1} << 18;
 
 bool is_limited(const PathOptions& options) { return std::isfinite(options.time); }
 
 class PathPicture {
   public:
-    /// @param time_left       As PathOptions::time.
-    /// @param virtual_lights  Of `scene`; may be null.
-    PathPicture(const PathScene& scene, const PathOptions& options, const Monitor& monitor,
-                const StopRequest& time_left, VirtualLights* virtual_lights)
+    /// @param time_left  As PathOptions::time.
+    PathPicture(const PathScene& scene, SharedBatches& batches, const PathOptions& options, const Monitor& monitor,
+                const StopRequest& time_left)
         : s_(scene),
           options_(options),
           monitor_(monitor),
           time_left_(time_left),
-          virtual_lights_(virtual_lights),
+          shared_(batches),
           pixels_(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height)) {}
 
     void trace() {
@@ -160,7 +160,7 @@ class PathPicture {
     }
 
     void trace_round(const std::vector<std::uint32_t>& wanted) {
-        const std::size_t per_chunk = paths_per_chunk / s_.batch_size;
+        const std::size_t per_chunk = SharedBatches::paths_at_once(monitor_.ranks) / s_.batch_size;
         std::vector<std::uint32_t> present(pixels_.size());
         for (std::size_t i = 0; i < pixels_.size(); ++i) present[i] = pixels_[i].batches;
         std::vector<BatchOfPaths> chunk;
@@ -179,11 +179,9 @@ class PathPicture {
 
     /// Each batch of a pixel is lit by another set of virtual lights, so their spread includes the error of the sets.
     void renew_virtual_lights(std::vector<BatchOfPaths>& chunk) {
-        if (!virtual_lights_) return;
+        if (!s_.virtual_lights) return;
         trace_chunk(chunk);
-        const std::int64_t before = virtual_lights_->rays();
-        virtual_lights_->renew(virtual_light_sets_++);
-        counts_.rays += virtual_lights_->rays() - before;
+        counts_.rays += shared_.renew_virtual_lights();
     }
 
     /// In hybrid shading, one sequence stratifies the batches of a pixel, so the error is overestimated. Otherwise they
@@ -195,15 +193,8 @@ class PathPicture {
 
     void trace_chunk(std::vector<BatchOfPaths>& chunk) {
         if (chunk.empty() || is_over()) return chunk.clear();
-        const std::size_t per_tile = std::max<std::size_t>(1, paths_per_tile / s_.batch_size);
-        std::vector<RayCounts> counts((chunk.size() + per_tile - 1) / per_tile);
-        parallel_for_ranges(chunk.size(), per_tile, [&](std::size_t begin, std::size_t end) {
-            if (is_over()) return;
-            PathWavefront wavefront(s_);
-            wavefront.trace(std::span(chunk).subspan(begin, end - begin));
-            counts[begin / per_tile] = wavefront.counts();
-        });
-        for (const RayCounts& c : counts) counts_ += c;
+        counts_ += shared_.trace(
+            chunk, [this] { return is_over(); }, has_all_pixels_);
         for (const BatchOfPaths& batch : chunk) {
             if (!batch.done) continue;
             pixels_[batch.pixel].add(batch, static_cast<double>(s_.batch_size));
@@ -227,8 +218,7 @@ class PathPicture {
     const PathOptions& options_;
     const Monitor& monitor_;
     const StopRequest& time_left_;
-    VirtualLights* virtual_lights_;
-    std::uint32_t virtual_light_sets_ = 0;
+    SharedBatches& shared_;
     bool has_all_pixels_ = false;
     std::vector<PixelStatistics> pixels_;
     double foreseen_ = 0;  // expected total of batches
@@ -256,8 +246,14 @@ namespace {
 
 PathTracing draw(const PathScene& scene, const PathOptions& options, const Monitor& monitor,
                  const StopRequest& time_left, VirtualLights* virtual_lights = nullptr) {
-    PathPicture picture(scene, options, monitor, time_left, virtual_lights);
+    SharedBatches batches(scene, virtual_lights, monitor.ranks);
+    if (batches.is_helper()) {
+        batches.help(time_left);
+        return {};
+    }
+    PathPicture picture(scene, batches, options, monitor, time_left);
     picture.trace();
+    batches.end();
     return picture.result();
 }
 
@@ -269,6 +265,7 @@ PathTracing trace_instant_picture(const Scene& scene, const RayCaster& ray_caste
     if (options.light_walks < 1)
         throw InputError(fmt::format("{} walks from the light sources: expected 1 or more", options.light_walks));
     ray_caster.require_made_for(scene);
+    give_order(monitor.ranks, {.kind = LightOrder::Kind::instant_picture, .options = options}, start);
     StopRequest time_left;
     time_left.limit_time(StopRequest::Clock::now(), options.time);
     const TracedScene traced(scene, ray_caster, nullptr);
@@ -282,15 +279,22 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
                           const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
     ray_caster.require_made_for(scene);
+    const bool is_hybrid = known && known->is_interpolated;
+    give_order(monitor.ranks,
+               {.kind = LightOrder::Kind::picture,
+                .options = options,
+                .is_known = known != nullptr,
+                .is_interpolated = is_hybrid},
+               start);
     StopRequest time_left;
     time_left.limit_time(StopRequest::Clock::now(), options.time);
     const TracedScene traced(scene, ray_caster, known);
-    const bool is_hybrid = known && known->is_interpolated;
     const std::size_t usual_batch = TracedScene::batch_size(options.samples, min_batches);
     PathScene path_scene =
         traced.paths(start, options, is_limited(options) ? std::min(usual_batch, small_batch) : usual_batch);
     if (!known) return draw(path_scene, options, monitor, time_left);
-    const std::vector<SurfacePoint> points = first_points(path_scene, monitor.stop);
+    const CommonStop stop(monitor.stop, monitor.ranks);
+    const std::vector<SurfacePoint> points = first_points(path_scene, stop.within_process());
     const KnownLight light = traced.known_light(path_scene, points);
     path_scene.known = &light;
     if (!is_hybrid) return draw(path_scene, options, monitor, time_left);
@@ -298,7 +302,7 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     constexpr double share_of_records = 0.25;  // of the time; roughly
     const IndirectField field(path_scene, points, monitor_section(monitor, 0, share_of_records));
     path_scene.indirect_field = &field;
-    const SkyGuide guide(path_scene, field, monitor.stop);
+    const SkyGuide guide(path_scene, field, stop);
     path_scene.sky_guide = &guide;
     const std::int64_t rays = field.rays() + guide.rays();
     PathTracing result = draw(path_scene, options, monitor_section(monitor, share_of_records, 1, rays), time_left);

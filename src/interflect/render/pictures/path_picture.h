@@ -26,6 +26,7 @@ PathTracing trace_instant_picture(const Scene& scene, const RayCaster& ray_caste
 
 /// @param start  Starts of options.width x options.height pixels.
 /// @param known  Null: Russian roulette ends paths.
+/// @return       Empty in other ranks than 0. Collective.
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                           const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known);
 

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "interflect/measure.h"
+#include "interflect/ranks.h"
+#include "interflect/render.h"
+#include "interflect/render/paths/path_wavefront.h"
+
+namespace interflect::detail {
+
+/// A call of rank 0 for light of the common scene and solution, which the other ranks repeat in help_with_light().
+struct LightOrder {
+    enum class Kind {
+        picture,          ///< trace_picture()
+        instant_picture,  ///< trace_instant_picture()
+        gauges,           ///< hybrid_irradiance()
+        direct_gauges,    ///< direct_irradiance()
+        probes,           ///< irradiance_probes()
+        group,            ///< help_with_light() with light_of_group().
+        end,              ///< Ends help_with_light().
+    };
+    Kind kind = Kind::end;
+    PathOptions options{};         ///< Of paths.
+    bool is_known = false;         ///< Paths end at the solution.
+    bool is_interpolated = false;  ///< As KnownIrradiance::is_interpolated.
+    ProbeOptions probes{};
+    std::size_t group = 0;  ///< Light group.
+};
+
+/// Sends an order to the other ranks. No effect for null and in other ranks than 0.
+/// @param start  Of the paths.
+void give_order(Ranks* ranks, LightOrder order, const PathStart& start = {});
+
+struct ReceivedOrder {
+    LightOrder order;
+    PathStart start;            // refers to `gauges`
+    std::vector<Gauge> gauges;  // of measuring points, texels or vertices
+};
+
+/// Waits for an order, in other ranks than 0.
+ReceivedOrder receive_order(Ranks& ranks);
+
+}  // namespace interflect::detail

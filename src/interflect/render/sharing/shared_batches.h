@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "interflect/base/stop_request.h"
+#include "interflect/ranks.h"
+#include "interflect/render/lights/virtual_lights.h"
+#include "interflect/render/paths/path_wavefront.h"
+
+namespace interflect::detail {
+
+/// Batches of the paths of a picture, traced by all ranks in tiles. Rank 0 chooses the batches and alone receives their
+/// light; the others help(). So time, stops and adaptive sampling are decisions of rank 0, and only it stores the
+/// picture. A tile has the same batches for any number of ranks.
+class SharedBatches {
+  public:
+    /// @param virtual_lights  Of `scene`; may be null. @param ranks  Null: this process alone.
+    SharedBatches(const PathScene& scene, VirtualLights* virtual_lights, Ranks* ranks)
+        : scene_(scene), virtual_lights_(virtual_lights), ranks_(ranks) {}
+
+    /// Paths of one trace(), enough to occupy all processes.
+    static std::size_t paths_at_once(const Ranks* ranks);
+    bool is_helper() const { return ranks_ && ranks_->rank() != 0; }
+
+    // Rank 0:
+
+    /// Sets BatchOfPaths::done.
+    /// @param is_over     Omits the remaining tiles of this process; called once per tile.
+    /// @param is_limited  The other ranks omit tiles after PathOptions::time.
+    RayCounts trace(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over, bool is_limited);
+    /// Later batches are lit by another set of virtual lights. Returns its number of rays; 0 without virtual lights.
+    std::int64_t renew_virtual_lights();
+    /// Ends help().
+    void end();
+
+    // Other ranks:
+
+    /// Traces the tiles of this rank until end(). @param time_left  As PathOptions::time.
+    void help(const StopRequest& time_left);
+
+  private:
+    struct Key {
+        std::uint32_t pixel, batch, first_point;
+    };
+    struct Chunk {
+        std::size_t batches = 0;         // 0: the end
+        std::uint32_t light_set = none;  // of virtual lights
+        bool is_limited = false;
+    };
+    RayCounts trace_own(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over);
+
+    const PathScene& scene_;
+    VirtualLights* virtual_lights_;
+    Ranks* ranks_;
+    std::uint32_t light_set_ = none;
+};
+
+}  // namespace interflect::detail
