@@ -76,6 +76,18 @@ class Mpi(CommandTest):
         self.assertEqual(code, BAD_INPUT)
         self.assertEqual(messages.count("missing.mgf"), 1, messages)
 
+    def test_a_process_that_dies_while_drawing_ends_all_without_a_picture(self):
+        process = self.start(3, *OF_LIGHT["path.exr"][:-1], "65536", "-o", "long.exr")
+        time.sleep(2)
+        self.assertIsNone(process.poll(), "ended before it was killed")
+        os.kill(helpers_of(process)[-1], signal.SIGKILL)
+        killed_at = time.monotonic()
+        _, messages = process.communicate()
+        self.assertLess(time.monotonic() - killed_at, MOST_SECONDS)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("signal 9", messages)
+        self.assertEqual(self.files(), ["room.mgf"])
+
     def test_a_process_that_dies_ends_all_and_the_checkpoint_goes_on_with_fewer(self):
         long_run = (*RUN[:-4], "--rays", "2M", "--mesh-size", "0.5")
         self.interflect(*long_run, "-o", "alone.h5")
