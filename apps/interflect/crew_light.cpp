@@ -14,7 +14,7 @@ using namespace detail;
 
 namespace {
 
-/// Solution files contain the scene: one without light, for what needs the scene alone.
+/// Makes a solution without light. Its file contains the scene.
 Solution dark_solution(const Scene& scene) {
     Solution dark;
     dark.options.method = default_method(false);  // files name one

@@ -42,8 +42,10 @@ std::int64_t SharedBatches::renew_virtual_lights() {
 }
 
 void SharedBatches::end() {
+    if (!ranks_) return;
     Chunk chunk;
-    if (ranks_) broadcast(*ranks_, std::span(&chunk, 1));
+    broadcast(*ranks_, std::span(&chunk, 1));
+    ranks_->gather({});
 }
 
 void SharedBatches::help(const StopRequest& time_left) {
@@ -51,7 +53,7 @@ void SharedBatches::help(const StopRequest& time_left) {
     for (;;) {
         Chunk chunk;
         broadcast(*ranks_, std::span(&chunk, 1));
-        if (chunk.batches == 0) return;
+        if (chunk.batches == 0) break;
         keys.resize(chunk.batches);
         broadcast(*ranks_, std::span(keys));
         if (chunk.light_set != light_set_) virtual_lights_->renew(light_set_ = chunk.light_set);
@@ -60,6 +62,7 @@ void SharedBatches::help(const StopRequest& time_left) {
         for (const Key& k : keys) batches.push_back({k.pixel, k.batch, k.first_point});
         trace_own(batches, [&] { return chunk.is_limited && time_left.is_out_of_time(); });
     }
+    ranks_->gather({});
 }
 
 RayCounts SharedBatches::trace_own(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over) {

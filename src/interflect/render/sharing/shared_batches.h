@@ -33,7 +33,7 @@ class SharedBatches {
     RayCounts trace(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over, bool is_limited);
     /// Later batches are lit by another set of virtual lights. Returns its number of rays; 0 without virtual lights.
     std::int64_t renew_virtual_lights();
-    /// Ends help().
+    /// Ends help() and waits until all ranks are there: a picture without the light of one is not usable.
     void end();
 
     // Other ranks:
