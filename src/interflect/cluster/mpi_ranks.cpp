@@ -197,14 +197,15 @@ class MpiRanks : public Ranks {
 std::shared_ptr<Ranks> join_ranks(const FaultReport& report) {
     const std::optional<int> launched = launched_processes();
     if (!launched) return nullptr;
+    const int rank = launched_rank().value_or(0);  // before MPI_Init_thread(), which sets such variables itself
     int provided = 0;
     {
-        const TimeLimit limit = common_limit(launched_rank().value_or(0), start_limit, report,
-                                             "not all processes have started within a minute: one is stopped");
+        const TimeLimit limit =
+            common_limit(rank, start_limit, report, "not all processes have started within a minute: one is stopped");
         MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided);
     }
     const auto ranks = std::make_shared<MpiRanks>(report);
-    if (std::max(*launched, launched_rank().value_or(0) + 1) > ranks->count())
+    if (std::max(*launched, rank + 1) > ranks->count())
         throw std::runtime_error(fmt::format(
             "a launcher started several processes, but MPI connects {}: start them with mpirun, or with srun and PMIx",
             ranks->count()));
