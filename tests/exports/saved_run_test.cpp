@@ -177,9 +177,10 @@ TEST_P(SavedRun, HasTheSameBitsAfterATransferInMemory) {
     const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
     Solver solver(scene, GetParam().options);
     solver.advance({.time = 0});
-    solver = Solver::open_image(solver.image());
-    solver.advance({});
-    expect_same(solver.solution(), expected);
+    Solver copy = Solver::open_image(solver.image());
+    EXPECT_EQ(copy.solution().rays, solver.solution().rays);  // a new start would have the same bits at the end
+    copy.advance({});
+    expect_same(copy.solution(), expected);
 }
 
 TEST(Solver, OpensNoDamagedImage) {
