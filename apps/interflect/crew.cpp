@@ -164,7 +164,7 @@ AdvanceReport CrewRun::advance(const Limits& limits, Monitor monitor) try {
     std::error_code ignored;
     const bool has_checkpoint = has_advanced_ && std::filesystem::exists(checkpoint_, ignored);
     has_advanced_ = true;
-    if (has_checkpoint) set_last_checkpoint(checkpoint_);
+    set_last_checkpoint(has_checkpoint ? checkpoint_ : "");
     give({.kind = Order::Kind::advance, .limits = limits, .has_checkpoint = has_checkpoint});
     monitor.ranks = crew.get();
     return solver_.advance(limits, monitor);

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -170,6 +171,24 @@ TEST_P(SavedRun, HasTheSameBitsWhenSavedAndOpenedBeforeEveryIteration) {
         solver = Solver::open(file);
     } while (!solver.advance({.time = 0}).is_finished);
     expect_same(solver.solution(), expected);
+}
+
+TEST_P(SavedRun, HasTheSameBitsAfterATransferInMemory) {
+    const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
+    Solver solver(scene, GetParam().options);
+    solver.advance({.time = 0});
+    Solver copy = Solver::open_image(solver.image());
+    EXPECT_EQ(copy.solution().rays, solver.solution().rays);  // a new start would have the same bits at the end
+    copy.advance({});
+    expect_same(copy.solution(), expected);
+}
+
+TEST(Solver, OpensNoDamagedImage) {
+    SolveOptions options{.method = find_method("srr")};
+    options.limits.rays = 1000;
+    const std::string image = Solver(open_room(), options).image();
+    EXPECT_THROW(Solver::open_image(image.substr(0, image.size() / 2)), std::runtime_error);
+    EXPECT_THROW(Solver::open_image(""), std::runtime_error);
 }
 
 TEST_P(SavedRun, HasTheSameBitsWhereverItIsStopped) {

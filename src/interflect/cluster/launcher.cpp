@@ -14,8 +14,9 @@ namespace {
 // Open MPI's mpirun sets the first variable of each list, srun and mpiexec with PMI-1 or PMI-2 the second. PMIx has no
 // variable for the count. srun also sets its own: SLURM_PROCID exists in batch scripts too, SLURM_STEP_NUM_TASKS only
 // in processes of srun.
-constexpr std::initializer_list<const char*> counts = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
-constexpr std::initializer_list<const char*> ranks = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"};
+constexpr std::initializer_list<const char*> count_variables = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE",
+                                                                "SLURM_STEP_NUM_TASKS"};
+constexpr std::initializer_list<const char*> rank_variables = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK"};
 
 /// Returns the first number among these variables.
 std::optional<int> number_in(std::initializer_list<const char*> variables) {
@@ -33,10 +34,10 @@ std::optional<int> number_in(std::initializer_list<const char*> variables) {
 }  // namespace
 
 std::optional<int> detail::launched_processes() {
-    if (const std::optional<int> count = number_in(counts)) return count;
+    if (const std::optional<int> count = number_in(count_variables)) return count;
     return launched_rank() ? std::optional(0) : std::nullopt;
 }
 
-std::optional<int> launched_rank() { return number_in(ranks); }
+std::optional<int> launched_rank() { return number_in(rank_variables); }
 
 }  // namespace interflect
