@@ -115,8 +115,11 @@ Role join_crew() {
     if (!is_first) ignore_stop_signals();
     const std::string difference = difference_within_crew();
     if (difference.empty()) return is_first ? Role::first : Role::helper;
+    if (is_first) {
+        spdlog::error("{}", difference);  // before the others end, upon which mpirun ends this process
+        ignore_stop_signals();
+    }
     crew.reset();
-    if (is_first) throw std::runtime_error(difference);
     return Role::refused;
 }
 

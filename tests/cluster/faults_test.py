@@ -2,9 +2,10 @@
 
 import os
 import signal
+import time
 import unittest
 
-from command import COMMAND, FAILED
+from command import COMMAND, FAILED, VIEW
 from crew import CrewTest, processes_of, solve, with_checkpoints
 
 HOST = os.uname().nodename
@@ -37,6 +38,16 @@ class Faults(CrewTest):
         self.assertEqual(messages.count("error: "), 1, messages)
         self.assertIn(f"error: process 1 on {HOST} has not answered", messages)
         self.assertIn(REMEDY, messages)
+
+    def test_a_death_while_drawing_leaves_no_picture(self):
+        picture = ("--shading", "path", "--size", "64x48", "--samples", "65536", "-o", "long.exr")
+        process = self.start(3, "render", "room.mgf", *VIEW, *picture)
+        time.sleep(2)
+        self.assertIsNone(process.poll(), "ended before it was killed")
+        processes = processes_of(process)
+        os.kill(processes[2], signal.SIGKILL)
+        self.end_of(process, processes.values())
+        self.assertEqual(self.files(), ["room.mgf"])
 
     def test_lack_of_memory_is_reported_with_its_process(self):
         """A shell limits the address space of the second process: enough to start, too little for this mesh."""

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <thread>
 
@@ -48,29 +47,36 @@ void require(int code) {
     throw std::runtime_error(fmt::format("the connection of the processes failed: {}", text.data()));
 }
 
-int checked_size(std::size_t bytes) {
-    if (bytes > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-        throw std::runtime_error("a process has more than 2 GiB to send at once: use more processes or fewer elements");
-    return static_cast<int>(bytes);
+/// MPI counts in int, so messages are counted in blocks: 128 GiB at most.
+constexpr std::size_t block_bytes = 64;
+
+int blocks_of(std::size_t bytes) {
+    const std::size_t blocks = (bytes + block_bytes - 1) / block_bytes;
+    if (blocks > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+        throw std::runtime_error("a process has more than 128 GiB to send at once: use fewer elements");
+    return static_cast<int>(blocks);
 }
 
-/// Places of parts that follow each other.
+/// Parts that follow each other, each in whole blocks.
 struct Layout {
-    std::vector<int> sizes, places;
+    std::vector<std::int64_t> sizes;  ///< [bytes]
+    std::vector<int> blocks, places;  ///< [blocks]
+    std::size_t bytes = 0;
 
-    explicit Layout(std::vector<int> s) : sizes(std::move(s)), places(sizes.size()) {
-        std::size_t place = 0;
-        for (std::size_t r = 0; r < sizes.size(); ++r)
-            places[r] = checked_size(place), place += static_cast<std::size_t>(sizes[r]);
-        checked_size(place);
+    explicit Layout(std::vector<std::int64_t> s) : sizes(std::move(s)) {
+        for (const std::int64_t size : sizes) {
+            places.push_back(blocks_of(bytes));
+            blocks.push_back(blocks_of(static_cast<std::size_t>(size)));
+            bytes += static_cast<std::size_t>(blocks.back()) * block_bytes;
+        }
+        blocks_of(bytes);
     }
-    std::size_t bytes() const {
-        return static_cast<std::size_t>(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
+    std::byte* part_in(Ranks::Bytes& all, std::size_t part) const {
+        return all.data() + static_cast<std::size_t>(places[part]) * block_bytes;
     }
-    std::vector<Ranks::Bytes> parts_of(const Ranks::Bytes& all) const {
+    std::vector<Ranks::Bytes> parts_of(Ranks::Bytes& all) const {
         std::vector<Ranks::Bytes> parts;
-        for (std::size_t r = 0; r < sizes.size(); ++r)
-            parts.emplace_back(all.begin() + places[r], all.begin() + places[r] + sizes[r]);
+        for (std::size_t r = 0; r < sizes.size(); ++r) parts.emplace_back(part_in(all, r), part_in(all, r) + sizes[r]);
         return parts;
     }
 };
@@ -81,9 +87,12 @@ class MpiRanks : public Ranks {
         MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
         MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
         MPI_Comm_size(MPI_COMM_WORLD, &count_);
+        require(MPI_Type_contiguous(static_cast<int>(block_bytes), MPI_BYTE, &block_));
+        require(MPI_Type_commit(&block_));
     }
     ~MpiRanks() override {
         heartbeat_.reset();
+        MPI_Type_free(&block_);
         const TimeLimit limit = common_limit(rank_, finish_limit, report_, "a process was stopped at its end");
         MPI_Finalize();
     }
@@ -105,33 +114,32 @@ class MpiRanks : public Ranks {
 
     std::vector<Bytes> exchange(const std::vector<Bytes>& parts) override {
         const Stopwatch stopwatch(traffic_);
-        std::vector<int> sizes, sizes_here(parts.size());
-        Bytes all;
-        for (const Bytes& part : parts) {
-            sizes.push_back(checked_size(part.size()));
-            all.insert(all.end(), part.begin(), part.end());
-        }
+        std::vector<std::int64_t> sizes, sizes_here(parts.size());
+        for (const Bytes& part : parts) sizes.push_back(static_cast<std::int64_t>(part.size()));
         wait_for_all();
-        require(MPI_Alltoall(sizes.data(), 1, MPI_INT, sizes_here.data(), 1, MPI_INT, MPI_COMM_WORLD));
+        require(MPI_Alltoall(sizes.data(), 1, MPI_INT64_T, sizes_here.data(), 1, MPI_INT64_T, MPI_COMM_WORLD));
         const Layout out(sizes), in(sizes_here);
-        Bytes received(in.bytes());
-        require(MPI_Alltoallv(all.data(), out.sizes.data(), out.places.data(), MPI_BYTE, received.data(),
-                              in.sizes.data(), in.places.data(), MPI_BYTE, MPI_COMM_WORLD));
-        traffic_.bytes += static_cast<std::int64_t>(all.size() - parts[static_cast<std::size_t>(rank_)].size());
+        Bytes sent(out.bytes), received(in.bytes);
+        for (std::size_t r = 0; r < parts.size(); ++r) std::ranges::copy(parts[r], out.part_in(sent, r));
+        require(MPI_Alltoallv(sent.data(), out.blocks.data(), out.places.data(), block_, received.data(),
+                              in.blocks.data(), in.places.data(), block_, MPI_COMM_WORLD));
+        for (int r = 0; r < count_; ++r)
+            if (r != rank_) traffic_.bytes += sizes[static_cast<std::size_t>(r)];
         return in.parts_of(received);
     }
 
     std::vector<Bytes> gather(std::span<const std::byte> bytes) override {
         const Stopwatch stopwatch(traffic_);
-        const int size = checked_size(bytes.size());
-        std::vector<int> sizes(static_cast<std::size_t>(count_));
+        const auto size = static_cast<std::int64_t>(bytes.size());
+        std::vector<std::int64_t> sizes(static_cast<std::size_t>(count_));
         wait_for_all();
-        require(MPI_Allgather(&size, 1, MPI_INT, sizes.data(), 1, MPI_INT, MPI_COMM_WORLD));
+        require(MPI_Allgather(&size, 1, MPI_INT64_T, sizes.data(), 1, MPI_INT64_T, MPI_COMM_WORLD));
         const Layout in(sizes);
-        Bytes received(in.bytes());
-        require(MPI_Allgatherv(bytes.data(), size, MPI_BYTE, received.data(), in.sizes.data(), in.places.data(),
-                               MPI_BYTE, MPI_COMM_WORLD));
-        traffic_.bytes += static_cast<std::int64_t>(bytes.size()) * (count_ - 1);
+        Bytes received(in.bytes);
+        std::ranges::copy(bytes, in.part_in(received, static_cast<std::size_t>(rank_)));
+        require(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, received.data(), in.blocks.data(), in.places.data(),
+                               block_, MPI_COMM_WORLD));
+        traffic_.bytes += size * (count_ - 1);
         return in.parts_of(received);
     }
 
@@ -191,6 +199,7 @@ class MpiRanks : public Ranks {
 
     FaultReport report_;
     int rank_ = 0, count_ = 1;
+    MPI_Datatype block_ = MPI_DATATYPE_NULL;
     Traffic traffic_;
     std::optional<Heartbeat> heartbeat_;
 };
