@@ -130,7 +130,7 @@ class Model:
     bytes_per_element: float  # whatever the rays
 
     def sent(self, ranks: int, rays: float, elements: float) -> float:
-        """Returns the bytes that a process sends: its sums to those that add them, and its part of the results."""
+        """Returns the bytes that a process sends: sums to the processes that add them, and its part of the results."""
         touched = [1 - math.exp(-self.spread * rays / (STEPS * elements) / r) for r in (ranks, 1)]
         return (ranks - 1) / ranks * elements * (STEPS * self.bytes_per_sum * sum(touched) + self.bytes_per_element)
 
@@ -206,7 +206,7 @@ def compare(rows: list[Row], cores: int) -> list[list[str]]:
 
 COMPARED = ["scene", "network [Mbit/s]", "processes", "measured [s]", "predicted [s]", "predicted over measured",
             "sent by each, iteration [MB]", "predicted over sent", "most sent over dense", "peak [MiB]"]  # fmt: skip
-# Of each process: 16 cores, of which the last half gain little, and 10 Gbit/s.
+# Each process has 16 cores, as fast as 12 independent ones, and 10 Gbit/s.
 THREADS = 12
 CLUSTER = Network(1.1e9, 20e-6)
 LARGE = [(1e5, 1e7), (1e7, 1e8), (1e8, 1e9)]  # elements; rays of an iteration

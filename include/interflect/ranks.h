@@ -38,7 +38,7 @@ class Ranks {
         std::int64_t bytes = 0;  ///< Sent to other ranks.
         double seconds = 0;      ///< Including the time in which this process waited for others.
     };
-    /// Of this process so far.
+    /// Traffic of this process so far.
     virtual Traffic traffic() const = 0;
 };
 

@@ -43,8 +43,7 @@ struct IterationReport {
     /// Share of all hits whose places refinement has lost; method photon-mesh only. Not in the history of solution
     /// files.
     double discarded_hits = 0;
-    /// What the processes have sent since the report before, by rank; empty if one process works alone. Not in solution
-    /// files and checkpoints.
+    /// Traffic of each rank since the last report; empty for a single process. Not in solution files and checkpoints.
     std::vector<Ranks::Traffic> traffic = {};
 };
 

@@ -13,7 +13,7 @@ TRUE = scaling.Model(500e-9, 600e-9, 900e-9, 30, 0.3, 20)
 
 
 def rows(ranks: int) -> list[dict]:
-    """Of a run that follows TRUE on as many cores as processes."""
+    """Returns the iterations of a run that follows TRUE on as many cores as processes."""
     found = []
     for iteration, rays in enumerate((3e5, 1e6, 4e6, 9e6)):
         elements = 1e5 + 1e4 * iteration

@@ -13,11 +13,11 @@
 
 namespace interflect::detail {
 
-/// Integer sums of many elements as few bytes. Each block of 64 elements has a bit for each element with a sum other
-/// than 0, then the bytes that each term needs in this block, then the terms of these elements.
+/// Integer sums of many elements in few bytes. A block of 64 elements has a bit for each nonzero element, the width of
+/// each term in bytes, and the terms of the nonzero elements.
 class PackedSums {
   public:
-    /// Elements that one task packs, and to whose bytes there is an index.
+    /// Elements of a task; the bytes begin with an index of tasks.
     static constexpr std::size_t task_elements = std::size_t{1} << 14;
 
     /// @param row  row(element, terms) fills the terms of an element in [begin, end). Called by several threads.
@@ -81,7 +81,7 @@ class PackedSums {
                 }
                 present |= std::uint64_t{any != 0} << i;
             }
-            // Eight bytes are written for each term, of which the next term covers those that it does not need.
+            // Each term is written as eight bytes; the next term overwrites the unused ones.
             bytes.resize(size + sizeof(present) + terms + (count * terms + 1) * sizeof(std::int64_t));
             std::byte* at = bytes.data() + size;
             std::memcpy(at, &present, sizeof(present)), at += sizeof(present);

@@ -15,8 +15,7 @@
 
 namespace interflect::detail {
 
-/// Adds the integer sums of all ranks: each rank adds those of its part of the elements and sends the results to the
-/// others.
+/// Adds the integer sums of all ranks. Rank r adds the r-th part of the elements and sends the results to the others.
 /// @param sums  Has terms(); read(element, row); take(element, row), which also zeroes; add(element, row). A row has
 /// terms() numbers. Several threads call these for different elements.
 template <class Sums>

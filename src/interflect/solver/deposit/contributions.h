@@ -33,7 +33,7 @@ class ContributionSums {
     void clear(std::size_t elements) {
         for (std::size_t e = 0; e < elements; ++e) clear_one(e);
     }
-    /// Of a contribution and the power of all groups, which read() and add() put in this order.
+    /// Number of terms in read() and add(): a contribution, then the power of all groups.
     std::size_t terms() const { return Contribution().size() + group_terms_; }
     void read(std::size_t element, std::span<std::int64_t> terms) const {
         const Contribution& sum = sums_[element];

@@ -152,8 +152,8 @@ void walk(const TransportStep& step, const StepData& data, const Walks& walks, s
     walks.follow(first_ray, walkers, buffers.descent);
 }
 
-/// Calls body(begin, end) for batches of rays: of several ranks each has every count-th batch, so that all have about
-/// the same work. @throws Interrupted if `stop` is due before the last batch.
+/// Calls body(begin, end) for batches of rays. Each rank has every count-th batch, which balances the work.
+/// @throws Interrupted if `stop` is due before the last batch.
 template <class Body>
 void for_batches_of_rank(std::size_t rays, const CommonStop& stop, const Body& body) {
     const Ranks* const ranks = stop.ranks();
