@@ -1,5 +1,6 @@
 """Shared by the tests of the command."""
 
+import functools
 import json
 import os
 import re
@@ -44,6 +45,17 @@ def methods():
     return re.search(r"--method (\S+)", text)[1].split("|")
 
 
+@functools.cache
+def solution(files, scene, options):
+    """Returns the bytes of a solved scene. `files` are pairs of name and text: the scene and the files that it reads."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in files:
+            Path(folder, name).write_text(text)
+        arguments = [COMMAND, "solve", scene, "-o", "out.h5", *options]
+        subprocess.run(arguments, cwd=folder, capture_output=True, check=True, timeout=60)
+        return Path(folder, "out.h5").read_bytes()
+
+
 class CommandTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -63,6 +75,11 @@ class CommandTest(unittest.TestCase):
         )
         self.assertEqual(result.returncode, exit_code, f"interflect {' '.join(map(str, arguments))}\n{result.stderr}")
         return result
+
+    def write_solution(self, name, scene, *options):
+        """Solves a scene of the test's folder. Tests of one program that solve the same scene alike share the solution."""
+        files = tuple((other, (self.folder / other).read_text()) for other in self.files() if other.endswith((".mgf", ".json")))
+        (self.folder / name).write_bytes(solution(files, scene, tuple(map(str, options))))
 
     def json(self, *arguments):
         return json.loads(self.interflect(*arguments, "--json").stdout)

@@ -44,7 +44,7 @@ class RenderTest(CommandTest):
         return self.bytes(name)
 
     def solve(self, *options):
-        self.interflect("solve", "room.mgf", "-o", "room.h5", *SOLVED, *options)
+        self.write_solution("room.h5", "room.mgf", *SOLVED, *options)
 
 
 class Reproducibility(RenderTest):
