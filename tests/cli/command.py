@@ -1,6 +1,5 @@
 """Shared by the tests of the command."""
 
-import functools
 import json
 import os
 import re
@@ -38,6 +37,7 @@ VIEWS = {
 }
 SMALL = ("--size", "32x18", "--samples", "4")
 LARGE = ("--size", "96x54", "--samples", "4")
+SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
 
 
 def methods():
@@ -45,15 +45,7 @@ def methods():
     return re.search(r"--method (\S+)", text)[1].split("|")
 
 
-@functools.cache
-def solution(files, scene, options):
-    """Returns the bytes of a solved scene. `files` are pairs of name and text: the scene and the files that it reads."""
-    with tempfile.TemporaryDirectory() as folder:
-        for name, text in files:
-            Path(folder, name).write_text(text)
-        arguments = [COMMAND, "solve", scene, "-o", "out.h5", *options]
-        subprocess.run(arguments, cwd=folder, capture_output=True, check=True, timeout=60)
-        return Path(folder, "out.h5").read_bytes()
+solutions = {}  # of files and options, for all tests of a program
 
 
 class CommandTest(unittest.TestCase):
@@ -77,9 +69,12 @@ class CommandTest(unittest.TestCase):
         return result
 
     def write_solution(self, name, scene, *options):
-        """Solves a scene of the test's folder. Tests of one program that solve the same scene alike share the solution."""
-        files = tuple((other, (self.folder / other).read_text()) for other in self.files() if other.endswith((".mgf", ".json")))
-        (self.folder / name).write_bytes(solution(files, scene, tuple(map(str, options))))
+        """Solves a scene. Tests of one program with the same files and options share the solution."""
+        key = (tuple((file, self.bytes(file)) for file in self.files()), scene, options)
+        if key not in solutions:
+            self.interflect("solve", scene, "-o", name, *options)
+            solutions[key] = self.bytes(name)
+        (self.folder / name).write_bytes(solutions[key])
 
     def json(self, *arguments):
         return json.loads(self.interflect(*arguments, "--json").stdout)
@@ -92,3 +87,20 @@ class CommandTest(unittest.TestCase):
     def files(self):
         """Returns all files in the test's folder, including hidden ones."""
         return sorted(path.relative_to(self.folder).as_posix() for path in self.folder.rglob("*") if path.is_file())
+
+
+class RenderTest(CommandTest):
+    """Pictures of the closed room."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+        self.write("room.views.json", json.dumps(VIEWS))
+
+    def render(self, name, *options, source="room.mgf", size=SMALL):
+        solver = SOLVED if source.endswith(".mgf") else ()
+        self.interflect("render", source, "-o", name, *size, *solver, *options)
+        return self.bytes(name)
+
+    def solve(self, *options):
+        self.write_solution("room.h5", "room.mgf", *SOLVED, *options)
