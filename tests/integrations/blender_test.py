@@ -22,7 +22,7 @@ class Addon(unittest.TestCase):
     together: dict = {}  # results of the cases that share a Blender
 
     def blender(self, case: str) -> dict:
-        """Returns the results of a case. Those of TOGETHER run in one Blender, because each start takes a second."""
+        """Returns the results of a case. The cases of TOGETHER share one Blender, because each start takes a second."""
         if case not in TOGETHER:
             found = self.run_blender(case)
         else:
