@@ -37,11 +37,15 @@ VIEWS = {
 }
 SMALL = ("--size", "32x18", "--samples", "4")
 LARGE = ("--size", "96x54", "--samples", "4")
+SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
 
 
 def methods():
     text = subprocess.run([COMMAND, "solve", "--help"], capture_output=True, text=True, check=True).stdout
     return re.search(r"--method (\S+)", text)[1].split("|")
+
+
+solutions = {}  # of files and options, for all tests of a program
 
 
 class CommandTest(unittest.TestCase):
@@ -64,6 +68,14 @@ class CommandTest(unittest.TestCase):
         self.assertEqual(result.returncode, exit_code, f"interflect {' '.join(map(str, arguments))}\n{result.stderr}")
         return result
 
+    def write_solution(self, name, scene, *options):
+        """Solves a scene. Tests of one program with the same files and options share the solution."""
+        key = (tuple((file, self.bytes(file)) for file in self.files()), scene, options)
+        if key not in solutions:
+            self.interflect("solve", scene, "-o", name, *options)
+            solutions[key] = self.bytes(name)
+        (self.folder / name).write_bytes(solutions[key])
+
     def json(self, *arguments):
         return json.loads(self.interflect(*arguments, "--json").stdout)
 
@@ -75,3 +87,20 @@ class CommandTest(unittest.TestCase):
     def files(self):
         """Returns all files in the test's folder, including hidden ones."""
         return sorted(path.relative_to(self.folder).as_posix() for path in self.folder.rglob("*") if path.is_file())
+
+
+class RenderTest(CommandTest):
+    """Pictures of the closed room."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("room.mgf", room())
+        self.write("room.views.json", json.dumps(VIEWS))
+
+    def render(self, name, *options, source="room.mgf", size=SMALL):
+        solver = SOLVED if source.endswith(".mgf") else ()
+        self.interflect("render", source, "-o", name, *size, *solver, *options)
+        return self.bytes(name)
+
+    def solve(self, *options):
+        self.write_solution("room.h5", "room.mgf", *SOLVED, *options)

@@ -15,7 +15,7 @@ class Compare(CommandTest):
     def setUp(self):
         super().setUp()
         self.write("room.mgf", room())
-        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "100k", "--mesh-size", "0.5")
+        self.write_solution("room.h5", "room.mgf", "--rays", "100k", "--mesh-size", "0.5")
 
     def render(self, name, size=SMALL, fov=45, options=()):
         self.interflect("render", "room.h5", "-o", name, *VIEW, "--fov", fov, *size, *options)

@@ -1,15 +1,11 @@
 """Pictures: reproducible, of the requested view, and labelled with their origin."""
 
-import json
 import math
 import re
 import struct
-import time
 import unittest
 
-from command import BAD_INPUT, LARGE, PAINT, SMALL, VIEW, VIEWS, WRONG_USAGE, CommandTest, methods, room, vertices
-
-SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
+from command import BAD_INPUT, LARGE, PAINT, SMALL, SOLVED, VIEW, WRONG_USAGE, CommandTest, RenderTest, room, vertices
 
 
 def exr_attributes(content):
@@ -32,21 +28,6 @@ def exr_attributes(content):
     return attributes
 
 
-class RenderTest(CommandTest):
-    def setUp(self):
-        super().setUp()
-        self.write("room.mgf", room())
-        self.write("room.views.json", json.dumps(VIEWS))
-
-    def render(self, name, *options, source="room.mgf", size=SMALL):
-        solver = SOLVED if source.endswith(".mgf") else ()
-        self.interflect("render", source, "-o", name, *size, *solver, *options)
-        return self.bytes(name)
-
-    def solve(self, *options):
-        self.interflect("solve", "room.mgf", "-o", "room.h5", *SOLVED, *options)
-
-
 class Reproducibility(RenderTest):
     def test_same_bytes_on_any_number_of_threads(self):
         for kind in ("png", "exr", "hdr", "jpg"):
@@ -62,60 +43,6 @@ class Reproducibility(RenderTest):
         for kind in ("png", "exr"):
             from_scene = self.render(f"scene.{kind}", *smallest)
             self.assertEqual(self.render(f"solution.{kind}", source="room.h5"), from_scene, kind)
-
-
-    def test_a_large_picture_replaces_coarser_ones(self):
-        size = ("--size", "320x240", "--samples", "4")
-        for kind, has_preview in (("png", True), ("exr", False)):
-            said = self.interflect("render", "room.mgf", "-o", f"last.{kind}", *SOLVED, *size).stderr
-            self.assertEqual("picture so far" in said, has_preview, kind)
-        self.assertNotEqual(self.bytes("last.png"), self.render("smooth.png", "--shading", "smooth", size=size))
-
-
-class TimeLimit(RenderTest):
-    """--time limits solving and drawing together."""
-
-    ENDLESS = ("--rays", "1e12", "--mesh-size", "0.5")
-
-    def limited(self, name, seconds, *options):
-        start = time.monotonic()
-        said = self.interflect("render", "room.mgf", "-o", name, "--time", seconds, *options).stderr
-        return time.monotonic() - start, said
-
-    def test_of_per_pixel_shading(self):
-        """The bound allows for a speed that changes threefold."""
-        for shading in ("hybrid", "gather"):
-            picture = ("--size", "64x36", "--shading", shading, "--samples", "65536")  # would take minutes
-            took, said = self.limited("out.png", 4, *picture, *self.ENDLESS)
-            self.assertGreater(took, 2, shading)
-            self.assertLess(took, 12, shading)
-            self.assertNotIn("warning", said)
-            self.assertIn("shading:" if shading == "hybrid" else "gathering:", said)
-
-    def test_of_pictures_of_elements(self):
-        took, _ = self.limited("out.png", 4, "--size", "160x90", "--show", "mesh", *self.ENDLESS)
-        self.assertGreater(took, 2)
-        self.assertLess(took, 12)
-
-    def test_too_short_for_per_pixel_shading(self):
-        took, said = self.limited("out.png", 0.5, "--mesh-size", "0.5")
-        self.assertLess(took, 10)
-        self.assertRegex(said, r"per-pixel shading takes about .*, but --time leaves .*: .* as by --shading smooth")
-        self.assertNotIn("not reached", said)
-
-    def test_too_short_for_layers(self):
-        _, said = self.limited("out.exr", 0.1, "--size", "320x180", "--mesh-size", "0.5", "--layers")
-        self.assertIn("the picture will be late", said)
-        self.assertNotIn("not reached", said)
-
-    def test_a_long_time_changes_neither_rays_nor_picture(self):
-        picture = ("--size", "64x36", "--samples", "16", "--mesh-size", "0.5", "--method", "srr", "--rays", "500k")
-        self.interflect("render", "room.mgf", "-o", "a.exr", *picture, "--stats", "a.json")
-        self.limited("b.exr", 1000, *picture, "--stats", "b.json")
-        rays = [json.loads((self.folder / n).read_text().splitlines()[-1])["rays"] for n in ("a.json", "b.json")]
-        self.assertEqual(*rays)
-        difference = self.json("compare", "b.exr", "a.exr")
-        self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.01)
 
 
 class Views(RenderTest):
@@ -210,18 +137,6 @@ class FalseColours(RenderTest):
         ratio = self.json("compare", "luminance.exr", "lux.exr")["ratio_of_means"]
         self.assertAlmostEqual(ratio, 0.6 / math.pi, delta=0.01)
 
-    def test_all_shadings_agree(self):
-        self.solve()
-        size = ("--view", "floor", "--size", "32x18")
-        self.interflect("solve", "room.mgf", "-o", "fine.h5", "--rays", "2M")
-        for name in ("lux", "cd/m2"):
-            measure = ("--false-colour", name, *size)
-            self.interflect("render", "fine.h5", "-o", "smooth.exr", *measure)
-            for shading in ("path", "gather"):
-                self.interflect("render", "fine.h5", "-o", "out.exr", *measure, "--shading", shading, "--samples", "256")
-                difference = self.json("compare", "out.exr", "smooth.exr")
-                self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.02, msg=f"{name} {shading}")
-
     def test_pictures_differ_by_scale_and_lines(self):
         self.solve()
         lux = ("--false-colour", "lux")
@@ -269,15 +184,6 @@ class PlansAndSections(RenderTest):
         self.said("half.exr", "--plan", "1", "--extent", "3", "--centre", "2,1.5,9", "--size", "40x60", *flat)
         self.assertAlmostEqual(self.ratio("near.exr", "half.exr"), 2, delta=0.2)
 
-    def test_show_the_light_of_what_is_cut_away(self):
-        """The lamp above the plan lights the floor, in every shading; without the lamp it is dark."""
-        self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "2M")
-        plan = ("--plan", "1", "--extent", "3", "--size", "20x30", *self.LUX)
-        self.said("smooth.exr", *plan, "--shading", "smooth")
-        for shading in ("flat", "gather", "path"):
-            self.said("out.exr", *plan, "--shading", shading, "--samples", "64")
-            self.assertAlmostEqual(self.ratio("out.exr", "smooth.exr"), 1, delta=0.02, msg=shading)
-
     def test_ways_to_name_a_cut_agree(self):
         self.solve()
         size = ("--size", "32x32", "--shading", "flat")
@@ -316,14 +222,6 @@ class PlansAndSections(RenderTest):
 
 
 class Methods(RenderTest):
-    def test_all_show_the_same_room(self):
-        """Flat methods use a fixed mesh; the difference is the mesh's discretisation error and noise."""
-        render = ("render", "room.mgf", *SMALL, "--view", "door", "--mesh-size", "0.5", "-o")
-        self.interflect(*render, "reference.exr", "--rays", "2M", "--seed", "9")
-        for method in methods():
-            self.interflect(*render, "out.exr", "--rays", "200k", "--method", method)
-            difference = self.json("compare", "out.exr", "reference.exr")
-            self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.05, msg=method)
 
     def test_importance_where_every_ray_is_kept_is_refused(self):
         arguments = ("render", "room.mgf", "-o", "out.png", "--method", "wdrs", "--importance", "full")
@@ -475,12 +373,6 @@ class SampledLight(RenderTest):
     def gathered(self, name, *options):
         return self.interflect("render", "room.h5", "-o", name, *SMALL, *VIEW, *options).stderr
 
-    def test_agrees_with_path_tracing_as_hybrid_shading_does_which_is_the_default(self):
-        self.interflect("render", "room.mgf", "-o", "path.exr", "--size", "32x18", *VIEW, "--shading", "path", "--samples", "256")
-        for name, options in (("hybrid shading", ()), ("final gathering", ("--shading", "gather"))):
-            self.assertRegex(self.gathered("out.exr", *options), rf"info: {name}: 2\.3 k paths, .* a pixel")
-            self.assertAlmostEqual(self.json("compare", "out.exr", "path.exr")["ratio_of_means"], 1, delta=0.03)
-
     def test_pictures_for_people_are_filtered_unless_refused(self):
         for kind, filtered in (("png", True), ("exr", False)):
             pictures = {}
@@ -502,7 +394,7 @@ class SampledLight(RenderTest):
 
 
 class PathTracing(CommandTest):
-    """The second estimate of the same picture, and its refusals."""
+    """Options, messages and refusals; shadings_test.py compares the pictures."""
 
     SIZE = ("--size", "32x18")
     PATH = ("--shading", "path", *SIZE)
@@ -513,14 +405,6 @@ class PathTracing(CommandTest):
 
     def trace(self, name, *options, source="room.mgf"):
         return self.interflect("render", source, "-o", name, *self.PATH, *VIEW, *options).stderr
-
-    def test_agrees_with_the_solver(self):
-        """Two independent estimates; a wrong factor of rho, pi or the area would fail."""
-        self.trace("path.exr", "--samples", "256")
-        self.interflect("render", "room.mgf", "-o", "solved.exr", *self.SIZE, *VIEW, "--samples", "16", "--rays", "2M")
-        difference = self.json("compare", "path.exr", "solved.exr")
-        self.assertAlmostEqual(difference["ratio_of_means"], 1, delta=0.02)
-        self.assertLess(difference["blocks"][1]["relative_rmse"], 0.08)
 
     def test_does_not_solve_and_tells_its_error(self):
         log = self.trace("out.exr", "--samples", "64")
@@ -539,26 +423,6 @@ class PathTracing(CommandTest):
         self.assertNotEqual(one[0], one[1])
         attributes = exr_attributes(one[1])
         self.assertEqual(attributes["interflect.quantity"][1], b"standard error of radiance [cd/m^2]")
-
-    def test_instant_radiosity_draws_the_same_light(self):
-        self.trace("path.exr", "--samples", "256")
-        instant = ("--shading", "instant", "--light-walks", "1000", *self.SIZE)
-        log = self.interflect("render", "room.mgf", "-o", "instant.exr", *instant, *VIEW).stderr
-        self.assertRegex(log, r"info: instant radiosity: 36\.9 k paths, .* a pixel")
-        self.assertAlmostEqual(self.json("compare", "instant.exr", "path.exr")["ratio_of_means"], 1, delta=0.02)
-
-    def test_a_target_takes_more_samples_where_they_are_needed(self):
-        def paths_and_error(*options):
-            found = re.search(r"tracing: ([\d.]+) k paths.* error ([\d.]+)%", self.trace("out.hdr", *options))
-            return float(found[1]), float(found[2])
-
-        few, large = paths_and_error("--samples", "16")
-        many, small = paths_and_error("--samples", "16", "--until", "6%")
-        limited, _ = paths_and_error("--samples", "16", "--until", "6%", "--max-samples", "20")
-        self.assertGreater(large, 8)
-        self.assertLess(small, 7)
-        self.assertLess(few, limited)
-        self.assertLess(limited, many)
 
     def test_of_a_solution_its_scene_counts(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "10k")

@@ -75,7 +75,7 @@ class Report(CommandTest):
     def setUp(self):
         super().setUp()
         self.write("rooms.mgf", two_rooms())
-        self.interflect("solve", "rooms.mgf", "-o", "rooms.h5", "--rays", "200k")
+        self.write_solution("rooms.h5", "rooms.mgf", "--rays", "200k")
 
     def report(self, *arguments, samples=16):
         self.interflect("report", "rooms.h5", "-o", "page.html", *FEW, samples, *arguments)

@@ -12,9 +12,28 @@ ROOT = Path(__file__).resolve().parents[2]
 INSIDE = Path(__file__).with_name("inside_blender.py")
 
 
+TOGETHER = (
+    *("vertex", "lightmap", "sheets_vertex", "sheets_lightmap", "sheets_magnified", "moves", "three_vertex", "three_lightmaps"),
+    *("visibility", "user", "scenes", "instances", "panels", "plain_world", "hdri_world", "warnings", "failures"),
+)
+
+
 class Addon(unittest.TestCase):
-    def blender(self, case: str, command: str = os.environ["INTERFLECT_COMMAND"]) -> dict:
-        """Runs a case of inside_blender.py and returns its results."""
+    together: dict = {}  # results of the cases that share a Blender
+
+    def blender(self, case: str) -> dict:
+        """Returns the results of a case. The cases of TOGETHER share one Blender, because each start takes a second."""
+        if case not in TOGETHER:
+            found = self.run_blender(case)
+        else:
+            if not self.together:
+                self.together.update(self.run_blender(*TOGETHER))
+            found = self.together
+        self.assertNotIn("error", found[case], found[case].get("error"))
+        return found[case]
+
+    def run_blender(self, *cases: str, command: str = os.environ["INTERFLECT_COMMAND"]) -> dict:
+        """Runs cases of inside_blender.py in one Blender and returns their results."""
         with tempfile.TemporaryDirectory() as folder:
             addons, temporary = Path(folder, "scripts", "addons"), Path(folder, "temporary")
             addons.mkdir(parents=True)
@@ -22,7 +41,7 @@ class Addon(unittest.TestCase):
             (addons / "interflect").symlink_to(ROOT / "integrations/blender/interflect")
             out = Path(folder, "found.json")
             done = subprocess.run(
-                ["blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python", INSIDE, "--", case, command, out],
+                ["blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python", INSIDE, "--", command, out, *cases],
                 # Blender takes its modules from any python3 that comes first.
                 env={
                     "HOME": folder,
@@ -32,7 +51,7 @@ class Addon(unittest.TestCase):
                 },
                 capture_output=True,
                 text=True,
-                timeout=300,
+                timeout=500,
             )
             self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr[-3000:])
             self.assertEqual(list(temporary.glob("interflect-*")), [])
@@ -172,7 +191,7 @@ class Addon(unittest.TestCase):
         self.assertEqual(found, {"may_bake": False, "may_clear": False, "is_running": False, "was_cancelled": True})
 
     def test_a_command_that_is_not_there_is_an_error_that_names_it(self):
-        found = self.blender("vertex", "/not/there/interflect")
+        found = self.run_blender("vertex", command="/not/there/interflect")["vertex"]
         self.assertEqual(found["result"], ["CANCELLED"])
         self.assertIn("/not/there/interflect", found["said"])
 

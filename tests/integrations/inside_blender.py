@@ -1,19 +1,26 @@
-"""The cases of blender_test.py, each run in a separate Blender: `-- CASE COMMAND FOUND.json`."""
+"""The cases of blender_test.py, each in an empty file: `-- COMMAND FOUND.json CASE...`. A case that fails returns its error."""
 
 import json
 import math
 import sys
 import tempfile
 import time
+import traceback
 from pathlib import Path
 
 import bmesh
 import bpy
 
-case, command, out = sys.argv[sys.argv.index("--") + 1 :]
-bpy.ops.wm.read_factory_settings(use_empty=True)
-bpy.ops.preferences.addon_enable(module="interflect")
-bpy.context.preferences.addons["interflect"].preferences.command = command
+command, out, *cases = sys.argv[sys.argv.index("--") + 1 :]
+
+
+def start() -> None:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.preferences.addon_enable(module="interflect")
+    bpy.context.preferences.addons["interflect"].preferences.command = command
+
+
+start()
 import interflect
 from interflect import area_lamps, exchange, lit_sides, pipeline, result
 
@@ -246,7 +253,7 @@ def sheets(kind: str, magnified: float = 1) -> dict:
     """A box of sheets without its front, under a sky that lights both sides of each sheet. Returns the shares of
     pixels that show, from inside, the sky through the sheets, and, from outside, a lamp that fills the box through its
     corners. Moving the sides farther apart magnifies cracks that are thinner than a pixel."""
-    lit_sides.RELATIVE_DISTANCE *= magnified
+    usual, lit_sides.RELATIVE_DISTANCE = lit_sides.RELATIVE_DISTANCE, lit_sides.RELATIVE_DISTANCE * magnified
     bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 1.25))
     box = bpy.context.object
     box.scale = 4, 3, 2.5
@@ -257,6 +264,7 @@ def sheets(kind: str, magnified: float = 1) -> dict:
     editable.to_mesh(box.data)
     new_world()
     found = bake(kind)
+    lit_sides.RELATIVE_DISTANCE = usual
     camera = put("camera", bpy.data.cameras.new("camera"), (0.3, -1, 1.2))
     bpy.context.scene.camera = camera
     camera.data.lens, camera.data.clip_start = 18, 0.01
@@ -282,6 +290,7 @@ def moves() -> dict:
     bpy.ops.mesh.primitive_cube_add(size=0.5, location=(-1, 0.5, 0.2), rotation=(0.1, 0.05, 0.7))
     separate, lit_sides.separate = lit_sides.separate, lambda _: None
     found = bake()
+    lit_sides.separate = separate
     meshes, before = lit_meshes(), []
     for lit in meshes:  # splitting keeps the order of the corners
         before += [(face.normal.copy(), [lit.data.vertices[i].co.copy() for i in face.vertices]) for face in lit.data.polygons]
@@ -491,4 +500,11 @@ CASES = {
     **{each.__name__: each for each in (moves, visibility, user, scenes, instances, panels, warnings, failures)},
     **{each.__name__: each for each in (plain_world, hdri_world, cancel, disable)},
 }
-Path(out).write_text(json.dumps(CASES[case]()))
+found = {}
+for case in cases:
+    start()
+    try:
+        found[case] = CASES[case]()
+    except Exception:
+        found[case] = {"error": traceback.format_exc()}
+Path(out).write_text(json.dumps(found))

@@ -100,11 +100,11 @@ TEST(PathOptions, TimeLimitsAllButTwoBatches) {
     for (const auto tracer : {+paths, &gather, &render_hybrid}) {
         constexpr double unreachable = 1e-4;  // error; pixels get all samples
         PathOptions options{
-            .width = 40, .height = 30, .samples = 64, .max_samples = 64, .until = unreachable, .time = 1e-9};
+            .width = 20, .height = 15, .samples = 64, .max_samples = 64, .until = unreachable, .time = 1e-9};
         const PathTracing shortest = tracer(scene, solution, ray_caster, into_corner, options, {});
         EXPECT_EQ(least(shortest), 2u);
         EXPECT_EQ(most(shortest), 2u);
-        EXPECT_EQ(shortest.paths, 40 * 30 * 4);
+        EXPECT_EQ(shortest.paths, 20 * 15 * 4);
         EXPECT_FALSE(shortest.interrupted);
         options.time = 1e6;
         const PathTracing longest = tracer(scene, solution, ray_caster, into_corner, options, {});

@@ -234,14 +234,14 @@ TEST(Instant, SameBitsForAnyNumberOfThreads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         runs.push_back(render_instant(
             house.scene, RayCaster(house.scene), house.view,
-            {.width = 48, .height = 27, .samples = 16, .max_samples = 64, .until = 0.1, .light_walks = 5000}));
+            {.width = 32, .height = 18, .samples = 16, .max_samples = 64, .until = 0.1, .light_walks = 2000}));
     }
     for (const PathTracing& run : runs) {
         EXPECT_EQ(run.image.pixels, runs[0].image.pixels);
         EXPECT_EQ(run.standard_error.pixels, runs[0].standard_error.pixels);
         EXPECT_EQ(run.rays, runs[0].rays);
     }
-    EXPECT_GT(runs[0].paths, 48 * 27 * 16);
+    EXPECT_GT(runs[0].paths, 32 * 18 * 16);
 }
 
 TEST(Instant, WithoutLightIsBlack) {
