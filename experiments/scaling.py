@@ -4,13 +4,14 @@ The network is the loopback device in a namespace of its own, with a limited rat
 share it and the cores of this machine. docs/scaling.md explains the model and its results.
 """
 
+import itertools
 import json
 import math
 import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -54,7 +55,7 @@ SUBJECTS = [
 RATES = [0, 1000, 200]  # [Mbit/s]; 0: not limited
 RANKS = [2, 3, 4, 6, 8]
 CALIBRATED = 2  # ranks
-MOST_RANKS = 4096
+MANY = [2**k for k in range(1, 13)]  # ranks of predictions
 
 
 def run(command: program.Program, subject: Subject, ranks: int, rate: int) -> list[Row]:
@@ -125,14 +126,12 @@ class Model:
     per_ray: float  # processor seconds
     per_element: float  # processor seconds of one process alone
     per_element_shared: float  # processor seconds of each of several, which pack and unpack sums
-    bytes_per_sum: float  # of an element that received something in a step
-    spread: float  # share of elements that receive something: 1 - exp(-spread rays of the step / leaves)
-    bytes_per_element: float  # whatever the rays
+    bytes_per_ray: float  # sent to the process that adds its element, and by that one with the results
+    bytes_per_element: float
 
     def sent(self, ranks: int, rays: float, elements: float) -> float:
         """Returns the bytes that a process sends: sums to the processes that add them, and its part of the results."""
-        touched = [1 - math.exp(-self.spread * rays / (STEPS * elements) / r) for r in (ranks, 1)]
-        return (ranks - 1) / ranks * elements * (STEPS * self.bytes_per_sum * sum(touched) + self.bytes_per_element)
+        return (ranks - 1) / ranks * (self.bytes_per_ray * rays * (1 / ranks + 1) + self.bytes_per_element * elements)
 
     def messages(self, ranks: int) -> float:
         """Returns the messages that follow one another: about four exchanges in a step, each in ranks - 1 rounds of
@@ -163,15 +162,11 @@ def fit(rows: list[Row]) -> Model:
     per_ray, per_element = least_squares([column(alone, "rays"), column(alone, "elements")], column(alone, "seconds"))
     left = column(shared, "seconds") - per_ray * column(shared, "rays") / CALIBRATED
     per_element_shared = float(np.sum(left) / np.sum(column(shared, "elements")))
-    rays, elements = column(shared, "rays"), column(shared, "elements")
     sent = column(shared, "all_sent_bytes") / CALIBRATED
-    best = (math.inf,)
-    for spread in np.geomspace(0.02, 2, 60):
-        touched = sum(1 - np.exp(-spread * rays / (STEPS * elements) / r) for r in (CALIBRATED, 1))
-        factors = least_squares([STEPS * elements * touched / 2, elements / 2], sent)
-        error = np.sum((STEPS * elements * touched / 2 * factors[0] + elements / 2 * factors[1] - sent) ** 2)
-        best = min(best, (error, spread, *factors))
-    return Model(per_ray, per_element, per_element_shared, best[2], best[1], best[3])
+    share = (CALIBRATED - 1) / CALIBRATED
+    rays_sent = share * column(shared, "rays") * (1 / CALIBRATED + 1)
+    bytes_per_ray, bytes_per_element = least_squares([rays_sent, share * column(shared, "elements")], sent)
+    return Model(per_ray, per_element, per_element_shared, bytes_per_ray, bytes_per_element)
 
 
 def network_of(rate: float) -> Network:
@@ -209,16 +204,14 @@ COMPARED = ["scene", "network [Mbit/s]", "processes", "measured [s]", "predicted
 # Each process has 16 cores, as fast as 12 independent ones, and 10 Gbit/s.
 THREADS = 12
 CLUSTER = Network(1.1e9, 20e-6)
-LARGE = [(1e5, 1e7), (1e7, 1e8), (1e8, 1e9)]  # elements; rays of an iteration
+ELEMENTS, RAYS_PER_ELEMENT = (1e5, 1e7, 1e8), (10, 100)  # of an iteration
+SHOWN = [2, 4, 8, 16, 32, 64, 128, 256, 1024, 4096]
 
 
-def speedups(model: Model) -> list[tuple[float, float, list[tuple[int, float]]]]:
-    found = []
-    for elements, rays in LARGE:
-        alone = model.seconds(1, rays, elements, CLUSTER, threads=THREADS)
-        ranks = [2**k for k in range(1, int(math.log2(MOST_RANKS)) + 1)]
-        found.append((elements, alone, [(r, alone / model.seconds(r, rays, elements, CLUSTER, threads=THREADS)) for r in ranks]))
-    return found
+def speeds(model: Model, elements: float, rays: float) -> tuple[float, list[float]]:
+    """Returns the seconds of one process, and the speed of 2, 4, ... processes relative to it."""
+    alone = model.seconds(1, rays, elements, CLUSTER, threads=THREADS)
+    return alone, [alone / model.seconds(r, rays, elements, CLUSTER, threads=THREADS) for r in MANY]
 
 
 def draw(rows: list[Row]) -> None:
@@ -227,25 +220,24 @@ def draw(rows: list[Row]) -> None:
     models = {scene: fit(of_scene) for scene, of_scene in results.grouped(rows, "scene").items()}
     lines = []
     for scene, m in models.items():
-        values = [m.per_ray * 1e9, m.per_element * 1e9, m.per_element_shared * 1e9, m.bytes_per_sum, m.spread, m.bytes_per_element]
+        values = [m.per_ray * 1e9, m.per_element * 1e9, m.per_element_shared * 1e9, m.bytes_per_ray, m.bytes_per_element]
         lines.append([scene, *(f"{value:.3g}" for value in values)])
-    header = ["scene", "a ray [ns]", "an element, alone [ns]", "an element, shared [ns]", "a sum [bytes]", "spread", "an element [bytes]"]
+    header = ["scene", "a ray [ns]", "an element, alone [ns]", "an element, shared [ns]", "a ray [bytes]", "an element [bytes]"]
     results.write_table(FIGURES / "scaling-model.md", header, lines)
     model = models[SUBJECTS[0].name]
     figure, (ax,) = drawing.panels(1, 1, size=(5, 3.4))
     lines = []
-    for number, (elements, alone, values) in enumerate(speedups(model)):
-        label = f"$10^{{{round(math.log10(elements))}}}$ elements"
-        ax.plot(*zip(*values), label=label, **drawing.style_of(number))
-        lines.append([f"{elements:.0e}".replace("e+0", "e"), f"{alone:.2f}", *(f"{s:.1f}" for r, s in values if r in SHOWN)])
+    for number, (elements, per_element) in enumerate(itertools.product(ELEMENTS, RAYS_PER_ELEMENT)):
+        alone, found = speeds(model, elements, elements * per_element)
+        power = round(math.log10(elements))
+        ax.plot(MANY, found, label=f"$10^{power}$ elements, {per_element} rays each", **drawing.style_of(number))
+        shown = [f"{speed:.1f}" for ranks, speed in zip(MANY, found) if ranks in SHOWN]
+        lines.append([f"10<sup>{power}</sup>", str(per_element), f"{alone:.2f}", *shown])
     ax.set(xscale="log", yscale="log", xlabel="processes", ylabel="speed, one process = 1")
     ax.legend(frameon=False)
     caption = f"Predicted speed of an iteration, {THREADS} threads in each process, {CLUSTER.bytes_per_second * BITS / 1e9:.3g} Gbit/s."
     drawing.save(figure, FIGURES, "scaling", caption)
-    results.write_table(FIGURES / "scaling-speed.md", ["elements", "alone [s]", *map(str, SHOWN)], lines)
-
-
-SHOWN = [2, 4, 8, 16, 32, 64, 128, 256, 1024, 4096]
+    results.write_table(FIGURES / "scaling-speed.md", ["elements", "rays of each", "one process [s]", *map(str, SHOWN)], lines)
 
 
 def main(only_draw: bool) -> None:

@@ -43,7 +43,7 @@ class Table {
     std::vector<std::int64_t> sums_;
 };
 
-/// Returns numbers of any size and sign in one of `sparsity` elements; whole blocks are empty.
+/// Returns positive and negative numbers of 1 to 60 bits in one of `sparsity` elements; some blocks are empty.
 Table random_table(std::size_t elements, std::size_t terms, unsigned sparsity, unsigned seed) {
     std::mt19937_64 random(seed);
     Table table(elements, terms);

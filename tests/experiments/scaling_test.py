@@ -9,7 +9,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
 
 import scaling
 
-TRUE = scaling.Model(500e-9, 600e-9, 900e-9, 30, 0.3, 20)
+TRUE = scaling.Model(500e-9, 600e-9, 900e-9, 1.5, 60)
 
 
 def rows(ranks: int) -> list[dict]:
@@ -30,7 +30,7 @@ class Fit(unittest.TestCase):
         self.assertAlmostEqual(found.per_element / TRUE.per_element, 1, delta=0.01)
         self.assertAlmostEqual(found.per_element_shared / TRUE.per_element_shared, 1, delta=0.01)
         for ranks in (4, 64):
-            self.assertAlmostEqual(found.sent(ranks, 5e6, 2e5) / TRUE.sent(ranks, 5e6, 2e5), 1, delta=0.05)
+            self.assertAlmostEqual(found.sent(ranks, 5e6, 2e5) / TRUE.sent(ranks, 5e6, 2e5), 1, delta=0.01)
 
 
 class Predictions(unittest.TestCase):
