@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/info.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -31,12 +32,13 @@ Json header_of(const Scene& scene, int threads, const SolveOptions& o, const Rgb
             {"emitted_power", json_of(emitted_power)}};
 }
 
-Json line_of(const IterationReport& report) {
+Json line_of(const IterationReport& report, const std::vector<IterationTraffic>& traffic) {
     Json line{{"iteration", report.iteration}, {"seconds", report.seconds}};
     line.update(json_of(report));
-    if (report.traffic.empty()) return line;
-    line["ranks"] = report.traffic.size();
-    for (const Ranks::Traffic& of_rank : report.traffic) {
+    const auto found = std::ranges::find(traffic, report.iteration, &IterationTraffic::iteration);
+    if (found == traffic.end()) return line;
+    line["ranks"] = found->of_ranks.size();
+    for (const Ranks::Traffic& of_rank : found->of_ranks) {
         line["sent_bytes"].push_back(of_rank.bytes);
         line["exchange_seconds"].push_back(of_rank.seconds);
     }
@@ -53,7 +55,7 @@ void StatsFile::write(const Scene& scene, const Solution& solution) {
     if (!file_) return;
     std::ofstream out(file_->temporary_path());
     out << json_text(header_of(scene, threads_, solution.options, solution.emitted_power)) << '\n';
-    for (const IterationReport& r : solution.iterations) out << json_text(line_of(r)) << '\n';
+    for (const IterationReport& r : solution.iterations) out << json_text(line_of(r, solution.traffic)) << '\n';
     if (!out.flush())
         throw std::runtime_error(
             fmt::format("cannot write '{}': {}", file_->final_path().string(), std::strerror(errno)));

@@ -43,8 +43,11 @@ struct IterationReport {
     /// Share of all hits whose places refinement has lost; method photon-mesh only. Not in the history of solution
     /// files.
     double discarded_hits = 0;
-    /// Traffic of each rank since the last report; empty for a single process. Not in solution files and checkpoints.
-    std::vector<Ranks::Traffic> traffic = {};
+};
+
+struct IterationTraffic {
+    int iteration = 0;
+    std::vector<Ranks::Traffic> of_ranks;  ///< Since the last iteration.
 };
 
 /// Solution and history of a run. Vectors have one entry per element of the forest; inner elements hold the mean of
@@ -70,6 +73,8 @@ struct Solution {
     std::vector<float> rays;                  ///< Number of rays started on the element.
     SolveOptions options;
     std::vector<IterationReport> iterations;
+    /// Of iterations by several processes; not in solution files and checkpoints.
+    std::vector<IterationTraffic> traffic;
     RgbD emitted_power{0, 0, 0};  ///< Sum of W [lm or W].
     std::int64_t non_finite = 0;  ///< Non-finite radiosities, which are not shot; 0 in a correct run.
     bool interrupted = false;     ///< Stopped by the caller before a limit was reached.

@@ -1,5 +1,6 @@
 """Processes of mpirun that share a run: the same bytes as one process, and messages by the first process alone."""
 
+import json
 import shutil
 import signal
 import subprocess
@@ -34,6 +35,20 @@ class Mpi(CrewTest):
                 code, messages = self.run_ranks(ranks, *solve("500k"), "--threads", str(threads), "-o", "shared.h5")
                 self.assertEqual(code, 0, messages)
                 self.assertEqual(self.bytes("shared.h5"), self.bytes("alone.h5"))
+
+    def test_statistics_have_the_traffic_of_each_process(self):
+        self.interflect(*solve("200k"), "-o", "alone.h5", "--stats", "alone.json")
+        code, messages = self.run_ranks(3, *solve("200k"), "-o", "shared.h5", "--stats", "shared.json")
+        self.assertEqual(code, 0, messages)
+        alone, shared = (
+            [json.loads(line) for line in (self.folder / name).read_text().splitlines()[1:]]
+            for name in ("alone.json", "shared.json")
+        )
+        self.assertEqual([line["rays"] for line in shared], [line["rays"] for line in alone])
+        self.assertNotIn("ranks", alone[-1])
+        for line in shared:
+            self.assertEqual((line["ranks"], len(line["sent_bytes"]), len(line["exchange_seconds"])), (3, 3, 3))
+            self.assertGreater(min(line["sent_bytes"]), 0)
 
     def test_pictures_measurements_and_exports_have_the_bytes_of_one_process(self):
         self.interflect("solve", "room.mgf", *VIEW, "--rays", "100k", "--light-groups", "-o", "light.h5")

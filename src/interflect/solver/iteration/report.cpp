@@ -21,12 +21,12 @@ double fraction_done(const Limits& limits, const IterationReport& report) {
     return std::clamp(fraction, 0.0, 1.0);
 }
 
-std::vector<Ranks::Traffic> traffic_since_last_report(SolverState& state) {
+void append_traffic(SolverState& state, int iteration) {
     Ranks* const ranks = state.monitor.ranks;
-    if (!ranks) return {};
+    if (!ranks) return;
     const Ranks::Traffic so_far = ranks->traffic(), before = std::exchange(state.reported_traffic, so_far);
     const Ranks::Traffic own{so_far.bytes - before.bytes, so_far.seconds - before.seconds};
-    return gather_over_ranks<Ranks::Traffic>(*ranks, std::span(&own, 1));
+    state.solution.traffic.push_back({iteration, gather_over_ranks<Ranks::Traffic>(*ranks, std::span(&own, 1))});
 }
 
 }  // namespace
@@ -51,8 +51,8 @@ void append_report(SolverState& state, int iteration) {
     r.largest_payload = state.payloads.largest_over_mean();
     r.high_payload = state.payloads.quantile_over_mean(share_with_more);
     r.discarded_hits = state.discarded_hits;
-    r.traffic = traffic_since_last_report(state);
     state.solution.iterations.push_back(r);
+    append_traffic(state, iteration);
     if (state.monitor.on_progress)
         state.monitor.on_progress({.rays = r.rays,
                                    .fraction = fraction_done(state.options.limits, r),
