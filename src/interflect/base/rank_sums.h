@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "interflect/base/packed_sums.h"
-#include "interflect/base/parallel.h"
+#include "interflect/base/shared_ranges.h"
 #include "interflect/ranks.h"
 
 namespace interflect::detail {
@@ -67,24 +67,11 @@ std::vector<T> gather_over_ranks(Ranks& ranks, std::span<const T> values) {
 /// @param ranks  Null: this process is alone.
 template <class T, class Work>
 std::vector<T> divide_over_ranks(Ranks* ranks, std::size_t items, std::size_t size, const Work& work) {
-    const std::size_t count = ranks ? static_cast<std::size_t>(ranks->count()) : 1;
-    const auto items_of = [&](std::size_t rank) { return (items + count - 1 - rank) / count; };
     std::vector<T> all(items * size);
-    const auto values_of = [&](std::size_t item) { return std::span(all).subspan(item * size, size); };
-    const std::size_t own = ranks ? static_cast<std::size_t>(ranks->rank()) : 0;
-    parallel_for_ranges(items_of(own), 1, [&](std::size_t i, std::size_t) {
-        const std::size_t item = own + i * count;
-        work(item, values_of(item));
+    parallel_for_own_ranges(ranks, all.size(), size, [&](std::size_t begin, std::size_t) {
+        work(begin / size, std::span(all).subspan(begin, size));
     });
-    if (!ranks) return all;
-    std::vector<T> values;
-    for (std::size_t item = own; item < items; item += count)
-        values.insert(values.end(), values_of(item).begin(), values_of(item).end());
-    const std::vector<T> gathered = gather_over_ranks<T>(*ranks, values);
-    auto next = gathered.begin();
-    for (std::size_t rank = 0; rank < count; ++rank)
-        for (std::size_t item = rank; item < items; item += count, next += static_cast<std::ptrdiff_t>(size))
-            std::copy_n(next, size, values_of(item).begin());
+    collect_ranges(ranks, std::span(all), size, Destination::all_ranks);
     return all;
 }
 

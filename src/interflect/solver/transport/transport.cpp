@@ -10,6 +10,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 #include "interflect/base/rank_sums.h"
+#include "interflect/base/shared_ranges.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/solver/deposit/contributions.h"
@@ -158,18 +159,12 @@ template <class Body>
 void for_batches_of_rank(std::size_t rays, const CommonStop& stop, const Body& body) {
     const Ranks* const ranks = stop.ranks();
     if (!ranks) return parallel_for_ranges(rays, batch_rays, stop.within_process(), body);
-    /// Seconds of work, between which rank 0 may stop all.
-    constexpr std::size_t batches_at_once = 4096;
-    const auto rank = static_cast<std::size_t>(ranks->rank()), count = static_cast<std::size_t>(ranks->count());
-    const std::size_t batches = (rays + batch_rays - 1) / batch_rays;
-    for (std::size_t first = 0; first < batches; first += batches_at_once * count) {
+    constexpr std::size_t rays_of_rank = 4096 * batch_rays;  // seconds of work, between which rank 0 may stop all
+    const std::size_t at_once = rays_of_rank * static_cast<std::size_t>(ranks->count());
+    for (std::size_t first = 0; first < rays; first += at_once) {
         if (stop.is_due()) throw Interrupted();
-        const std::size_t in_all = std::min(batches_at_once * count, batches - first);
-        const std::size_t own = (in_all + count - 1 - rank) / count;
-        parallel_for_ranges(own, 1, [&](std::size_t begin, std::size_t) {
-            const std::size_t batch = first + begin * count + rank;
-            body(batch * batch_rays, std::min(rays, (batch + 1) * batch_rays));
-        });
+        parallel_for_own_ranges(ranks, std::min(at_once, rays - first), batch_rays,
+                                [&](std::size_t begin, std::size_t end) { body(first + begin, first + end); });
     }
 }
 
