@@ -14,6 +14,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace interflect {
@@ -53,8 +54,32 @@ class InputError : public std::runtime_error {
     using std::runtime_error::runtime_error;
     /// @param line  1-based; 0 if no line applies. The message becomes "file:line: message".
     InputError(const std::filesystem::path& file, std::int64_t line, const std::string& message)
-        : std::runtime_error(file.string() + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": " + message) {
+        : std::runtime_error(file.string() + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": " + message),
+          file_(file),
+          line_(line) {}
+
+    const std::filesystem::path& file() const { return file_; }  ///< Empty if no file applies.
+    std::int64_t line() const { return line_; }                  ///< 1-based; 0 if no line applies.
+    /// Name of the material, light, view, texture or object at fault, or "patch 3"; of the first fault if there are
+    /// several. Empty if none applies.
+    const std::string& object() const { return object_; }
+    /// All faults of a scene or of a plan, a sentence each; empty for a single fault.
+    const std::vector<std::string>& faults() const { return faults_; }
+
+    InputError& set_object(std::string object) {
+        object_ = std::move(object);
+        return *this;
     }
+    InputError& set_faults(std::vector<std::string> faults) {
+        faults_ = std::move(faults);
+        return *this;
+    }
+
+  private:
+    std::filesystem::path file_;
+    std::int64_t line_ = 0;
+    std::string object_;
+    std::vector<std::string> faults_;
 };
 
 /// A scene would exceed a limit of patches (ReadOptions::max_patches, which the message names).

@@ -71,6 +71,8 @@ class Solver {
 
     /// Current solution, computed on first request in O(elements). The reference is valid until the solver changes.
     const Solution& solution() const;
+    /// The same, valid also when the solver has changed or is gone; without a copy.
+    std::shared_ptr<const Solution> shared_solution() const;
     /// The same without a copy. The solver must not be used afterwards.
     Solution take_solution() &&;
     /// With its sources as scaled by set_dimming().

@@ -26,7 +26,9 @@ struct Location {
     std::string shown(const std::string& message) const { return is_foreign ? without_quotes(message) : message; }
     template <class Error = InputError>
     Error error(const std::string& message) const {
-        return Error(*file, line, part.empty() ? shown(message) : fmt::format("{}: {}", part, shown(message)));
+        Error error(*file, line, part.empty() ? shown(message) : fmt::format("{}: {}", part, shown(message)));
+        error.set_object(std::string(part));
+        return error;
     }
 };
 

@@ -97,7 +97,8 @@ std::size_t SourceGroups::index_of(const std::string& name) const {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
     throw InputError(names.empty() ? fmt::format("there is no light group '{}': the light was not kept by groups", name)
-                                   : fmt::format("there is no light group '{}'; there are {}", name, listed(names)));
+                                   : fmt::format("there is no light group '{}'; there are {}", name, listed(names)))
+        .set_object(name);
 }
 
 SourceGroups source_groups(const Scene& scene) {

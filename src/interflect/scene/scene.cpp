@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "interflect/core.h"
 #include "interflect/scene/environment_maps.h"
@@ -194,6 +195,15 @@ void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
         [&] { return fmt::format("patch {}: its other side {} is no neighbour that points back", i, p.other_side); });
 }
 
+/// Returns the name in "material 'white': ..." or "patch 3" of "patch 3 ...", as check_*() begin their sentences.
+std::string subject_of(const std::string& fault) {
+    for (const std::string_view kind : {"material '", "texture '", "light '", "view '"})
+        if (fault.starts_with(kind)) return fault.substr(kind.size(), fault.find('\'', kind.size()) - kind.size());
+    for (const std::string_view kind : {"patch ", "vertex "})
+        if (fault.starts_with(kind)) return fault.substr(0, fault.find_first_of(" :", kind.size()));
+    return {};
+}
+
 }  // namespace
 
 std::vector<std::string> scene_faults(const Scene& scene) {
@@ -216,7 +226,7 @@ void require_no_faults(const std::vector<std::string>& faults, const std::string
     if (faults.empty()) return;
     std::string message = purpose + " '" + scene.name + "':";
     for (const std::string& fault : faults) message += "\n  " + fault;
-    throw InputError(message);
+    throw InputError(message).set_object(subject_of(faults.front())).set_faults(faults);
 }
 
 }  // namespace interflect

@@ -60,7 +60,8 @@ const View& find_view(const Scene& scene, const std::string& name) {
     std::string known;
     for (const View& v : scene.views) known += (known.empty() ? "" : ", ") + v.name;
     throw InputError(scene.name, 0,
-                     "there is no view '" + name + "'; " + (known.empty() ? "it names none" : "it names: " + known));
+                     "there is no view '" + name + "'; " + (known.empty() ? "it names none" : "it names: " + known))
+        .set_object(name);
 }
 
 View overview(const Scene& scene) {

@@ -3,7 +3,6 @@
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,7 +30,7 @@ struct Run {
     std::vector<float> known_dimming;  // factors of the stored light
 
     std::mutex finishing;  // guards `finished`
-    std::optional<Solution> finished;
+    std::shared_ptr<const Solution> finished;
 
     void dim(std::size_t group, float factor);
     /// Copies the forest.

@@ -101,10 +101,12 @@ void Solver::set_plan(const Limits& limits) {
     run.is_finished = false;
 }
 
-const Solution& Solver::solution() const {
+const Solution& Solver::solution() const { return *shared_solution(); }
+
+std::shared_ptr<const Solution> Solver::shared_solution() const {
     const std::scoped_lock lock(run_->finishing);
-    if (!run_->finished) run_->finished = run_->snapshot();
-    return *run_->finished;
+    if (!run_->finished) run_->finished = std::make_shared<const Solution>(run_->snapshot());
+    return run_->finished;
 }
 
 Solution Solver::take_solution() && {

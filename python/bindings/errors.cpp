@@ -1,0 +1,33 @@
+#include "bindings.h"
+
+namespace interflect::python {
+
+namespace {
+
+py::object class_of(const char* name) { return py::module_::import("interflect._errors").attr(name); }
+
+void raise_input_error(const char* name, const InputError& e) {
+    const py::object type = class_of(name);
+    const py::object error = type(e.what(), e.file().string(), e.line(), e.object(), py::tuple(py::cast(e.faults())));
+    PyErr_SetObject(type.ptr(), error.ptr());
+}
+
+}  // namespace
+
+void bind_errors(py::module_&) {
+    py::register_exception_translator([](std::exception_ptr thrown) {
+        try {
+            std::rethrow_exception(thrown);
+        } catch (const TooManyPatches& e) {
+            raise_input_error("TooManyPatches", e);
+        } catch (const InputError& e) {
+            raise_input_error("InputError", e);
+        } catch (const Stopped& e) {
+            PyErr_SetString(class_of("Stopped").ptr(), e.what());
+        } catch (const std::runtime_error& e) {
+            PyErr_SetString(class_of("Error").ptr(), e.what());
+        }
+    });
+}
+
+}  // namespace interflect::python

@@ -1,0 +1,204 @@
+#include <fmt/format.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "bindings.h"
+#include "fields.h"
+#include "interflect/export.h"
+#include "interflect/formats/view_files.h"
+#include "interflect/formats/write_mgf.h"
+#include "interflect/geometry/split.h"
+#include "interflect/load.h"
+#include "interflect/prepare.h"
+#include "long_work.h"
+
+namespace interflect::python {
+
+namespace {
+
+constexpr std::array<std::pair<const char*, Axis>, 6> axes{{{"x", Axis::x},
+                                                            {"-x", Axis::minus_x},
+                                                            {"y", Axis::y},
+                                                            {"-y", Axis::minus_y},
+                                                            {"z", Axis::z},
+                                                            {"-z", Axis::minus_z}}};
+
+Axis axis_of(const std::string& name) {
+    for (const auto& [word, axis] : axes)
+        if (word == name) return axis;
+    throw InputError(fmt::format("up_axis: expected x, -x, y, -y, z or -z, found '{}'", name));
+}
+
+std::shared_ptr<Scene> load(const std::filesystem::path& path, double unit, const std::string& up_axis,
+                            int curve_divisions, std::uint64_t max_patches, bool outside_files,
+                            const std::vector<PlacedLuminaire>& luminaires, const std::optional<Daylight>& daylight) {
+    ReadOptions options;
+    options.unit = unit;
+    options.up_axis = axis_of(up_axis);
+    options.curve_divisions = curve_divisions;
+    options.max_patches = max_patches;
+    options.outside_files = outside_files;
+    return long_work(py::none(), 0, [&](const Monitor&) {
+        return std::make_shared<Scene>(load_scene(path, options, luminaires, daylight.value_or(Daylight())));
+    });
+}
+
+void bind_added_light(py::module_& m) {
+    Fields<PlacedLuminaire>(m, "PlacedLuminaire", docs::PlacedLuminaire)
+        .field("file", &PlacedLuminaire::file, docs::PlacedLuminaire_file)
+        .field("position", &PlacedLuminaire::position, docs::PlacedLuminaire_position)
+        .field("aim", &PlacedLuminaire::aim, docs::PlacedLuminaire_aim)
+        .field("turn", &PlacedLuminaire::turn, docs::PlacedLuminaire_turn)
+        .field("lumens", &PlacedLuminaire::lumens, docs::PlacedLuminaire_lumens)
+        .field("maintenance", &PlacedLuminaire::maintenance, docs::PlacedLuminaire_maintenance)
+        .finish();
+    Fields<Daylight::Sun>(m, "Sun", "The sun of Daylight.")
+        .field("azimuth", &Daylight::Sun::azimuth, "Clockwise from north [degrees].")
+        .field("altitude", &Daylight::Sun::altitude, docs::Daylight_Sun_altitude)
+        .field("illuminance", &Daylight::Sun::illuminance, docs::Daylight_Sun_illuminance)
+        .finish();
+    Fields<Daylight::CieSky>(m, "CieSky", "A CIE standard sky of Daylight.")
+        .field("type", &Daylight::CieSky::type, docs::Daylight_CieSky_type)
+        .field("illuminance", &Daylight::CieSky::illuminance, docs::Daylight_CieSky_illuminance)
+        .finish();
+    Fields<Daylight::PerezSky>(m, "PerezSky", "A sky of Perez et al. 1993 of Daylight.")
+        .field("direct_normal", &Daylight::PerezSky::direct_normal, "Irradiance [W/m^2].")
+        .field("diffuse_horizontal", &Daylight::PerezSky::diffuse_horizontal, "Irradiance [W/m^2].")
+        .finish();
+    Fields<Daylight::Environment>(m, "Environment", "An image around the scene, of Daylight.")
+        .field("file", &Daylight::Environment::file, docs::Daylight_Environment_file)
+        .field("rotation", &Daylight::Environment::rotation, docs::Daylight_Environment_rotation)
+        .field("scale", &Daylight::Environment::scale, docs::Daylight_Environment_scale)
+        .finish();
+    Fields<Daylight>(m, "Daylight", docs::Daylight)
+        .field("sun", &Daylight::sun, "Sun, or None.")
+        .field("cie_sky", &Daylight::cie_sky, "CieSky, or None.")
+        .field("perez_sky", &Daylight::perez_sky, docs::Daylight_perez_sky)
+        .field("environment", &Daylight::environment, "Environment, or None.")
+        .field("ground_reflectance", &Daylight::ground_reflectance, docs::Daylight_ground_reflectance)
+        .field("zenith", &Daylight::zenith, "Up.")
+        .finish();
+}
+
+void bind_findings(py::module_& m) {
+    py::class_<Finding::Place>(m, "FindingPlace", docs::Finding_Place)
+        .def_readonly("object", &Finding::Place::object, "Name of the object.")
+        .def_readonly("material", &Finding::Place::material, "Name of the material.")
+        .def_readonly("where", &Finding::Place::where, docs::Finding_Place_where)
+        .def_property_readonly(
+            "position",
+            [](const Finding::Place& place) {
+                return place.has_position ? std::optional(place.position) : std::nullopt;
+            },
+            docs::Finding_Place_position);
+    py::class_<Finding>(m, "Finding", docs::Finding)
+        .def_readonly("kind", &Finding::kind, docs::Finding_kind)
+        .def_readonly("is_problem", &Finding::is_problem, docs::Finding_is_problem)
+        .def_readonly("message", &Finding::message, docs::Finding_message)
+        .def_readonly("advice", &Finding::advice, docs::Finding_advice)
+        .def_readonly("count", &Finding::count, docs::Finding_count)
+        .def_readonly("places", &Finding::places, docs::Finding_places)
+        .def("__repr__", [](const Finding& f) { return fmt::format("<Finding {}: {}>", f.kind, f.message); });
+    m.def(
+        "validate",
+        [](const std::shared_ptr<Scene>& scene) {
+            return long_work(py::none(), 0, [&](const Monitor&) { return validate(*scene, RayCaster(*scene)); });
+        },
+        py::arg("scene"), docs::validate);
+}
+
+BakeShading bake_shading_of(const std::string& name) {
+    if (name == "smooth") return BakeShading::smooth;
+    if (name == "hybrid") return BakeShading::hybrid;
+    if (name == "gather") return BakeShading::gather;
+    throw InputError(fmt::format("shading: expected smooth, hybrid or gather, found '{}'", name));
+}
+
+/// Number of a keyword, or its default. Removes it from `left`.
+template <class Value>
+void take(py::dict& left, const char* name, Value& value) {
+    if (!left.contains(name)) return;
+    try {
+        value = py::cast<Value>(left[name]);
+    } catch (const py::cast_error&) {
+        throw py::type_error(std::string(name) + ": cannot take " + std::string(py::repr(left[name])));
+    }
+    PyDict_DelItemString(left.ptr(), name);
+}
+
+std::vector<std::filesystem::path> export_light(const SharedLight& light, const std::filesystem::path& path,
+                                                bool lightmap, int threads, const py::object& progress,
+                                                const py::kwargs& keywords) {
+    ExportOptions options;
+    LightmapOptions texels;
+    py::dict left(keywords);
+    std::string shading = "hybrid", content = "irradiance";
+    take(left, "exposure", options.exposure);
+    take(left, "up", options.up);
+    take(left, "shading", shading);
+    take(left, "samples", options.bake.samples);
+    take(left, "seed", options.bake.seed);
+    options.probes.seed = options.bake.seed;
+    take(left, "max_error", options.vertices.max_error);
+    take(left, "min_edge", options.vertices.min_edge);
+    take(left, "max_edge", options.vertices.max_edge);
+    take(left, "max_triangles", options.vertices.max_triangles);
+    take(left, "spacing", options.probes.spacing);
+    take(left, "rays", options.probes.rays);
+    if (lightmap) {
+        take(left, "texels_per_metre", texels.texels_per_metre);
+        take(left, "max_size", texels.max_size);
+        take(left, "gutter", texels.gutter);
+        take(left, "image", texels.image);
+        take(left, "own_charts", texels.own_charts);
+        take(left, "groups", texels.groups);
+        take(left, "content", content);
+        if (content != "irradiance" && content != "radiance")
+            throw InputError(fmt::format("content: expected irradiance or radiance, found '{}'", content));
+        if (content == "radiance") texels.content = LightmapContent::radiance;
+        options.lightmap = texels;
+    }
+    for (const auto& [name, value] : left)
+        throw py::type_error("export: there is no option '" + py::cast<std::string>(name) + "'" +
+                             (lightmap ? "" : " without lightmap=True"));
+    options.bake.shading = bake_shading_of(shading);
+    return long_work(progress, threads, [&](const Monitor& monitor) {
+        options.monitor = monitor;
+        return export_solution(path, *light->scene, *light->solution, options);
+    });
+}
+
+}  // namespace
+
+void bind_files(py::module_& m) {
+    bind_added_light(m);
+    bind_findings(m);
+    m.def("load", &load, py::arg("path"), py::arg("unit"), py::arg("up_axis"), py::arg("curve_divisions"),
+          py::arg("max_patches"), py::arg("outside_files"), py::arg("luminaires"), py::arg("daylight"),
+          docs::load_scene);
+    m.def(
+        "load_photometric_web",
+        [](const std::filesystem::path& path) {
+            Warnings warnings;
+            return std::make_shared<PhotometricWeb>(load_photometric_web(path, ReadOptions(), warnings));
+        },
+        py::arg("path"), docs::load_photometric_web);
+    m.def(
+        "cut_at_contacts",
+        [](const std::shared_ptr<Scene>& scene, const std::optional<float>& min_extent) {
+            return long_work(py::none(), 0, [&](const Monitor&) {
+                const float usual = static_cast<float>(2 * detail::default_element_size(*scene));
+                return std::make_shared<Scene>(cut_at_contacts(*scene, {.min_extent = min_extent.value_or(usual)}));
+            });
+        },
+        py::arg("scene"), py::arg("min_extent") = py::none(), docs::cut_at_contacts);
+    m.def("export_solution", &export_light, py::arg("solution"), py::arg("path"), py::kw_only(),
+          py::arg("lightmap") = false, py::arg("threads") = 0, py::arg("progress") = py::none(), docs::export_solution);
+    m.def(
+        "export_scene",
+        [](const std::shared_ptr<Scene>& scene, const std::filesystem::path& path) {
+            return export_scene(path, *scene).files;
+        },
+        py::arg("scene"), py::arg("path"), docs::export_scene);
+}
+
+}  // namespace interflect::python

@@ -1,0 +1,25 @@
+/// Long work without the lock of the interpreter, with progress and Ctrl-C.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <functional>
+#include <optional>
+
+#include "interflect/core.h"
+
+namespace interflect::python {
+
+/// Runs `work` on another thread, within at most `threads` threads (0: all), while this one calls progress(Progress)
+/// and passes on Ctrl-C. An exception of either ends the work and is thrown when it has ended.
+/// @param progress  A function, or None.
+void run_long_work(const pybind11::object& progress, int threads, const std::function<void(const Monitor&)>& work);
+
+template <class Work>
+auto long_work(const pybind11::object& progress, int threads, const Work& work) {
+    std::optional<decltype(work(Monitor()))> result;
+    run_long_work(progress, threads, [&](const Monitor& monitor) { result.emplace(work(monitor)); });
+    return std::move(*result);
+}
+
+}  // namespace interflect::python

@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+
+#include "bindings.h"
+#include "fields.h"
+#include "interflect/scene/view.h"
+#include "scene_arrays.h"
+
+namespace interflect::python {
+
+namespace {
+
+using SharedScene = std::shared_ptr<Scene>;
+
+void bind_parts(py::module_& m) {
+    const auto texture = [](std::uint32_t Material::*member) {
+        return [member](const Material& material) -> std::optional<std::uint32_t> {
+            return material.*member == none ? std::nullopt : std::optional(material.*member);
+        };
+    };
+    const auto set_texture = [](std::uint32_t Material::*member) {
+        return [member](Material& material, std::optional<std::uint32_t> index) {
+            material.*member = index.value_or(none);
+        };
+    };
+    Fields<Material>(m, "Material", docs::Material)
+        .field("name", &Material::name, "Name.")
+        .field("reflectance", &Material::reflectance, docs::Material_reflectance)
+        .field("exitance", &Material::exitance, docs::Material_exitance)
+        .field("transmittance", &Material::transmittance, docs::Material_transmittance)
+        .field("specular_reflectance", &Material::specular_reflectance, docs::Material_specular_reflectance)
+        .field("reflectance_texture", texture(&Material::reflectance_texture),
+               set_texture(&Material::reflectance_texture),
+               "Index of a texture that multiplies the reflectance, or None.")
+        .field("exitance_texture", texture(&Material::exitance_texture), set_texture(&Material::exitance_texture),
+               "Index of a texture that multiplies the exitance, or None.")
+        .field("transmittance_texture", texture(&Material::transmittance_texture),
+               set_texture(&Material::transmittance_texture),
+               "Index of a texture that multiplies the transmittance, or None.")
+        .finish();
+    Fields<View>(m, "View", docs::View)
+        .field("name", &View::name, "Name.")
+        .field("eye", &View::eye, docs::View_eye)
+        .field("look_at", &View::look_at, docs::View_look_at)
+        .field("up", &View::up, docs::View_up)
+        .field("fov", &View::fov, docs::View_fov)
+        .field("extent", &View::extent, docs::View_extent)
+        .finish();
+    Fields<LightGroup>(m, "LightGroup", docs::LightGroup)
+        .field("name", &LightGroup::name, "Name.")
+        .field("pattern", &LightGroup::pattern, docs::LightGroup_pattern)
+        .finish();
+    py::class_<Texture, std::shared_ptr<Texture>>(m, "Texture", docs::Texture)
+        .def(py::init(&texture_from_array), py::arg("texels"), py::arg("name") = "texture")
+        .def_readonly("name", &Texture::name, docs::Texture_name)
+        .def_property_readonly(
+            "texels",
+            [](const std::shared_ptr<Texture>& t) {
+                const auto width = static_cast<py::ssize_t>(t->width), number = py::ssize_t{sizeof(float)};
+                return read_only(std::shared_ptr<const void>(t), reinterpret_cast<const float*>(t->texels.data()),
+                                 {static_cast<py::ssize_t>(t->height), width, 3},
+                                 {width * 3 * number, 3 * number, number});
+            },
+            "Texels (height, width, 3), float32: linear Rec. 709, >= 0, row 0 at the top.")
+        .def("__repr__",
+             [](const Texture& t) { return fmt::format("<Texture '{}': {} x {}>", t.name, t.width, t.height); });
+}
+
+/// None for a scene without these attributes.
+template <class Member>
+auto vertex_array(Member Scene::*member) {
+    return [member](const SharedScene& scene) -> py::object {
+        if (((*scene).*member).empty()) return py::none();
+        return rows<float>(scene, (*scene).*member);
+    };
+}
+
+/// Index of a patch, or -1.
+py::array_t<std::int64_t> other_sides(const Scene& scene) {
+    py::array_t<std::int64_t> result(static_cast<py::ssize_t>(scene.patches.size()));
+    for (std::size_t i = 0; i < scene.patches.size(); ++i) {
+        const std::uint32_t other = scene.patches[i].other_side;
+        result.mutable_at(static_cast<py::ssize_t>(i)) = other == none ? -1 : static_cast<std::int64_t>(other);
+    }
+    return result;
+}
+
+py::list warnings_of(const Scene& scene) {
+    py::list result;
+    for (const Warnings::Entry& w : scene.warnings.entries()) {
+        const std::string times = w.count > 1 ? fmt::format(" ({} times)", w.count) : "";
+        result.append(fmt::format("{}{}{}", w.where.empty() ? "" : w.where + ": ", w.message, times));
+    }
+    return result;
+}
+
+std::string describe(const Scene& s) {
+    return fmt::format("<Scene '{}': {} patches, {} materials, {} luminaires, {} views>", s.name, s.patches.size(),
+                       s.materials.size(), s.luminaires.size(), s.views.size());
+}
+
+}  // namespace
+
+View view_of(const Scene& scene, const py::object& view) {
+    if (py::isinstance<View>(view)) return py::cast<View>(view);
+    if (py::isinstance<py::str>(view)) return detail::find_view(scene, py::cast<std::string>(view));
+    if (!view.is_none())
+        throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " +
+                             std::string(py::repr(view)));
+    return scene.views.empty() ? detail::overview(scene) : scene.views.front();
+}
+
+void bind_scene(py::module_& m) {
+    bind_parts(m);
+    py::class_<Scene, SharedScene> scene(m, "Scene", docs::Scene);
+    scene
+        .def(py::init(&scene_from_arrays), py::arg("vertices"), py::arg("faces"), py::arg("materials"), py::kw_only(),
+             py::arg("face_materials") = py::none(), py::arg("two_sided") = false, py::arg("objects") = py::none(),
+             py::arg("face_objects") = py::none(), py::arg("normals") = py::none(),
+             py::arg("texture_coordinates") = py::none(), py::arg("lightmap_coordinates") = py::none(),
+             py::arg("textures") = std::vector<std::shared_ptr<Texture>>(),
+             py::arg("luminaires") = std::vector<Luminaire>(), py::arg("views") = std::vector<View>(),
+             py::arg("light_groups") = std::vector<LightGroup>(), py::arg("name") = "arrays", scene_from_arrays_doc)
+        .def("replace", &replaced, py::kw_only(), py::arg("materials") = py::none(), py::arg("luminaires") = py::none(),
+             py::arg("views") = py::none(), py::arg("light_groups") = py::none(), py::arg("textures") = py::none(),
+             "A copy with other materials, luminaires, views, light groups or textures.\n\nRaises:\n    InputError: "
+             "that "
+             "lists every fault of the result.")
+        .def_readonly("name", &Scene::name, docs::Scene_name)
+        .def_readonly("origin", &Scene::origin, docs::Scene_origin)
+        .def_property_readonly(
+            "vertices", [](const SharedScene& s) { return rows<float>(s, s->vertices); },
+            "(n, 3) float32, read-only, without a copy. Relative to `origin` [m]; unused vertices are ignored.")
+        .def_property_readonly(
+            "faces",
+            [](const SharedScene& s) {
+                static const Patch nothing{};
+                const Patch& first = s->patches.empty() ? nothing : s->patches.front();
+                return read_only(s, first.vertices.data(), {static_cast<py::ssize_t>(s->patches.size()), 4},
+                                 {sizeof(Patch), sizeof(std::uint32_t)});
+            },
+            "(m, 4) uint32, read-only, without a copy: vertices of each patch, counter-clockwise seen from the lit "
+            "side; "
+            "the last is 4294967295 (interflect.none) for a triangle. A patch is one side of a face; the patches of a "
+            "two-sided face are adjacent, the front first.")
+        .def_property_readonly(
+            "face_materials",
+            [](const SharedScene& s) { return column<std::uint32_t>(s, s->patches, &Patch::material); },
+            "(m,) uint32, read-only: material of each patch, an index into `materials`.")
+        .def_property_readonly(
+            "face_objects", [](const SharedScene& s) { return column<std::uint32_t>(s, s->patches, &Patch::object); },
+            "(m,) uint32, read-only: object of each patch, an index into `objects`.")
+        .def_property_readonly(
+            "other_sides", [](const SharedScene& s) { return other_sides(*s); },
+            "(m,) int64: the patch on the back of each face, or -1.")
+        .def_property_readonly("normals", vertex_array(&Scene::normals), docs::Scene_normals)
+        .def_property_readonly("texture_coordinates", vertex_array(&Scene::texture_coordinates),
+                               docs::Scene_texture_coordinates)
+        .def_property_readonly("lightmap_coordinates", vertex_array(&Scene::lightmap_coordinates),
+                               docs::Scene_lightmap_coordinates)
+        .def_readonly("materials", &Scene::materials, "Copies of the materials; see replace().")
+        .def_property_readonly(
+            "textures",
+            [](const SharedScene& s) {
+                std::vector<std::shared_ptr<Texture>> textures;
+                for (Texture& t : s->textures) textures.emplace_back(s, &t);
+                return textures;
+            },
+            "Images of the materials, without a copy.")
+        .def_readonly("luminaires", &Scene::luminaires, docs::Scene_luminaires)
+        .def_readonly("light_groups", &Scene::light_groups, docs::Scene_light_groups)
+        .def_readonly("objects", &Scene::objects, docs::Scene_objects)
+        .def_readonly("views", &Scene::views, "Views of the file.")
+        .def_readonly("files", &Scene::files, docs::Scene_files)
+        .def_property_readonly(
+            "warnings", [](const SharedScene& s) { return warnings_of(*s); },
+            "Unsupported features of the file, one sentence each.")
+        .def("__repr__", [](const SharedScene& s) { return describe(*s); });
+    m.attr("none") = none;
+    m.def(
+        "groups_by_name", [](const SharedScene& s) { return groups_by_name(*s); }, py::arg("scene"),
+        docs::groups_by_name);
+    m.def(
+        "overview", [](const SharedScene& s) { return detail::overview(*s); }, py::arg("scene"),
+        "A view from inside an upper corner of the scene to its middle.");
+}
+
+}  // namespace interflect::python

@@ -1,0 +1,128 @@
+#include "settings.h"
+
+#include <cmath>
+
+#include "bindings.h"
+#include "interflect/exports/records/solve_report.h"
+
+namespace interflect::python {
+
+using detail::Json;
+
+namespace {
+
+py::object python_of(const Json& json) {
+    if (json.is_boolean()) return py::bool_(json.get<bool>());
+    if (json.is_number_integer()) return py::int_(json.get<std::int64_t>());
+    if (json.is_number()) return py::float_(json.get<double>());
+    if (json.is_string()) return py::str(json.get<std::string>());
+    return py::none();
+}
+
+/// @param usual  Default value of the setting, whose type counts; null for a number.
+Json setting(const std::string& name, const py::handle& value, const Json& usual) {
+    const auto refuse = [&](const char* expected) {
+        throw py::type_error(name + ": expected " + expected + ", found " + std::string(py::repr(value)));
+    };
+    if (usual.is_boolean()) {
+        if (!py::isinstance<py::bool_>(value)) refuse("True or False");
+        return py::cast<bool>(value);
+    }
+    if (usual.is_string()) {
+        if (!py::isinstance<py::str>(value)) refuse("a word");
+        return py::cast<std::string>(value);
+    }
+    if (name == "rays" || usual.is_number_integer()) return whole_number(value, name);
+    if (py::isinstance<py::bool_>(value)) refuse("a number");
+    try {
+        return py::cast<double>(value);
+    } catch (const py::cast_error&) {
+        refuse("a number");
+    }
+    return nullptr;
+}
+
+WeightedView weighted_view(const Scene& scene, const py::handle& view) {
+    if (py::isinstance<WeightedView>(view)) return py::cast<WeightedView>(view);
+    return {view_of(scene, py::reinterpret_borrow<py::object>(view))};
+}
+
+}  // namespace
+
+std::int64_t whole_number(const py::handle& value, const std::string& name) {
+    const bool is_number = !py::isinstance<py::bool_>(value) && PyNumber_Check(value.ptr()) != 0;
+    const double number = is_number ? PyFloat_AsDouble(value.ptr()) : 0;
+    if (!is_number || PyErr_Occurred()) {
+        PyErr_Clear();
+        throw py::type_error(name + ": expected a whole number, found " + std::string(py::repr(value)));
+    }
+    if (!(std::abs(number) < 0x1p63) || number != std::floor(number))
+        throw InputError(name + ": expected a whole number, found " + std::string(py::repr(value)));
+    return py::isinstance<py::int_>(value) ? py::cast<std::int64_t>(value) : static_cast<std::int64_t>(number);
+}
+
+std::vector<WeightedView> weighted_views(const Scene& scene, const py::object& views) {
+    if (views.is_none()) return {};
+    if (py::isinstance<View>(views) || py::isinstance<WeightedView>(views) || py::isinstance<py::str>(views))
+        return {weighted_view(scene, views)};
+    if (!py::isinstance<py::iterable>(views))
+        throw py::type_error("views: expected views or names of views, found " + std::string(py::repr(views)));
+    std::vector<WeightedView> result;
+    for (const py::handle& view : views) {
+        if (view.is_none()) throw py::type_error("views: expected views or names of views, found None");
+        result.push_back(weighted_view(scene, view));
+    }
+    return result;
+}
+
+Limits limits_of(const py::object& rays, const py::object& time, const py::object& until) {
+    Limits limits;
+    if (!rays.is_none()) limits.rays = whole_number(rays, "rays");
+    if (!time.is_none()) limits.time = setting("time", time, nullptr).get<double>();
+    if (!until.is_none()) limits.until = setting("until", until, nullptr).get<double>();
+    return limits;
+}
+
+SolveOptions solve_options(const Scene& scene, const py::object& method, const py::object& views,
+                           const py::dict& settings) {
+    SolveOptions options;
+    options.views = weighted_views(scene, views);
+    options.method =
+        method.is_none() ? default_method(!options.views.empty()) : find_method(py::cast<std::string>(py::str(method)));
+    const bool has_limit = settings.contains("rays") || settings.contains("time") || settings.contains("until");
+    if (has_limit) options.limits = Limits();
+    if (settings.contains("preset")) {
+        if (!py::str("paper").equal(settings["preset"])) throw InputError("preset: expected 'paper'");
+        if (settings.contains("rays")) options.limits.rays = whole_number(settings["rays"], "rays");
+        use_published_algorithm(options);
+    }
+    Json json = detail::json_of(options);
+    for (const auto& [key, value] : settings) {
+        const auto name = py::cast<std::string>(key);
+        if (name == "preset") continue;
+        if (name == "seed") {
+            options.seed = static_cast<std::uint64_t>(whole_number(value, name));
+        } else if (name == "max_elements") {
+            options.refinement.max_elements = static_cast<std::size_t>(whole_number(value, name));
+        } else {
+            if (!json.contains(name) || name == "views") throw py::type_error("there is no setting '" + name + "'");
+            json[name] = setting(name, value, json[name]);
+        }
+    }
+    json["views"] = Json::array();  // kept in full precision
+    detail::read_options(json, options);
+    return options;
+}
+
+py::dict settings_of(const SolveOptions& options) {
+    py::dict settings;
+    settings["method"] = options.method.name;
+    settings["seed"] = options.seed;
+    const Json json = detail::json_of(options);
+    for (const auto& [name, value] : json.items())
+        if (name != "views") settings[py::str(name)] = python_of(value);
+    settings["max_elements"] = options.refinement.max_elements;
+    return settings;
+}
+
+}  // namespace interflect::python

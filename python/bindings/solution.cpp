@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+
+#include "bindings.h"
+#include "long_work.h"
+#include "settings.h"
+
+namespace interflect::python {
+
+namespace {
+
+/// Arrays with one row per element, inner ones included.
+struct Elements {
+    SharedLight light;
+};
+
+template <class Number, class Member>
+auto leaf_column(Member Leaf::*member, py::ssize_t columns = 0) {
+    return
+        [member, columns](const SharedLight& light) { return column<Number>(light, light->mesh(), member, columns); };
+}
+
+py::array vertices_of(const SharedLight& light) {
+    static const Leaf nothing{};
+    const std::vector<Leaf>& mesh = light->mesh();
+    const Leaf& first = mesh.empty() ? nothing : mesh.front();
+    return read_only(light, &first.vertices[0].x, {static_cast<py::ssize_t>(mesh.size()), 4, 3},
+                     {sizeof(Leaf), sizeof(Imath::V3d), sizeof(double)});
+}
+
+py::array_t<float> total_error(const SharedLight& light) {
+    const std::vector<Leaf>& mesh = light->mesh();
+    py::array_t<float> result(static_cast<py::ssize_t>(mesh.size()));
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+        result.mutable_at(static_cast<py::ssize_t>(i)) =
+            std::hypot(mesh[i].standard_error, mesh[i].discretisation_error);
+    return result;
+}
+
+template <class T>
+auto element_array(std::vector<T> Solution::*member) {
+    return [member](const Elements& elements) -> py::object {
+        const std::vector<T>& values = (*elements.light->solution).*member;
+        if (values.empty()) return py::none();
+        return rows<float>(elements.light, values);
+    };
+}
+
+auto element_arrays(std::vector<std::vector<Rgb>> Solution::*member) {
+    return [member](const Elements& elements) {
+        py::list arrays;
+        for (const std::vector<Rgb>& values : (*elements.light->solution).*member)
+            arrays.append(rows<float>(elements.light, values));
+        return arrays;
+    };
+}
+
+py::list iterations_of(const Light& light) {
+    py::list result;
+    for (const IterationReport& r : light.solution->iterations) {
+        py::dict values;
+        values["iteration"] = r.iteration;
+        values["seconds"] = r.seconds;
+        values["rays"] = r.rays;
+        values["power_rays"] = r.power_rays;
+        values["importance_rays"] = r.importance_rays;
+        values["escaped_rays"] = r.escaped_rays;
+        values["elements"] = r.elements;
+        values["leaves"] = r.leaves;
+        values["total_power"] = luminance(r.total_power);
+        values["escaped_power"] = luminance(r.escaped_power);
+        values["error_estimate"] = r.error_estimate;
+        values["noise_estimate"] = r.noise_estimate;
+        values["discretisation_estimate"] = r.discretisation_estimate;
+        values["largest_payload"] = r.largest_payload;
+        values["high_payload"] = r.high_payload;
+        result.append(values);
+    }
+    return result;
+}
+
+SharedLight dimmed_light(const Light& light, const std::string& group, float factor) {
+    auto scene = std::make_shared<Scene>(*light.scene);
+    auto solution = std::make_shared<Solution>(*light.solution);
+    dim(*scene, *solution, group, factor);
+    return std::make_shared<Light>(std::move(scene), std::move(solution), light.ray_caster);
+}
+
+void save(const Light& light, const std::filesystem::path& path) {
+    long_work(py::none(), 0, [&](const Monitor&) { return write_solution(path, *light.scene, *light.solution), true; });
+}
+
+SharedLight open_light(const std::filesystem::path& path) {
+    return long_work(py::none(), 0, [&](const Monitor&) {
+        SolvedScene solved = read_solution(path);
+        auto scene = std::make_shared<const Scene>(std::move(solved.scene));
+        auto ray_caster = std::make_shared<const RayCaster>(*scene);
+        return std::make_shared<Light>(std::move(scene), std::make_shared<const Solution>(std::move(solved.solution)),
+                                       std::move(ray_caster));
+    });
+}
+
+double error_of(const Light& light) {
+    const auto& iterations = light.solution->iterations;
+    return iterations.empty() ? std::numeric_limits<double>::infinity() : iterations.back().error_estimate;
+}
+
+std::string describe(const Light& light) {
+    const auto& iterations = light.solution->iterations;
+    return fmt::format("<Solution of '{}': {} leaves, {} rays, error {:.3g}>", light.scene->name,
+                       iterations.empty() ? 0 : iterations.back().leaves,
+                       iterations.empty() ? 0 : iterations.back().rays, error_of(light));
+}
+
+void bind_elements(py::module_& m) {
+    py::class_<Elements>(m, "Elements",
+                         "Arrays with one row per element of the quadtrees, read-only, without copies; inner elements "
+                         "hold the mean of their children. Solution.element selects the leaves.")
+        .def_property_readonly("irradiance", element_array(&Solution::irradiance), docs::Solution_irradiance)
+        .def_property_readonly("groups", element_arrays(&Solution::groups), docs::Solution_groups)
+        .def_property_readonly("direct", element_arrays(&Solution::direct), docs::Solution_direct)
+        .def_property_readonly("view_importance", element_array(&Solution::view_importance),
+                               docs::Solution_view_importance)
+        .def_property_readonly("indirect_importance", element_array(&Solution::indirect_importance),
+                               docs::Solution_indirect_importance)
+        .def_property_readonly("standard_error", element_array(&Solution::standard_error),
+                               docs::Solution_standard_error)
+        .def_property_readonly("discretisation_error", element_array(&Solution::discretisation_error),
+                               docs::Solution_discretisation_error)
+        .def_property_readonly("rays", element_array(&Solution::rays), docs::Solution_rays);
+}
+
+}  // namespace
+
+void bind_solution(py::module_& m) {
+    bind_elements(m);
+    py::class_<PowerBalance>(m, "PowerBalance", docs::PowerBalance)
+        .def_readonly("emitted", &PowerBalance::emitted, docs::PowerBalance_emitted)
+        .def_readonly("absorbed", &PowerBalance::absorbed, docs::PowerBalance_absorbed)
+        .def_readonly("escaped", &PowerBalance::escaped, docs::PowerBalance_escaped)
+        .def_property_readonly("relative_difference", &PowerBalance::relative_difference,
+                               docs::PowerBalance_relative_difference);
+    py::class_<Light, SharedLight>(
+        m, "Solution",
+        "Light of a scene. Its arrays have one row per leaf of the mesh, a patch or a piece of one. They are read-only "
+        "views of one array of structures, which the first request makes (152 bytes a leaf); they stay valid when the "
+        "solver and this object are gone.")
+        .def_property_readonly("irradiance", leaf_column<float>(&Leaf::irradiance, 3),
+                               "(n, 3) float32: H [lm/m^2 or W/m^2].")
+        .def_property_readonly("direct", leaf_column<float>(&Leaf::direct, 3), docs::Leaf_direct)
+        .def_property_readonly("importance", leaf_column<float>(&Leaf::importance), docs::Leaf_importance)
+        .def_property_readonly("standard_error", leaf_column<float>(&Leaf::standard_error),
+                               docs::Solution_standard_error)
+        .def_property_readonly("discretisation_error", leaf_column<float>(&Leaf::discretisation_error),
+                               docs::Solution_discretisation_error)
+        .def_property_readonly("error", &total_error,
+                               "(n,) float32: root of the sum of the squares of `standard_error` and "
+                               "`discretisation_error`, computed on request.")
+        .def_property_readonly("level", leaf_column<std::int32_t>(&Leaf::level), docs::Leaf_level)
+        .def_property_readonly("area", leaf_column<float>(&Leaf::area), docs::Leaf_area)
+        .def_property_readonly("patch", leaf_column<std::uint32_t>(&Leaf::patch),
+                               "(n,) uint32: the patch of the leaf, an index into Scene.faces of `scene`.")
+        .def_property_readonly("element", leaf_column<std::uint32_t>(&Leaf::element),
+                               "(n,) uint32: the element of the leaf, an index into the arrays of `elements`.")
+        .def_property_readonly("vertices", &vertices_of,
+                               "(n, 4, 3) float64: world coordinates [m], counter-clockwise seen from the lit side. A "
+                               "triangle repeats the last.")
+        .def_property_readonly("vertex_count", leaf_column<std::int32_t>(&Leaf::vertex_count), docs::Leaf_vertex_count)
+        .def_property_readonly(
+            "elements", [](const SharedLight& light) { return Elements{light}; },
+            "Arrays of all elements, inner ones included.")
+        .def_property_readonly(
+            "scene", [](const Light& light) { return shown(light.scene); },
+            "The scene as it was solved: faces are cut where others meet them.")
+        .def_property_readonly(
+            "views", [](const Light& light) { return light.solution->options.views; }, "Views that defined importance.")
+        .def_property_readonly(
+            "options", [](const Light& light) { return settings_of(light.solution->options); }, "Settings by name.")
+        .def_property_readonly(
+            "iterations", &iterations_of,
+            "One dict per iteration, named as in IterationReport, with counts since the start and the luminance of "
+            "powers. pandas.DataFrame takes the list.")
+        .def_property_readonly(
+            "group_names", [](const Light& light) { return light.solution->group_names; }, docs::Solution_group_names)
+        .def_property_readonly(
+            "emitted_power", [](const Light& light) { return light.solution->emitted_power; },
+            docs::Solution_emitted_power)
+        .def_property_readonly(
+            "non_finite", [](const Light& light) { return light.solution->non_finite; }, docs::Solution_non_finite)
+        .def_property_readonly(
+            "is_interrupted", [](const Light& light) { return light.solution->interrupted; },
+            docs::Solution_interrupted)
+        .def_property_readonly("relative_error", &error_of, docs::IterationReport_error_estimate)
+        .def(
+            "power_balance", [](const Light& light) { return power_balance(*light.scene, *light.solution); },
+            docs::power_balance)
+        .def(
+            "dim", &dimmed_light, py::arg("group"), py::arg("factor"),
+            "A copy whose sources of a light group and all of their light are scaled, without tracing rays.\n\nArgs:\n"
+            "    group: Name of a light group.\n    factor: Relative to the current emission; >= 0.\n\nRaises:\n"
+            "    InputError: that lists the groups, for an unknown group; for a factor that is negative or not finite.")
+        .def("save", &save, py::arg("path"), docs::write_solution)
+        .def_static("open", &open_light, py::arg("path"), docs::read_solution)
+        .def("__len__", [](const Light& light) { return light.mesh().size(); })
+        .def("__repr__", &describe);
+}
+
+}  // namespace interflect::python

@@ -1,0 +1,183 @@
+"""Pictures, measurements and exports of a solution."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from interflect import _core
+from interflect._errors import InputError
+from interflect._progress import ProgressArgument, reporting
+from interflect._scenes import scene_of
+
+# Samples per pixel, as the command `interflect render` has.
+SAMPLES = {"hybrid": 32, "gather": 16, "path": 64, "instant": 64, "smooth": 16, "flat": 16}
+FROM_SCENE = ("path", "instant")
+ViewArgument = _core.View | str | None
+LitArgument = _core.Solution | _core.Scene | str | os.PathLike[str]
+
+
+def _lit(lit: LitArgument, shading: str) -> _core.Solution | _core.Scene:
+    if shading not in SAMPLES:
+        raise InputError(f"shading: expected one of {', '.join(SAMPLES)}, found {shading!r}")
+    if isinstance(lit, _core.Solution):
+        return lit
+    if shading in FROM_SCENE:
+        return _core.cut_at_contacts(scene_of(lit))  # as the command does
+    raise TypeError(f"{shading} shading needs a Solution: expected the result of solve(), found {lit!r}")
+
+
+def _view(lit: _core.Solution | _core.Scene, view: ViewArgument) -> ViewArgument:
+    """The view, or the first one for which a solution was made."""
+    return lit.views[0].view if view is None and isinstance(lit, _core.Solution) and lit.views else view
+
+
+def _quantity(quantity: str) -> bool:
+    if quantity not in ("radiance", "irradiance"):
+        raise InputError(f"quantity: expected radiance or irradiance, found {quantity!r}")
+    return quantity == "irradiance"
+
+
+def render(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, height: int = 720,
+           shading: str = "hybrid", samples: int | None = None, quantity: str = "radiance", denoise: bool = False,
+           crease_angle: float = 30, seed: int = 1, threads: int = 0,
+           progress: ProgressArgument = None, **options: Any) -> NDArray[np.float32]:
+    """Draws a view of a solution: float32 (height, width, 3), radiance [cd/m^2 or W/(m^2 sr)], row 0 at the top.
+
+    Args:
+        lit: Solution; for path tracing and instant radiosity also a Scene or the path of one.
+        view: View, or the name of one of the scene; default: the first view of the solution, of the scene, or an overview.
+        width: [pixels]
+        height: [pixels]
+        shading: "hybrid": direct light per pixel, indirect light interpolated. "gather": final gathering. "smooth", "flat":
+            the light of the elements. "path", "instant": without the solution.
+        samples: Samples per pixel; default: 32, 16, 16, 16, 64 and 64, in this order.
+        quantity: "radiance", or "irradiance" [lux or W/m^2] independent of reflectance.
+        denoise: Filters the noise, not for smooth and flat shading.
+        crease_angle: Maximum angle between faces with common smooth shading [degrees].
+        seed: The same seed gives the same bits for any number of threads.
+        threads: Number of threads; 0: all.
+        progress: As of solve().
+        options: until, max_samples, time, mirrors, light_walks, as of trace().
+
+    Raises:
+        InputError: for a view that defines no picture and an option out of range.
+    """
+    source = _lit(lit, shading)
+    if shading not in ("smooth", "flat"):
+        traced = trace(source, view, width=width, height=height, shading=shading, samples=samples, quantity=quantity,
+                       seed=seed, threads=threads, progress=progress, **options)
+        return traced.denoise() if denoise else traced.image
+    if options:
+        raise TypeError(f"{shading} shading takes no {', '.join(options)}")
+    if denoise:
+        raise TypeError(f"{shading} shading has no noise to filter")
+    count = SAMPLES[shading] if samples is None else samples
+    with reporting(progress, "drawing") as report:
+        return _core.render_elements(source, _view(source, view), width, height, count, shading == "flat",
+                                     _quantity(quantity), crease_angle, seed, threads, report)
+
+
+def trace(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, height: int = 720, shading: str = "path",
+          samples: int | None = None, quantity: str = "radiance", until: float = 0, max_samples: int = 16_384,
+          time: float = float("inf"), mirrors: bool = True, light_walks: int = 16_384, seed: int = 1, threads: int = 0,
+          progress: ProgressArgument = None) -> _core.PathTracing:
+    """Draws a view by paths, with its standard error and its layers.
+
+    Args:
+        lit, view, width, height, samples, quantity, seed, threads, progress: As of render().
+        shading: "path", "instant", "gather" or "hybrid".
+        until: Target of each pixel's relative standard error; 0: every pixel gets `samples`.
+        max_samples: Maximum number of paths per pixel with a target.
+        time: Maximum duration [s]; every pixel gets two batches of paths, however long they take.
+        mirrors: Whether the camera sees mirrors.
+        light_walks: Instant radiosity: walks from the light sources for a batch of paths.
+
+    Raises:
+        InputError: as render().
+    """
+    source = _lit(lit, shading)
+    if shading in ("smooth", "flat"):
+        raise InputError(f"shading: {shading} traces no paths; use render()")
+    count = SAMPLES[shading] if samples is None else samples
+    with reporting(progress, "drawing") as report:
+        return _core.trace(source, shading, _view(source, view), width, height, count, until, max_samples, time,
+                           _quantity(quantity), mirrors, light_walks, seed, threads, report)
+
+
+def tonemap(image: ArrayLike, *, exposure: float | None = None, curve: str = "srgb",
+            display_luminance: float = 100) -> NDArray[np.uint8]:
+    """Display values of a picture: uint8 (height, width, 3), sRGB, for matplotlib and Pillow.
+
+    Args:
+        image: (height, width, 3): radiance; [cd/m^2] for the last three curves.
+        exposure: [stops]; a luminance of 2^-exposure becomes 1. Default: automatic, for a natural impression of a lit room.
+        curve: srgb, reinhard, filmic, agx, ward, tumblin or ferwerda (docs/tone-mapping.md).
+        display_luminance: White of the display [cd/m^2], for the last three.
+
+    Raises:
+        InputError: for another shape, an unknown curve and values that are not finite.
+    """
+    return _core.tonemap(np.asarray(image, np.float32), exposure, curve, display_luminance)
+
+
+def probe(solution: _core.Solution, points: ArrayLike | _core.MeasuringGrid, normals: ArrayLike | None = None, *,
+          receiver: str = "planar", axis: ArrayLike = (0, 0, 1), shading: str = "gather", samples: int = 4096,
+          until: float = 0, seed: int = 1, threads: int = 0, progress: ProgressArgument = None) -> _core.Measurement:
+    """Measures irradiance at points, as `interflect probe`.
+
+    Args:
+        solution: Result of solve().
+        points: (n, 3) world coordinates [m], or a grid of area_grid() or line_grid(). A point on a surface measures its
+            irradiance.
+        normals: (n, 3) or (3,); default: the grid's, or up. Need not be normalised.
+        receiver: "planar", "cylindrical" or "semicylindrical" (EN 12464-1, CIE 136).
+        axis: Axis of cylinders.
+        shading: "gather" from the solution, or "path" for path tracing alone.
+        samples: Directions per point; with a target the minimum.
+        until: Target of the relative standard error; 0: none.
+
+    Raises:
+        InputError: for other shapes, and for points that are not finite.
+    """
+    if isinstance(points, _core.MeasuringGrid):
+        normals = points.normal if normals is None else normals
+        points = points.points
+    normals = (0, 0, 1) if normals is None else normals
+    with reporting(progress, "measuring") as report:
+        return _core.probe(solution, points, normals, receiver, axis, shading, samples, until, seed, threads, report)
+
+
+def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: bool = False, threads: int = 0,
+           progress: ProgressArgument = None, **options: Any) -> list[Path]:
+    """Writes a solved scene for other programs, in the format of the extension of `path` (docs/export.md).
+
+    Args:
+        solution: Result of solve().
+        path: .glb, .gltf, .ply, .obj, .vtkhdf, .vtu or .json.
+        lightmap: Stores the light in lightmaps rather than in vertices.
+        options: exposure, up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
+            max_triangles. In lightmaps: texels_per_metre, max_size, gutter, image, own_charts, groups, content. For
+            probes: spacing, rays.
+
+    Returns:
+        The files that were written.
+
+    Raises:
+        InputError: for an unknown extension and options out of range.
+        TypeError: for an unknown option.
+    """
+    with reporting(progress, "exporting") as report:
+        return _core.export_solution(solution, path, lightmap=lightmap, threads=threads, progress=report, **options)
+
+
+def _repr_png(solution: _core.Solution) -> bytes:
+    """Small picture for notebooks."""
+    return _core.png(render(solution, width=480, height=270, shading="smooth", samples=4, progress=False))
+
+
+_core.Solution._repr_png_ = _repr_png

@@ -1,0 +1,49 @@
+"""Progress of long work, by tqdm if it is installed."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from interflect import _core
+
+Report = Callable[[_core.Progress], Any]
+ProgressArgument = bool | Report | None
+
+
+def _is_in_notebook() -> bool:
+    shell = sys.modules.get("IPython") and sys.modules["IPython"].get_ipython()
+    return bool(shell) and "ipykernel" in sys.modules
+
+
+@contextmanager
+def reporting(progress: ProgressArgument, what: str) -> Iterator[Report | None]:
+    """Yields a function that shows progress, or None.
+
+    Args:
+        progress: The function itself; True for a bar of tqdm; False for none; None for a bar in notebooks only.
+        what: Name of the work.
+    """
+    if callable(progress):
+        yield progress
+        return
+    if not (progress or (progress is None and _is_in_notebook())):
+        yield None
+        return
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        yield None
+        return
+    with tqdm(total=100, desc=what, unit="%", bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}") as bar:
+
+        def show(now: _core.Progress) -> None:
+            bar.n = min(100, round(100 * now.fraction))
+            error = f", error {100 * now.relative_error:.2g}%" if now.relative_error < float("inf") else ""
+            bar.set_postfix_str(f"{now.rays:.3g} rays{error}")
+
+        yield show
+        bar.n = 100
+        bar.refresh()
