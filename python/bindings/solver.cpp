@@ -48,6 +48,18 @@ class PythonSolver {
             light_ = std::make_shared<Light>(solver->shared_scene(), now, solver->shared_ray_caster());
         return light_;
     }
+    /// The current solution without a copy; closes the solver.
+    SharedLight take_light() {
+        const Use solver(*this);
+        const auto scene = solver->shared_scene();
+        const auto ray_caster = solver->shared_ray_caster();
+        auto solution = long_work(py::none(), threads_, [&](const Monitor&) {
+            return std::make_shared<const Solution>(std::move(*solver).take_solution());
+        });
+        solver_.reset();
+        light_.reset();
+        return std::make_shared<Light>(scene, std::move(solution), ray_caster);
+    }
     void close() {
         if (is_used_.exchange(true))
             throw std::runtime_error("the solver is in use by another thread or by its progress function");
@@ -151,6 +163,7 @@ void bind_solver(py::module_& m) {
             py::arg("rays") = py::none(), py::arg("time") = py::none(), py::arg("until") = py::none(),
             docs::Solver_set_plan)
         .def_property_readonly("solution", &PythonSolver::light, docs::Solver_shared_solution)
+        .def("take_solution", &PythonSolver::take_light, docs::Solver_take_solution)
         .def_property_readonly(
             "scene", [](PythonSolver& self) { return shown(Use(self)->shared_scene()); }, docs::Solver_scene)
         .def_property_readonly(
