@@ -107,7 +107,7 @@ AdvanceReport advance(PythonSolver& self, const py::object& rays, const py::obje
                      [&](const Monitor& monitor) { return solver->advance(limits, monitor); });
 }
 
-void save(PythonSolver& self, const std::filesystem::path& path) {
+void save_run(PythonSolver& self, const std::filesystem::path& path) {
     const Use solver(self);
     long_work(py::none(), self.threads(), [&](const Monitor&) { return solver->save(path), true; });
 }
@@ -170,7 +170,7 @@ void bind_solver(py::module_& m) {
             "options", [](PythonSolver& self) { return settings_of(Use(self)->options()); }, "Settings by name.")
         .def_property_readonly(
             "views", [](PythonSolver& self) { return Use(self)->options().views; }, "Views that define importance.")
-        .def("save", &save, py::arg("path"), docs::Solver_save)
+        .def("save", &save_run, py::arg("path"), docs::Solver_save)
         .def_static("open", &open_run, py::arg("path"), py::arg("threads") = 0, docs::Solver_open)
         .def("close", &PythonSolver::close, "Frees the memory of the run; solutions and their arrays stay valid.")
         .def_property_readonly("is_closed", &PythonSolver::is_closed, "Whether close() was called.");
