@@ -140,7 +140,7 @@ void run(ViewFactorArguments& arguments, const CLI::App& command, int& exit_code
     require_distinct_files(input_files(arguments.scene, {}), outputs);
     PendingFile output(arguments.output);
 
-    const Scene scene = arguments.scene.load(false);
+    const Scene scene = with_opaque_backs(arguments.scene.load(false));
     require_no_scene_files(scene, outputs);
     const std::vector<FaceGroup> groups = groups_of(scene, arguments);
     const RayCaster ray_caster = make_ray_caster(scene);

@@ -19,6 +19,10 @@ struct FaceGroup {
     std::vector<std::uint32_t> patches;  ///< Indices into Scene::patches, each at most once.
 };
 
+/// Adds a black back without names to every one-sided face, which lets rays through otherwise. Visibility, and hence
+/// reciprocity, then is symmetric. The patches of the result have other indices.
+Scene with_opaque_backs(const Scene& scene);
+
 /// Sides of two-sided faces that belong to groups; the others only block. One-sided faces always belong.
 enum class FaceSides {
     both,
@@ -26,7 +30,8 @@ enum class FaceSides {
     back,
 };
 
-/// One group per patch, in the order of the scene, named "object:index" or "index".
+/// One group per patch that has a named object or material, in the order of the scene. Names: "object:index" or
+/// "index".
 std::vector<FaceGroup> facet_groups(const Scene& scene, FaceSides sides = FaceSides::both);
 /// One group per named object that has patches, in the order of Scene::objects. Nested objects are separate groups;
 /// patches without an object belong to no group.
@@ -79,8 +84,8 @@ struct ViewFactors {
 };
 
 /// Estimates all view factors. The rays of a group start uniformly on its uncovered area, with density cos(theta) / pi,
-/// at Owen-scrambled Sobol' points. Their hits are counted; all surfaces are opaque, and black for this purpose. As for
-/// RayCaster, rays pass through the back of one-sided faces.
+/// at Owen-scrambled Sobol' points. Their hits are counted; all surfaces are opaque, and black for this purpose.
+/// Rays pass through the back of one-sided faces, as for RayCaster, unless with_opaque_backs() made the scene.
 ///
 /// Standard errors result from 32 independent scramblings of each group's points: sqrt(S + 1) / N for N rays and the
 /// variance S of the number of hits. The 1 is the resolution of a count, and covers a chance S = 0.

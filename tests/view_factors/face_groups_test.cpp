@@ -36,7 +36,19 @@ TEST(FaceGroups, AreNamedObjectsMaterialsAndFacets) {
     EXPECT_THAT(names(object_groups(scene)), ElementsAre("room.wall", "room.door"));
     EXPECT_THAT(object_groups(scene)[0].patches, ElementsAre(0, 1));
     EXPECT_THAT(names(material_groups(scene)), ElementsAre("brick", "wood"));
-    EXPECT_THAT(names(facet_groups(scene)), ElementsAre("room.wall:0", "room.wall:1", "room.door:2", "3"));
+    EXPECT_THAT(names(facet_groups(scene)), ElementsAre("room.wall:0", "room.wall:1", "room.door:2"));
+}
+
+TEST(OpaqueBacks, AreBlackAndInNoGroup) {
+    const Scene scene = with_opaque_backs(three_squares());
+    ASSERT_EQ(scene.patches.size(), 6u);
+    for (const std::uint32_t front : {0u, 2u, 4u}) {
+        EXPECT_EQ(scene.patches[front].other_side, front + 1);
+        EXPECT_EQ(scene.patches[front + 1].other_side, front);
+    }
+    EXPECT_EQ(scene.patches[3].vertices[1], scene.patches[2].vertices[3]) << "reversed";
+    EXPECT_THAT(names(facet_groups(scene)), ElementsAre("room.wall:0", "room.wall:1", "room.door:2"));
+    EXPECT_TRUE(scene_faults(scene).empty());
 }
 
 TEST(FaceGroups, HaveTheChosenSideOfTwoSidedFaces) {

@@ -15,6 +15,8 @@ namespace {
 
 using namespace testing_support;
 
+const Material black{.name = "black"};
+
 /// A dense matrix of factors with standard errors; without sky, ground and blocked.
 ViewFactors dense(const std::vector<double>& areas, const std::vector<std::vector<float>>& values,
                   const std::vector<std::vector<float>>& errors) {
@@ -71,7 +73,7 @@ TEST(Reconcile, KeepsFactorsNonNegative) {
 }
 
 TEST(Reconcile, EnforcesBothLaws) {
-    const Scene scene = closed_box({2, 3, 1}, 3, {Material{}});
+    const Scene scene = closed_box({2, 3, 1}, 3, {black});
     const RayCaster ray_caster(scene);
     ViewFactors f = view_factors(scene, ray_caster, facet_groups(scene), {54 << 10});
     const ViewFactors estimate = f;
@@ -93,7 +95,7 @@ TEST(Reconcile, EnforcesBothLaws) {
 }
 
 TEST(Reconcile, IncludesSkyAndBlockedInClosure) {
-    Scene scene = closed_box({1, 1, 1}, 2, {Material{}});
+    Scene scene = closed_box({1, 1, 1}, 2, {black});
     scene.objects = {"", "walls"};
     for (std::uint32_t p = 0; p < 20; ++p) scene.patches[p].object = 1;  // the ceiling is open
     scene.patches.resize(20);
@@ -109,7 +111,7 @@ TEST(Reconcile, IncludesSkyAndBlockedInClosure) {
 }
 
 TEST(Reconcile, StopsOnRequestWithoutAChange) {
-    const Scene scene = closed_box({2, 3, 1}, 2, {Material{}});
+    const Scene scene = closed_box({2, 3, 1}, 2, {black});
     ViewFactors f = view_factors(scene, RayCaster(scene), facet_groups(scene), {24 << 10});
     const ViewFactors estimate = f;
     const std::atomic<bool> stop = true;

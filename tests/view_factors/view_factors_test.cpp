@@ -25,10 +25,12 @@ using testing::HasSubstr;
 
 constexpr std::uint64_t seeds = 16;
 
+const Material black{.name = "black"};
+
 Scene empty_scene() {
     Scene scene;
     scene.objects = {""};
-    add_material(scene, Rgb(0), Rgb(0));
+    scene.materials[add_material(scene, Rgb(0), Rgb(0))].name = "black";
     return scene;
 }
 
@@ -99,7 +101,7 @@ TEST(ViewFactors, OfCoaxialDiscsHaveTheCataloguesFigure) {
 }
 
 TEST(ViewFactors, OfAClosedBoxAreTheClosedForms) {
-    const Scene scene = closed_box({2, 3, 1}, 2, {Material{}});
+    const Scene scene = closed_box({2, 3, 1}, 2, {black});
     const FormFactors exact = exact_form_factors(scene);
     const RayCaster ray_caster(scene);
     std::vector<std::vector<double>> samples(scene.patches.size() * scene.patches.size());
@@ -117,7 +119,7 @@ TEST(ViewFactors, OfAClosedBoxAreTheClosedForms) {
 
 /// The unit cube with a square of half the width in the middle, as an obstruction without a group.
 TEST(ViewFactors, OfACubeWithAnObstructionCountItAsBlocked) {
-    Scene scene = closed_box({1, 1, 1}, 1, {Material{}});
+    Scene scene = closed_box({1, 1, 1}, 1, {black});
     scene.objects = {""};
     const std::vector<FaceGroup> walls = facet_groups(scene);
     add_rectangle(scene, {0.25f, 0.25f, 0.5f}, {0.5f, 0, 0}, {0, 0.5f, 0}, 0, 1, 1, true);
@@ -131,6 +133,19 @@ TEST(ViewFactors, OfACubeWithAnObstructionCountItAsBlocked) {
         EXPECT_NEAR(f.closure(i), 1, 1e-6);
         EXPECT_EQ(f.sky[i] + f.ground[i], 0) << "closed";
     }
+}
+
+TEST(ViewFactors, OfOneSidedFacesAreReciprocalWithOpaqueBacks) {
+    // A one-sided face between the opposite squares, which faces the lower one.
+    Scene scene = opposite_squares();
+    add_rectangle(scene, {0.25f, 0.25f, 0.5f}, {0, 0.5f, 0}, {0.5f, 0, 0}, 0);
+    const ViewFactors open = view_factors(scene, RayCaster(scene), facet_groups(scene), {3 << 14});
+    EXPECT_GT(open.factor(1, 0).value, open.factor(0, 1).value + 0.03);
+    const Scene opaque = with_opaque_backs(scene);
+    const ViewFactors f = view_factors(opaque, RayCaster(opaque), facet_groups(opaque), {3 << 14});
+    EXPECT_EQ(f.size(), 3u);
+    EXPECT_GT(f.blocked[1], 0.03);
+    EXPECT_LT(consistency(f).reciprocity.largest_in_errors, 5);
 }
 
 TEST(ViewFactors, CountTheSkyAboveTheHorizonAndTheGroundBelow) {
@@ -184,7 +199,7 @@ TEST(ViewFactors, OfUnevenPatchesOfOneGroupWeightThemByArea) {
 TEST(ViewFactors, HaveTheirStandardErrors) {
     // z = (F - exact) / error over all pairs of a box and 64 seeds. With 31 degrees of freedom, the mean of z^2 is
     // 31/29 = 1.07, and |z| > 3 has a probability of 0.5%. The errors are slightly too large for few hits.
-    const Scene scene = closed_box({2, 3, 1}, 2, {Material{}});
+    const Scene scene = closed_box({2, 3, 1}, 2, {black});
     const FormFactors exact = exact_form_factors(scene);
     const RayCaster ray_caster(scene);
     double squares = 0, pairs = 0, beyond = 0;
@@ -206,7 +221,7 @@ TEST(ViewFactors, HaveTheirStandardErrors) {
 }
 
 TEST(ViewFactors, DependOnTheSeedAlone) {
-    const Scene scene = closed_box({1, 1, 1}, 3, {Material{}});
+    const Scene scene = closed_box({1, 1, 1}, 3, {black});
     const RayCaster ray_caster(scene);
     const auto estimate = [&](std::uint64_t seed) {
         return view_factors(scene, ray_caster, facet_groups(scene), {1 << 17, seed});

@@ -11,10 +11,10 @@ namespace {
 
 double square(double x) { return x * x; }
 
-void add_others(const ViewFactors& f, Exchange& exchange) {
-    const std::array<const std::vector<float>*, Exchange::others> values{&f.sky, &f.ground, &f.blocked},
+void add_others(const ViewFactors& f, ExchangeAreas& exchange) {
+    const std::array<const std::vector<float>*, ExchangeAreas::others> values{&f.sky, &f.ground, &f.blocked},
         errors{&f.sky_errors, &f.ground_errors, &f.blocked_errors};
-    for (std::size_t c = 0; c < Exchange::others; ++c)
+    for (std::size_t c = 0; c < ExchangeAreas::others; ++c)
         for (std::size_t i = 0; i < f.size(); ++i) {
             const double value = f.areas[i] * (*values[c])[i];
             exchange.other_values[c].push_back(value);
@@ -51,7 +51,7 @@ std::vector<std::int64_t> count_absent(const ViewFactors& f) {
 }
 
 /// Merges two increasing lists of a row: the first `added` entries, and the rest.
-void merge_row(Exchange& x, std::size_t row, std::size_t added) {
+void merge_row(ExchangeAreas& x, std::size_t row, std::size_t added) {
     struct Entry {
         std::int32_t column;
         float value, variance;
@@ -73,9 +73,9 @@ void merge_row(Exchange& x, std::size_t row, std::size_t added) {
 
 }  // namespace
 
-Exchange directed_exchange(const ViewFactors& f) {
-    Exchange x{f.row_offsets, f.columns, f.values, f.errors, {}, {}};
-    parallel_for_ranges(f.size(), Exchange::rows_per_task, [&](std::size_t begin, std::size_t end) {
+ExchangeAreas directed_exchange(const ViewFactors& f) {
+    ExchangeAreas x{f.row_offsets, f.columns, f.values, f.errors, {}, {}};
+    parallel_for_ranges(f.size(), ExchangeAreas::rows_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             for (std::size_t e = x.begin(i); e < x.end(i); ++e) {
                 x.values[e] = static_cast<float>(f.areas[i] * f.values[e]);
@@ -86,9 +86,9 @@ Exchange directed_exchange(const ViewFactors& f) {
     return x;
 }
 
-Exchange symmetric_exchange(const ViewFactors& f) {
+ExchangeAreas symmetric_exchange(const ViewFactors& f) {
     const std::vector<std::int64_t> absent = count_absent(f);
-    Exchange x;
+    ExchangeAreas x;
     x.row_offsets.assign(1, 0);
     for (std::size_t i = 0; i < f.size(); ++i)
         x.row_offsets.push_back(x.row_offsets[i] + f.row_offsets[i + 1] - f.row_offsets[i] + absent[i]);
@@ -119,7 +119,7 @@ Exchange symmetric_exchange(const ViewFactors& f) {
             if (back == Transposed::absent) put(x.begin(j) + added[j]++, i, mean);
         }
     }
-    parallel_for_ranges(f.size(), Exchange::rows_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(f.size(), ExchangeAreas::rows_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) merge_row(x, i, added[i]);
     });
     add_others(f, x);

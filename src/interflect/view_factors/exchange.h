@@ -9,9 +9,9 @@
 
 namespace interflect::detail {
 
-/// Exchange areas X_ij = A_i F_ij [m^2] with their variances, as a sparse matrix. Symmetric to the last bit if the two
-/// directions of each pair were averaged.
-struct Exchange {
+/// ExchangeAreas areas X_ij = A_i F_ij [m^2] with their variances, as a sparse matrix. Symmetric to the last bit if the
+/// two directions of each pair were averaged.
+struct ExchangeAreas {
     static constexpr std::size_t others = 3;          ///< Sky, ground and blocked.
     static constexpr std::size_t rows_per_task = 64;  ///< Milliseconds, even for rows of thousands of entries.
 
@@ -26,10 +26,10 @@ struct Exchange {
 };
 
 /// Converts factors as they are.
-Exchange directed_exchange(const ViewFactors& factors);
+ExchangeAreas directed_exchange(const ViewFactors& factors);
 
 /// Averages both directions of each pair, with weights 1 / (A_i (1 - F_ij)): the inverse of the variance of independent
 /// hits with the pair's common X. Weights from each direction's own hits would favour the lower count.
-Exchange symmetric_exchange(const ViewFactors& factors);
+ExchangeAreas symmetric_exchange(const ViewFactors& factors);
 
 }  // namespace interflect::detail

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "interflect/geometry/add_face.h"
 #include "interflect/view_factors.h"
 
 namespace interflect {
@@ -42,11 +43,31 @@ void require_patterns(std::span<const FacePattern> patterns) {
 
 }  // namespace
 
+Scene with_opaque_backs(const Scene& scene) {
+    Scene result = scene;
+    const auto black = static_cast<std::uint32_t>(result.materials.size());
+    result.materials.emplace_back();
+    result.patches.clear();
+    for (const Patch& patch : scene.patches) {
+        if (patch.other_side == none) {
+            detail::add_face(result, patch, black);
+            result.patches.back().object = 0;
+        } else {
+            const auto moved = static_cast<std::uint32_t>(result.patches.size());
+            const bool is_front = &patch - scene.patches.data() < patch.other_side;
+            result.patches.push_back(patch);
+            result.patches.back().other_side = is_front ? moved + 1 : moved - 1;  // the sides are adjacent
+        }
+    }
+    return result;
+}
+
 std::vector<FaceGroup> facet_groups(const Scene& scene, FaceSides sides) {
     std::vector<FaceGroup> groups;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
-        if (!belongs(scene, p, sides)) continue;
         const std::string& object = scene.objects[scene.patches[p].object];
+        const bool has_name = !object.empty() || !scene.materials[scene.patches[p].material].name.empty();
+        if (!has_name || !belongs(scene, p, sides)) continue;
         groups.push_back({object.empty() ? fmt::format("{}", p) : fmt::format("{}:{}", object, p), {p}});
     }
     return groups;

@@ -19,12 +19,12 @@ constexpr double tolerance = 1e-8;
 constexpr int max_solves = 50, max_iterations = 1000;
 
 /// Weighted least squares: minimises sum (X - Y)^2 / V over X >= 0 whose rows sum to the areas, for the values Y and
-/// variances V of an Exchange. Its solution is X_ij = max(0, Y_ij + V_ij (lambda_i + lambda_j)), or without lambda_j if
-/// the directions are independent. Newton's method finds the multipliers lambda: each solve has a symmetric positive
-/// semidefinite matrix, of the entries that are positive at the moment.
+/// variances V of an ExchangeAreas. Its solution is X_ij = max(0, Y_ij + V_ij (lambda_i + lambda_j)), or without
+/// lambda_j if the directions are independent. Newton's method finds the multipliers lambda: each solve has a symmetric
+/// positive semidefinite matrix, of the entries that are positive at the moment.
 class Fit {
   public:
-    Fit(const Exchange& exchange, const std::vector<double>& areas, bool is_symmetric)
+    Fit(const ExchangeAreas& exchange, const std::vector<double>& areas, bool is_symmetric)
         : x_(exchange), areas_(areas), is_symmetric_(is_symmetric), lambda_(areas.size(), 0.0) {}
 
     void run(const StopRequest& stop, Reconciliation& result) {
@@ -48,7 +48,7 @@ class Fit {
     template <class Row>
     std::vector<double> by_row(const Row& row) const {
         std::vector<double> result(x_.size());
-        parallel_for_ranges(x_.size(), Exchange::rows_per_task, [&](std::size_t begin, std::size_t end) {
+        parallel_for_ranges(x_.size(), ExchangeAreas::rows_per_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) result[i] = row(i);
         });
         return result;
@@ -58,7 +58,7 @@ class Fit {
         return by_row([&](std::size_t i) {
             double rest = areas_[i];
             for (std::size_t e = x_.begin(i); e < x_.end(i); ++e) rest -= fitted(i, e);
-            for (std::size_t c = 0; c < Exchange::others; ++c) rest -= fitted_other(i, c);
+            for (std::size_t c = 0; c < ExchangeAreas::others; ++c) rest -= fitted_other(i, c);
             return rest;
         });
     }
@@ -79,7 +79,7 @@ class Fit {
                 const auto j = static_cast<std::size_t>(x_.columns[e]);
                 sum += x_.variances[e] * (is_symmetric_ && j != i ? v[i] + v[j] : v[i]);
             }
-            for (std::size_t c = 0; c < Exchange::others; ++c)
+            for (std::size_t c = 0; c < ExchangeAreas::others; ++c)
                 if (fitted_other(i, c) > 0) sum += x_.other_variances[c][i] * v[i];
             return sum;
         });
@@ -90,7 +90,7 @@ class Fit {
             double sum = 0;
             for (std::size_t e = x_.begin(i); e < x_.end(i); ++e)
                 if (fitted(i, e) > 0) sum += x_.variances[e];
-            for (std::size_t c = 0; c < Exchange::others; ++c)
+            for (std::size_t c = 0; c < ExchangeAreas::others; ++c)
                 if (fitted_other(i, c) > 0) sum += x_.other_variances[c][i];
             return sum;
         });
@@ -130,20 +130,21 @@ class Fit {
         for (std::size_t i = 0; i < rest.size(); ++i) lambda_[i] += step[i];
     }
 
-    const Exchange& x_;
+    const ExchangeAreas& x_;
     const std::vector<double>& areas_;
     const bool is_symmetric_;
     std::vector<double> lambda_;
 };
 
 /// Converts fitted exchange areas to factors, in the memory of `x`.
-void replace(ViewFactors& factors, Exchange&& x, const Fit& fit) {
+void replace(ViewFactors& factors, ExchangeAreas&& x, const Fit& fit) {
     const auto divided = [](double value, double area) { return static_cast<float>(area > 0 ? value / area : 0); };
-    const std::array<std::vector<float>*, Exchange::others> others{&factors.sky, &factors.ground, &factors.blocked};
-    for (std::size_t c = 0; c < Exchange::others; ++c)
+    const std::array<std::vector<float>*, ExchangeAreas::others> others{&factors.sky, &factors.ground,
+                                                                        &factors.blocked};
+    for (std::size_t c = 0; c < ExchangeAreas::others; ++c)
         for (std::size_t i = 0; i < factors.size(); ++i)
             (*others[c])[i] = divided(fit.fitted_other(i, c), factors.areas[i]);
-    parallel_for_ranges(factors.size(), Exchange::rows_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(factors.size(), ExchangeAreas::rows_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             for (std::size_t e = x.begin(i); e < x.end(i); ++e) {
                 const double value = fit.fitted(i, e), error = std::sqrt(x.variances[e]);
@@ -162,7 +163,7 @@ void replace(ViewFactors& factors, Exchange&& x, const Fit& fit) {
 Reconciliation reconcile(ViewFactors& factors, const ReconcileOptions& options, const Monitor& monitor) {
     Reconciliation result;
     result.before = consistency(factors);
-    Exchange exchange = options.reciprocity ? symmetric_exchange(factors) : directed_exchange(factors);
+    ExchangeAreas exchange = options.reciprocity ? symmetric_exchange(factors) : directed_exchange(factors);
     Fit fit(exchange, factors.areas, options.reciprocity);
     try {
         if (options.closure) fit.run(StopRequest(monitor.stop), result);
