@@ -29,6 +29,7 @@ void bind_solution(py::module_& module);
 void bind_solver(py::module_& module);
 void bind_pictures(py::module_& module);
 void bind_measurements(py::module_& module);
+void bind_view_factors(py::module_& module);
 
 /// A scene with its light and its ray caster: `interflect.Solution`.
 class Light {

@@ -68,6 +68,13 @@ class SameBits(unittest.TestCase):
         self.interflect("solve", "scenes/office.mgf", "--rays", "200k", "--light-groups", "-o", self.folder / "command.h5")
         self.assertEqual((self.folder / "python.h5").read_bytes(), (self.folder / "command.h5").read_bytes())
 
+    def test_of_view_factors(self):
+        self.interflect("viewfactors", "scenes/office.mgf", "--groups", "materials", "--rays", "1M", "-o", self.folder / "office.npz")
+        command, python = np.load(self.folder / "office.npz"), ifl.view_factors(ROOT / "scenes/office.mgf", "materials", rays=1e6)
+        self.assertEqual(command["names"].tolist(), python.names)
+        for name in ("areas", "row_offsets", "columns", "values", "errors", "sky", "blocked"):
+            np.testing.assert_array_equal(command[name], getattr(python, name), name)
+
 
 if __name__ == "__main__":
     unittest.main()
