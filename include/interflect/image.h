@@ -99,7 +99,7 @@ void write_image(const std::filesystem::path& path, const Image& image, const Im
 /// Reads an image in the format of the extension of `path`, as linear Rec. 709 (.png is decoded from sRGB). An .exr
 /// file must have channels R, G and B; its data window is the image. Alpha is ignored.
 /// @throws InputError with the path and the reason for a file that is missing, is not such an image, is a JPEG, is
-///         truncated or damaged, or claims more than `max_pixels`.
+///         truncated or damaged, or claims more pixels than permitted.
 Image read_image(const std::filesystem::path& path, std::int64_t max_pixels = max_image_pixels);
 
 /// Vertical field of view [degrees] stored in an .exr file by write_image(); nullopt without this attribute and for all

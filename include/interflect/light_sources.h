@@ -33,8 +33,8 @@ struct SkyModel {
 };
 
 /// Types of the standard, for example 1, steep overcast; 5, uniform; 7, partly cloudy; 12, clear with low turbidity. 16
-/// is the traditional overcast sky: L(Z) = (1 + 2 cos Z) / 3 times the zenith luminance. @throws InputError unless 1 to
-/// 16.
+/// is the traditional overcast sky: L(Z) = (1 + 2 cos Z) / 3 times the zenith luminance.
+/// @param type  1 to 16, otherwise InputError.
 SkyModel cie_standard_sky(int type);
 
 /// Type by name: "overcast" (1), "uniform" (5), "intermediate" (7), "clear" (12) or "cie-1" to "cie-16"; 0 for any
@@ -91,7 +91,7 @@ struct PhotometricWeb {
     const float* at_azimuth(std::size_t i) const { return intensities.data() + i * polar.size(); }
     /// Intensity in a direction of the luminaire's frame, which need not be normalised. O(log(angles)).
     float intensity(const V3f& direction) const;
-    /// Integral of intensity() over all directions [lm or W], exact up to rounding. O(table).
+    /// Integral of the intensity over all directions [lm or W], exact up to rounding. O(table).
     double flux() const;
     /// Largest intensity of the table.
     float peak() const;
@@ -109,7 +109,7 @@ struct PointLight {
 /// Emits into a cone, with full intensity near its axis. Between the two angles intensity is proportional to the
 /// squared difference of cosines to the outer angle.
 struct SpotLight {
-    V3f position{0, 0, 0};    ///< [m]
+    V3f position{0, 0, 0};    ///< As of PointLight [m].
     V3f direction{0, 0, -1};  ///< Need not be normalised.
     Rgb intensity{0, 0, 0};   ///< On the axis [lm/sr = cd, or W/sr], >= 0.
     float inner_angle = 0;    ///< From the axis [degrees]: full intensity up to this angle. In [0, outer_angle].

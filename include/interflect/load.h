@@ -68,7 +68,7 @@ struct Daylight {
         std::optional<double> illuminance{};  ///< Illuminance of a surface facing the sun [lx].
     };
     struct CieSky {
-        int type = 1;                         ///< As cie_standard_sky().
+        int type = 1;                         ///< Type of cie_standard_sky().
         std::optional<double> illuminance{};  ///< Horizontal, of the sky alone [lx].
     };
     struct PerezSky {

@@ -82,8 +82,8 @@ inline constexpr double usual_boundary = 0.5;
 struct PlanarArea {
     std::string name;                    ///< Name of the object that contains them.
     V3f normal{0, 0, 1};                 ///< Unit length, towards the lit side.
-    std::vector<std::uint32_t> patches;  ///< Indices into Scene::patches.
-    double area = 0;                     ///< [m^2]
+    std::vector<std::uint32_t> patches;  ///< Its faces: indices into Scene::patches.
+    double area = 0;                     ///< Area of the faces [m^2].
 };
 
 /// Finds the planar surface of an object: its faces in the plane with the largest total area. Includes nested objects:
@@ -215,8 +215,9 @@ std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_
 
 /// Computes the glare rating of each observer. Lb is the indirect illuminance at the eye of a plane perpendicular to
 /// the line of sight, over pi.
-/// @param solution  As in measure_irradiance(), as are `options` and `monitor`. Observers not reached before an
-///                  interruption have a non-finite standard error.
+/// @param solution  As in measure_irradiance(), as are `options` and `monitor`.
+/// @return          One rating per observer. Observers not reached before an interruption have a non-finite standard
+///                  error.
 std::vector<GlareRating> rate_glare(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                     std::span<const Observer> observers, const PathOptions& options = {},
                                     const Monitor& monitor = {});

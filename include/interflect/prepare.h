@@ -36,16 +36,16 @@ struct ContactOptions {
 ///
 /// Each face is cut by a binary space partition in its plane: the line of a segment cuts the whole convex piece that
 /// contains it. Pieces are triangles and convex quadrilaterals with the face's material, object, texture and lightmap
-/// coordinates; they cover the face exactly (to the rounding of vertices). Patch::surface identifies the original
-/// surface. T-vertices may result. Scene::contacts receives the parts of the cuts where other faces meet the face. A
-/// warped quadrilateral is cut as the two triangles of the ray caster.
+/// coordinates; they cover the face exactly (to the rounding of vertices). T-vertices may result. A warped
+/// quadrilateral is cut as the two triangles of the ray caster.
 ///
 /// Lengths below 4e-6 of the face's diameter, or below four roundings of its coordinates, are ignored. The result does
 /// not depend on the order of faces or the number of threads.
-///
-/// @throws InputError for a scene with faults (scene_faults).
-/// @return       The scene, with a warning for each limit of `options` reached. Patches keep their order, with pieces
-///               in place of their face. O(n log n + k) time for n faces and k pairs of touching faces.
+/// @note Patch::surface identifies the original surface. Scene::contacts receives the parts of the cuts where other
+///       faces meet the face.
+/// @return       The scene, with a warning for each limit that was reached. Patches keep their order, with pieces in
+///               place of their face. Cost: O(n log n + k) time for n faces and k pairs of touching faces.
+/// @throws InputError for a scene with scene_faults().
 Scene cut_at_contacts(const Scene& scene, const ContactOptions& options = {});
 
 /// A problem of a scene that affects its light, or a note to consider before solving.
@@ -76,10 +76,10 @@ struct ValidateOptions {
 /// not), "hidden-lamp" (covered, or enclosed by close surfaces), "open-lamp-back" (one-sided, close before a surface
 /// that its reflected light reaches), "zero-power-lamp", "high-reflectance", "no-light", "implausible-size",
 /// "maintenance-factor". Notes: "coincident-face" (partly covered by another in its plane), "open-edge" (belongs to one
-/// face only) and "no-view"; then the findings of validate_setup(). Surroundings of faces and lamps are sampled with 64
+/// face only) and "no-view"; then mistakes of placement, units and axes (validate_setup()). Surroundings of faces and lamps are sampled with 64
 /// rays a face, for at most 4096 faces of a kind.
 /// @param ray_caster  Of this scene.
-/// @return            In the order above. O(n log n) for n patches.
+/// @return            In the order above. Cost: O(n log n) for n patches.
 /// @throws InputError for a ray caster of another scene.
 std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, const ValidateOptions& options = {});
 

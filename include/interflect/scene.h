@@ -136,8 +136,8 @@ struct Contact {
 /// A pinhole camera in world coordinates.
 struct View {
     std::string name;
-    Imath::V3d eye{0, 0, 0};      ///< [m]
-    Imath::V3d look_at{0, 1, 0};  ///< [m]
+    Imath::V3d eye{0, 0, 0};      ///< Position of the camera [m].
+    Imath::V3d look_at{0, 1, 0};  ///< Point in the centre of the picture [m].
     V3f up{0, 0, 1};              ///< Need not be normalised or perpendicular to the view direction.
     float fov = 45;               ///< Vertical, full [degrees], in (0, 180).
     /// Above 0: orthographic, height of the picture [m]; `fov` is ignored. Rays start on the plane through the eye,
@@ -170,7 +170,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<Luminaire> luminaires;     ///< Light sources other than emitting patches.
-    std::vector<LightGroup> light_groups;  ///< Groups whose light is kept separate; see source_groups().
+    std::vector<LightGroup> light_groups;  ///< Groups whose light is kept separate (source_groups()).
     std::vector<std::string> objects;      ///< Names of the file's objects, such as "room.desk.leg"; [0] is "".
     std::vector<View> views;
     std::vector<std::string> files;  ///< Every file that was read, the scene file first.

@@ -32,7 +32,7 @@ struct IterationReport {
     std::uint32_t elements = 0, leaves = 0;
     RgbD total_power{0, 0, 0};    ///< Sum of P [lm or W].
     RgbD escaped_power{0, 0, 0};  ///< Power lost through openings, averaged as irradiance is [lm or W].
-    /// Estimated relative error: root of the sum of squares of the two estimates below. With a view: root mean square
+    /// Estimated relative error: root of the sum of squares of noise and discretisation. With a view: root mean square
     /// over the picture, relative to the mean, for visible reflected luminance without emission. Without: the same for
     /// irradiance, over the area. Infinite before an estimate exists, and if a view shows no reflected light.
     double error_estimate = std::numeric_limits<double>::infinity();
@@ -75,7 +75,7 @@ struct Solution {
     std::vector<IterationReport> iterations;
     /// Of iterations by several processes; not in solution files and checkpoints.
     std::vector<IterationTraffic> traffic;
-    RgbD emitted_power{0, 0, 0};  ///< Sum of W [lm or W].
+    RgbD emitted_power{0, 0, 0};  ///< Power of all sources [lm or W].
     std::int64_t non_finite = 0;  ///< Non-finite radiosities, which are not shot; 0 in a correct run.
     bool interrupted = false;     ///< Stopped by the caller before a limit was reached.
 };
@@ -88,9 +88,9 @@ struct Leaf {
     int vertex_count = 4;       ///< 3 or 4.
     /// World coordinates [m], counter-clockwise seen from the lit side. A triangle repeats the last.
     std::array<Imath::V3d, 4> vertices{};
-    float area = 0;                  ///< [m^2]
+    float area = 0;                  ///< Area [m^2].
     Rgb irradiance{0, 0, 0};         ///< H [lm/m^2 or W/m^2].
-    Rgb direct{0, 0, 0};             ///< Part of H straight from sources; 0 if Solution::direct is empty [as H].
+    Rgb direct{0, 0, 0};             ///< Part of H straight from sources; 0 without SolveOptions::keep_direct [as H].
     float importance = 0;            ///< psi, all bounces; 0 without a view [1/m^2].
     float standard_error = 0;        ///< As Solution::standard_error.
     float discretisation_error = 0;  ///< As Solution::discretisation_error.

@@ -18,7 +18,7 @@ struct WeightedView {
     View view = {};
     double weight = 1;         ///< > 0; normalised by the sum of all weights.
     float aspect = 16.0f / 9;  ///< Width over height of the picture.
-    int pixel_rows = 720;      ///< Rows of the picture, > 0. Limits the element size: see RefinementOptions::min_area.
+    int pixel_rows = 720;      ///< Rows of the picture, > 0. Limits the element size (RefinementOptions::min_area).
 };
 
 /// Part of the importance that controls sampling and refinement.

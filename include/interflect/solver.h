@@ -26,19 +26,18 @@ struct AdvanceReport {
     double error = std::numeric_limits<double>::infinity();  ///< Estimated; infinite before an estimate exists.
     std::int64_t rays = 0;                                   ///< Since the run began.
     double seconds = 0;                                      ///< Spent in advance() since the run began.
-    bool is_finished = false;                                ///< The run has reached the limits given in SolveOptions.
+    bool is_finished = false;                                ///< The run has reached a limit of its plan.
     bool is_stopped = false;                                 ///< Monitor::stop ended it.
 };
 
 /// Solves Eq. 1 of Prikryl et al. 2000 step by step; see solve().
 ///
-/// SolveOptions are the plan of the whole run: they determine the size of its iterations and its end. The Limits of
+/// The settings are the plan of the whole run: they determine the size of its iterations and its end. The limits of
 /// advance() only determine when it returns. Iterations are atomic: a stopped iteration is discarded, and the next
 /// call repeats it. Many small calls, also with save() and open() in between, therefore give the same bits as
-/// one call, on any number of threads. The exception is Limits::time of the plan, which makes iterations depend on
+/// one call, on any number of threads. The exception is a limit of time in the plan, which makes iterations depend on
 /// speed.
-///
-/// Const functions may be called from several threads at a time.
+/// @note Const functions may be called from several threads at a time.
 class Solver {
   public:
     /// @throws InputError listing every option out of range and every fault of the scene; also for a view that defines
@@ -52,10 +51,10 @@ class Solver {
     Solver(Solver&&) noexcept;
     Solver& operator=(Solver&&) noexcept;
 
-    /// Continues until a limit is reached, the plan is complete, or another thread or a signal handler sets
-    /// Monitor::stop. Rays requested beyond a complete plan extend it.
-    /// @param limits  Rays and time count from this call. The last iteration is completed, so `rays` may be exceeded.
-    ///                No iteration begins after `time`, but at least one is completed; it takes a second or two.
+    /// Continues until a limit is reached, the plan is complete or the run is stopped. Rays requested beyond a complete
+    /// plan extend it. Rays and time count from this call. The last iteration is completed, so the rays may be exceeded.
+    /// No iteration begins after the time, but at least one is completed; it takes a second or two.
+    /// @param monitor  Its `stop` may be set by another thread or a signal handler.
     AdvanceReport advance(const Limits& limits, const Monitor& monitor = {});
 
     /// Continues with other views. Keeps the light; recomputes importance.
@@ -65,11 +64,12 @@ class Solver {
     /// @throws InputError for an unknown group, for a factor that is negative or not finite, and for methods that do
     ///         not average iterations (Method::follows_dimming).
     void set_dimming(const std::string& group, float factor);
-    /// Replaces SolveOptions::limits, which count from the beginning of the run.
+    /// Replaces the limits of the plan, which count from the beginning of the run.
     /// @throws InputError for a limit out of range.
     void set_plan(const Limits& limits);
 
-    /// Current solution, computed on first request in O(elements). The reference is valid until the solver changes.
+    /// Current solution, computed on first request in O(elements).
+    /// @note The reference is valid until the solver changes.
     const Solution& solution() const;
     /// The same, valid also when the solver has changed or is gone; without a copy.
     std::shared_ptr<const Solution> shared_solution() const;

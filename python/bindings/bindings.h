@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "docstrings.h"
+#include "documented.h"
 #include "interflect/image.h"
 #include "interflect/interflect.h"
 #include "vectors.h"
@@ -23,6 +24,7 @@ namespace py = pybind11;
 
 void bind_errors(py::module_& module);
 void bind_light_sources(py::module_& module);
+void bind_scene_parts(py::module_& module);
 void bind_scene(py::module_& module);
 void bind_files(py::module_& module);
 void bind_solution(py::module_& module);

@@ -26,6 +26,8 @@ void bind_errors(py::module_&) {
             raise_input_error("InputError", e);
         } catch (const Stopped& e) {
             PyErr_SetString(class_of("Stopped").ptr(), e.what());
+        } catch (const py::builtin_exception&) {  // such as py::type_error; for pybind11's own translator
+            throw;
         } catch (const std::runtime_error& e) {
             PyErr_SetString(class_of("Error").ptr(), e.what());
         }

@@ -1,17 +1,22 @@
 /// Classes of plain data for Python: one argument and one attribute per member.
 #pragma once
 
+#include <fmt/format.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "vectors.h"
+
 namespace interflect::python {
 
-/// A class whose constructor takes its fields in this order or by name. Objects have replace(**fields), ==, copies and
-/// a repr() that creates them again.
+/// A class whose constructor takes its fields in this order or by name. Objects have replace(**fields), ==, copies,
+/// pickle, and a repr() that creates them again: it has the fields that differ from their defaults.
 template <class T>
 class Fields {
   public:
@@ -20,16 +25,18 @@ class Fields {
 
     template <class Member>
     Fields& field(const char* name, Member T::*member, const char* doc) {
-        return field(
-            name, [member](const T& object) -> const Member& { return object.*member; },
-            [member](T& object, const Member& value) { object.*member = value; }, doc);
+        const auto get = [member](const T& object) -> const Member& { return object.*member; };
+        const auto set = [member](T& object, const Member& value) { object.*member = value; };
+        class_.def_property(name, get, set, doc);
+        fields_.push_back({name, [name, member](const T& object) { return text_of(object.*member, object, name); }});
+        return *this;
     }
 
     /// A field that Python shows in another form than C++.
     template <class Get, class Set>
     Fields& field(const char* name, const Get& get, const Set& set, const char* doc) {
         class_.def_property(name, get, set, doc);
-        names_.emplace_back(name);
+        fields_.push_back({name, [name](const T& object) { return text_of(nullptr, object, name); }});
         return *this;
     }
 
@@ -44,27 +51,28 @@ class Fields {
                 throw py::type_error(type + "." + name + ": cannot take " + std::string(py::repr(value)));
             }
         };
-        const auto set_named = [names = names_, type = class_name_, set_field](const py::object& object,
-                                                                               const py::kwargs& values) {
+        const auto set_named = [fields = fields_, type = class_name_, set_field](const py::object& object,
+                                                                                 const py::kwargs& values) {
             for (const auto& [key, value] : values) {
                 const auto name = py::cast<std::string>(key);
-                if (std::find(names.begin(), names.end(), name) == names.end())
+                if (std::none_of(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; }))
                     throw py::type_error(type + " has no field '" + name + "'");
                 set_field(object, name, value);
             }
         };
-        class_.def(py::init(
-            [names = names_, type = class_name_, set_field, set_named](const py::args& args, const py::kwargs& values) {
-                if (args.size() > names.size()) throw py::type_error(type + ": too many arguments");
-                const py::object object = py::cast(T());
-                for (std::size_t i = 0; i < args.size(); ++i) {
-                    if (values.contains(names[i].c_str()))
-                        throw py::type_error(type + ": " + names[i] + " is given twice");
-                    set_field(object, names[i], args[i]);
-                }
-                set_named(object, values);
-                return py::cast<T>(object);
-            }));
+        class_.def(py::init([fields = fields_, type = class_name_, set_field, set_named](const py::args& args,
+                                                                                         const py::kwargs& values) {
+                       if (args.size() > fields.size()) throw py::type_error(type + ": too many arguments");
+                       const py::object object = py::cast(T());
+                       for (std::size_t i = 0; i < args.size(); ++i) {
+                           if (values.contains(fields[i].name.c_str()))
+                               throw py::type_error(type + ": " + fields[i].name + " is given twice");
+                           set_field(object, fields[i].name, args[i]);
+                       }
+                       set_named(object, values);
+                       return py::cast<T>(object);
+                   }),
+                   signature().c_str());
         class_.def(
             "replace",
             [set_named](const T& object, const py::kwargs& values) {
@@ -72,28 +80,65 @@ class Fields {
                 set_named(copy, values);
                 return copy;
             },
-            "A copy with other values of these fields.");
+            "replace(self, **fields)\n--\n\nCopies the object, with other values of these fields.\n\nArgs:\n"
+            "    fields: Values by name.");
+        class_.def("__reduce__", [fields = fields_](const py::object& object) {  // for pickle
+            py::tuple values(fields.size());
+            for (std::size_t i = 0; i < fields.size(); ++i) values[i] = object.attr(fields[i].name.c_str());
+            return py::make_tuple(py::type::of(object), values);
+        });
         class_.def("__copy__", [](const T& object) { return T(object); });
         class_.def("__deepcopy__", [](const T& object, const py::dict&) { return T(object); });
-        class_.def("__repr__", [names = names_, type = class_name_](const py::object& object) {
+        class_.def("__repr__", [fields = fields_, type = class_name_](const T& object) {
+            const T usual{};
             std::string text;
-            for (const std::string& name : names)
-                text += (text.empty() ? "" : ", ") + name + "=" + std::string(py::repr(object.attr(name.c_str())));
+            for (const Field& field : fields)
+                if (const std::string value = field.text(object); value != field.text(usual))
+                    text += (text.empty() ? "" : ", ") + field.name + "=" + value;
             return type + "(" + text + ")";
         });
-        class_.def("__eq__", [names = names_, type = class_name_](const py::object& a, const py::object& b) {
+        class_.def("__eq__", [fields = fields_](const py::object& a, const py::object& b) {
             if (!py::isinstance<T>(b)) return false;
-            for (const std::string& name : names)
-                if (!a.attr(name.c_str()).equal(b.attr(name.c_str()))) return false;
+            for (const Field& field : fields)
+                if (!a.attr(field.name.c_str()).equal(b.attr(field.name.c_str()))) return false;
             return true;
         });
         class_.attr("__hash__") = py::none();
     }
 
   private:
+    struct Field {
+        std::string name;
+        std::function<std::string(const T&)> text;  ///< As in repr().
+    };
+
+    /// A field as in repr(): numbers of single precision with the fewest digits that distinguish them.
+    template <class Member>
+    static std::string text_of(const Member& member, const T& object, const char* name) {
+        if constexpr (std::is_same_v<Member, float>) {
+            return fmt::format("{}", member);
+        } else if constexpr (std::is_base_of_v<Imath::Vec3<float>, Member>) {
+            return fmt::format("({}, {}, {})", member.x, member.y, member.z);
+        } else {
+            return std::string(pybind11::repr(pybind11::cast(object).attr(name)));
+        }
+    }
+
+    /// Docstring of the constructor, see Documented. Defaults that are objects are shown as "...".
+    std::string signature() const {
+        const T usual{};
+        std::string arguments;
+        for (const Field& field : fields_) {
+            const std::string value = field.text(usual);
+            const bool is_object = value.find_first_of("<=(") != std::string::npos && value.front() != '(';
+            arguments += ", " + field.name + "=" + (is_object ? "..." : value);
+        }
+        return "__init__(self" + arguments + ")\n--\n\nMakes an object from its attributes, by position or by name.";
+    }
+
     pybind11::class_<T, std::shared_ptr<T>> class_;
     std::string class_name_;
-    std::vector<std::string> names_;
+    std::vector<Field> fields_;
 };
 
 }  // namespace interflect::python

@@ -74,7 +74,7 @@ void bind_added_light(py::module_& m) {
         .field("perez_sky", &Daylight::perez_sky, docs::Daylight_perez_sky)
         .field("environment", &Daylight::environment, "Environment, or None.")
         .field("ground_reflectance", &Daylight::ground_reflectance, docs::Daylight_ground_reflectance)
-        .field("zenith", &Daylight::zenith, "Up.")
+        .field("zenith", &Daylight::zenith, "Direction of the zenith; need not be normalised.")
         .finish();
 }
 
@@ -88,7 +88,11 @@ void bind_findings(py::module_& m) {
             [](const Finding::Place& place) {
                 return place.has_position ? std::optional(place.position) : std::nullopt;
             },
-            docs::Finding_Place_position);
+            docs::Finding_Place_position)
+        .def("__repr__", [](const Finding::Place& place) {
+            return fmt::format("<FindingPlace: object '{}', material '{}'{}>", place.object, place.material,
+                               place.where.empty() ? "" : ", " + place.where);
+        });
     py::class_<Finding>(m, "Finding", docs::Finding)
         .def_readonly("kind", &Finding::kind, docs::Finding_kind)
         .def_readonly("is_problem", &Finding::is_problem, docs::Finding_is_problem)
@@ -102,7 +106,8 @@ void bind_findings(py::module_& m) {
         [](const std::shared_ptr<Scene>& scene) {
             return long_work(py::none(), 0, [&](const Monitor&) { return validate(*scene, RayCaster(*scene)); });
         },
-        py::arg("scene"), docs::validate);
+        py::arg("scene"),
+        Documented(docs::validate, {{"scene", "Scene as read by load(), before cut_at_contacts()."}}).raises(""));
 }
 
 BakeShading bake_shading_of(const std::string& name) {
@@ -173,14 +178,19 @@ void bind_files(py::module_& m) {
     bind_findings(m);
     m.def("load", &load, py::arg("path"), py::arg("unit"), py::arg("up_axis"), py::arg("curve_divisions"),
           py::arg("max_patches"), py::arg("outside_files"), py::arg("luminaires"), py::arg("daylight"),
-          docs::load_scene);
+          Documented("For interflect.load()."));
     m.def(
         "load_photometric_web",
         [](const std::filesystem::path& path) {
             Warnings warnings;
-            return std::make_shared<PhotometricWeb>(load_photometric_web(path, ReadOptions(), warnings));
+            auto web = std::make_shared<PhotometricWeb>(load_photometric_web(path, ReadOptions(), warnings));
+            const py::object kind = py::module_::import("interflect._errors").attr("Warning");
+            for (const Warnings::Entry& w : warnings.entries())
+                if (PyErr_WarnEx(kind.ptr(), (w.where + ": " + w.message).c_str(), 1) != 0)
+                    throw py::error_already_set();
+            return web;
         },
-        py::arg("path"), docs::load_photometric_web);
+        py::arg("path"), Documented(docs::load_photometric_web));
     m.def(
         "cut_at_contacts",
         [](const std::shared_ptr<Scene>& scene, const std::optional<float>& min_extent) {
@@ -189,15 +199,26 @@ void bind_files(py::module_& m) {
                 return std::make_shared<Scene>(cut_at_contacts(*scene, {.min_extent = min_extent.value_or(usual)}));
             });
         },
-        py::arg("scene"), py::arg("min_extent") = py::none(), docs::cut_at_contacts);
+        py::arg("scene"), py::arg("min_extent") = py::none(),
+        Documented(
+            docs::cut_at_contacts,
+            {{"min_extent",
+              "Minimum extent of connected segments [m], >= 0; smaller ones are ignored. None: twice the side of "
+              "the smallest elements of a solution."}})
+            .raises(""));
     m.def("export_solution", &export_light, py::arg("solution"), py::arg("path"), py::kw_only(),
-          py::arg("lightmap") = false, py::arg("threads") = 0, py::arg("progress") = py::none(), docs::export_solution);
+          py::arg("lightmap") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
+          Documented("For interflect.export()."));
     m.def(
         "export_scene",
         [](const std::shared_ptr<Scene>& scene, const std::filesystem::path& path) {
             return export_scene(path, *scene).files;
         },
-        py::arg("scene"), py::arg("path"), docs::export_scene);
+        py::arg("scene"), py::arg("path"),
+        Documented(docs::export_scene, {{"path",
+                                         "File to write: .rad (Radiance), .xml (Mitsuba 3), .pbrt (pbrt-v4) or .py "
+                                         "(a script for Blender)."}})
+            .returns("The files that were written: a list of pathlib.Path."));
 }
 
 }  // namespace interflect::python

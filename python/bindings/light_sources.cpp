@@ -10,11 +10,16 @@ void bind_webs(py::module_& m) {
     web.def_readonly("name", &PhotometricWeb::name, docs::PhotometricWeb_name);
     web.def_readonly("lamp_lumens", &PhotometricWeb::lamp_lumens, docs::PhotometricWeb_lamp_lumens);
     web.def_property_readonly(
+        "pole", [](const PhotometricWeb& w) { return w.pole == PhotometricWeb::Pole::nadir ? "nadir" : "c90"; },
+        "Pole of `polar`: 'nadir' (types C and A; azimuths run from x to y) or 'c90' (type B; the pole is y, azimuths "
+        "run "
+        "from the nadir to x).");
+    web.def_property_readonly(
         "polar", [](const std::shared_ptr<PhotometricWeb>& w) { return rows<float>(w, w->polar); },
-        docs::PhotometricWeb_polar);
+        array_text("(p,) float32", docs::PhotometricWeb_polar).c_str());
     web.def_property_readonly(
         "azimuth", [](const std::shared_ptr<PhotometricWeb>& w) { return rows<float>(w, w->azimuth); },
-        docs::PhotometricWeb_azimuth);
+        array_text("(a,) float32", docs::PhotometricWeb_azimuth).c_str());
     web.def_property_readonly(
         "intensities",
         [](const std::shared_ptr<PhotometricWeb>& w) {
@@ -23,9 +28,9 @@ void bind_webs(py::module_& m) {
                              {static_cast<py::ssize_t>(w->azimuth.size()), columns},
                              {columns * static_cast<py::ssize_t>(sizeof(float)), sizeof(float)});
         },
-        "Intensities [cd or W/sr], (azimuth, polar).");
-    web.def("flux", &PhotometricWeb::flux, docs::PhotometricWeb_flux);
-    web.def("peak", &PhotometricWeb::peak, docs::PhotometricWeb_peak);
+        "(a, p) float32: intensity [cd or W/sr] by azimuth and polar angle.");
+    web.def("flux", &PhotometricWeb::flux, Documented(docs::PhotometricWeb_flux));
+    web.def("peak", &PhotometricWeb::peak, Documented(docs::PhotometricWeb_peak));
     web.def("__repr__", [](const PhotometricWeb& w) {
         return "<PhotometricWeb '" + w.name + "': " + std::to_string(w.azimuth.size()) + " x " +
                std::to_string(w.polar.size()) + " angles>";
@@ -66,14 +71,14 @@ void bind_distant_lights(py::module_& m) {
         .field("radiance", &UniformSky::radiance, docs::UniformSky_radiance)
         .finish();
     Fields<SkyModel>(m, "SkyModel", docs::SkyModel)
-        .field("a", &SkyModel::a, "a")
-        .field("b", &SkyModel::b, "b")
-        .field("c", &SkyModel::c, "c")
-        .field("d", &SkyModel::d, "d")
-        .field("e", &SkyModel::e, "e")
-        .field("g", &SkyModel::g, "g")
+        .field("a", &SkyModel::a, "Coefficient a.")
+        .field("b", &SkyModel::b, "Coefficient b.")
+        .field("c", &SkyModel::c, "Coefficient c.")
+        .field("d", &SkyModel::d, "Coefficient d.")
+        .field("e", &SkyModel::e, "Coefficient e.")
+        .field("g", &SkyModel::g, "Coefficient g.")
         .finish();
-    m.def("cie_standard_sky", &cie_standard_sky, py::arg("type"), docs::cie_standard_sky);
+    m.def("cie_standard_sky", &cie_standard_sky, py::arg("type"), Documented(docs::cie_standard_sky));
     Fields<SkyDome>(m, "SkyDome", docs::SkyDome)
         .field("model", &SkyDome::model, "Relative luminance: cie_standard_sky(type).")
         .field("irradiance", &SkyDome::irradiance, docs::SkyDome_irradiance)

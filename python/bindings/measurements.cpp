@@ -91,7 +91,10 @@ void bind_grids(py::module_& m) {
         .def_readonly("name", &PlanarArea::name, docs::PlanarArea_name)
         .def_readonly("normal", &PlanarArea::normal, docs::PlanarArea_normal)
         .def_readonly("patches", &PlanarArea::patches, docs::PlanarArea_patches)
-        .def_readonly("area", &PlanarArea::area, docs::PlanarArea_area);
+        .def_readonly("area", &PlanarArea::area, docs::PlanarArea_area)
+        .def("__repr__", [](const PlanarArea& a) {
+            return fmt::format("<PlanarArea '{}': {} faces, {:.4g} m^2>", a.name, a.patches.size(), a.area);
+        });
     py::class_<MeasuringGrid>(m, "MeasuringGrid", docs::MeasuringGrid)
         .def_readonly("name", &MeasuringGrid::name, "Name of the area.")
         .def_property_readonly("points", &points_of, "(n, 3) float64: world coordinates [m]; for an area row by row.")
@@ -108,10 +111,20 @@ void bind_grids(py::module_& m) {
             return fmt::format("<MeasuringGrid '{}': {} points>", g.name, g.points.size());
         });
     const auto scene = py::arg("scene"), object = py::arg("object");
-    m.def("find_surface", &find_surface, scene, object, py::arg("facing") = py::none(), docs::find_surface);
-    m.def("find_top", &find_top, scene, object, docs::find_top);
-    m.def("find_floor", &find_floor, scene, py::arg("height") = 0.75, docs::find_floor);
-    m.def("grid_spacing", &grid_spacing, py::arg("length"), py::arg("width"), docs::grid_spacing);
+    constexpr auto name_of_object = "Name of an object of the scene, such as \"room.desk\".";
+    m.def("find_surface", &find_surface, scene, object, py::arg("facing") = py::none(),
+          Documented(docs::find_surface, {{"object", name_of_object}}));
+    m.def("find_top", &find_top, scene, object, Documented(docs::find_top, {{"object", name_of_object}}));
+    m.def("find_floor", &find_floor, scene, py::arg("height") = 0.75, Documented(docs::find_floor));
+    m.def(
+        "grid_spacing",
+        [](double length, double width) {
+            if (!(length > 0 && width > 0))
+                throw InputError("an area without length and width: expected more than 0 m");
+            return grid_spacing(length, width);
+        },
+        py::arg("length"), py::arg("width"),
+        Documented(docs::grid_spacing).raises("InputError: for a side that is not positive."));
     m.def(
         "area_grid",
         [](const Scene& s, const PlanarArea& area, const std::optional<double>& spacing, double boundary,
@@ -119,8 +132,14 @@ void bind_grids(py::module_& m) {
             return area_grid(s, area, {spacing, boundary}, height);
         },
         scene, py::arg("area"), py::arg("spacing") = py::none(), py::arg("boundary") = 0.0,
-        py::arg("height") = py::none(), docs::area_grid);
-    m.def("line_grid", &line_grid, py::arg("a"), py::arg("b"), py::arg("count"), docs::line_grid);
+        py::arg("height") = py::none(),
+        Documented(docs::area_grid, {{"area", "Result of find_surface(), find_top() or find_floor()."},
+                                     {"spacing", "Maximum point distance [m], > 0; None: grid_spacing() of the area."},
+                                     {"boundary", docs::GridOptions_boundary}}));
+    m.def("line_grid", &line_grid, py::arg("a"), py::arg("b"), py::arg("count"),
+          Documented(docs::line_grid, {{"a", "First point, in world coordinates [m]."},
+                                       {"b", "Last point, in world coordinates [m]."},
+                                       {"count", "Number of points."}}));
 }
 
 void bind_glare(py::module_& m) {
@@ -129,13 +148,19 @@ void bind_glare(py::module_& m) {
         .def_readonly("luminance", &GlareSource::luminance, docs::GlareSource_luminance)
         .def_readonly("solid_angle", &GlareSource::solid_angle, docs::GlareSource_solid_angle)
         .def_readonly("position_index", &GlareSource::position_index, docs::GlareSource_position_index)
-        .def_readonly("glare", &GlareSource::glare, docs::GlareSource_glare);
+        .def_readonly("glare", &GlareSource::glare, docs::GlareSource_glare)
+        .def("__repr__", [](const GlareSource& s) {
+            return fmt::format("<GlareSource '{}': {:.4g} cd/m^2, {:.3g} sr>", s.name, s.luminance, s.solid_angle);
+        });
     py::class_<GlareRating>(m, "GlareRating", docs::GlareRating)
         .def_readonly("ugr", &GlareRating::ugr, docs::GlareRating_ugr)
         .def_readonly("standard_error", &GlareRating::standard_error, docs::GlareRating_standard_error)
         .def_readonly("background_luminance", &GlareRating::background_luminance,
                       docs::GlareRating_background_luminance)
-        .def_readonly("sources", &GlareRating::sources, docs::GlareRating_sources);
+        .def_readonly("sources", &GlareRating::sources, docs::GlareRating_sources)
+        .def("__repr__", [](const GlareRating& r) {
+            return fmt::format("<GlareRating: UGR {:.1f}, {} sources>", r.ugr, r.sources.size());
+        });
     m.def(
         "rate_glare",
         [](const SharedLight& light, const Doubles& eyes, const Doubles& lines_of_sight, int samples,
@@ -150,12 +175,31 @@ void bind_glare(py::module_& m) {
             });
         },
         py::arg("solution"), py::arg("eyes"), py::arg("lines_of_sight"), py::kw_only(), py::arg("samples") = 4096,
-        py::arg("seed") = 1, py::arg("threads") = 0, py::arg("progress") = py::none(), docs::rate_glare);
+        py::arg("seed") = 1, py::arg("threads") = 0, py::arg("progress") = py::none(),
+        Documented(docs::rate_glare,
+                   {{"eyes", "(n, 3), or (3,): positions of the observers, in world coordinates [m]."},
+                    {"lines_of_sight", "(n, 3), or (3,) for all: directions, which need not be normalised."},
+                    {"samples", "Gathered directions per observer, >= 2."}})
+            .returns("A list with the rating of each observer.")
+            .raises("InputError: for other shapes, and for a line of sight without direction."));
 }
 
 }  // namespace
 
 void bind_measurements(py::module_& m) {
+    py::class_<IlluminanceSummary>(m, "IlluminanceSummary", docs::IlluminanceSummary)
+        .def_readonly("points", &IlluminanceSummary::points, "Number of points.")
+        .def_readonly("mean", &IlluminanceSummary::mean, "Mean [lx].")
+        .def_readonly("min", &IlluminanceSummary::min, "Minimum [lx].")
+        .def_readonly("max", &IlluminanceSummary::max, "Maximum [lx].")
+        .def_readonly("mean_error", &IlluminanceSummary::mean_error, docs::IlluminanceSummary_mean_error)
+        .def_readonly("min_error", &IlluminanceSummary::min_error, docs::IlluminanceSummary_min_error)
+        .def_property_readonly("uniformity", &IlluminanceSummary::uniformity, docs::IlluminanceSummary_uniformity.text)
+        .def_property_readonly("diversity", &IlluminanceSummary::diversity, docs::IlluminanceSummary_diversity.text)
+        .def("__repr__", [](const IlluminanceSummary& s) {
+            return fmt::format("<IlluminanceSummary: {} points, mean {:.4g} lx, min {:.4g} lx, max {:.4g} lx>",
+                               s.points, s.mean, s.min, s.max);
+        });
     py::class_<Measurement, SharedMeasurement>(m, "Measurement",
                                                "Irradiance at points, one row per point [lux = lm/m^2, or W/m^2].")
         .def_property_readonly("irradiance", &irradiances, "(n, 3) float32: `direct` plus `indirect`.")
@@ -172,32 +216,20 @@ void bind_measurements(py::module_& m) {
             [](const SharedMeasurement& s) {
                 return column<float>(s, s->points, &MeasuredIrradiance::standard_error, 3);
             },
-            docs::MeasuredIrradiance_standard_error)
+            array_text("(n, 3) float32", docs::MeasuredIrradiance_standard_error).c_str())
         .def_property_readonly("illuminance", each_point([](const MeasuredIrradiance& p) { return p.illuminance(); }),
                                "(n,) float32 [lux].")
         .def_property_readonly("illuminance_error",
                                each_point([](const MeasuredIrradiance& p) { return p.illuminance_error(); }),
                                "(n,) float32: standard error of `illuminance` from gathering alone [lux].")
         .def(
-            "summary", [](const Measurement& s) { return summarise(s.points); }, docs::IlluminanceSummary)
+            "summary", [](const Measurement& s) { return summarise(s.points); },
+            Documented("Computes the mean, the extremes and the uniformity of `illuminance`."))
         .def("__len__", [](const Measurement& s) { return s.points.size(); })
         .def("__repr__", [](const Measurement& s) { return fmt::format("<Measurement: {} points>", s.points.size()); });
-    py::class_<IlluminanceSummary>(m, "IlluminanceSummary", docs::IlluminanceSummary)
-        .def_readonly("points", &IlluminanceSummary::points, "Number of points.")
-        .def_readonly("mean", &IlluminanceSummary::mean, "Mean [lx].")
-        .def_readonly("min", &IlluminanceSummary::min, "Minimum [lx].")
-        .def_readonly("max", &IlluminanceSummary::max, "Maximum [lx].")
-        .def_readonly("mean_error", &IlluminanceSummary::mean_error, docs::IlluminanceSummary_mean_error)
-        .def_readonly("min_error", &IlluminanceSummary::min_error, docs::IlluminanceSummary_min_error)
-        .def_property_readonly("uniformity", &IlluminanceSummary::uniformity, docs::IlluminanceSummary_uniformity)
-        .def_property_readonly("diversity", &IlluminanceSummary::diversity, docs::IlluminanceSummary_diversity)
-        .def("__repr__", [](const IlluminanceSummary& s) {
-            return fmt::format("<IlluminanceSummary: {} points, mean {:.4g} lx, min {:.4g} lx, max {:.4g} lx>",
-                               s.points, s.mean, s.min, s.max);
-        });
     m.def("probe", &measure, py::arg("solution"), py::arg("points"), py::arg("normals"), py::arg("receiver"),
           py::arg("axes"), py::arg("shading"), py::arg("samples"), py::arg("until"), py::arg("seed"),
-          py::arg("threads"), py::arg("progress"), docs::measure_irradiance);
+          py::arg("threads"), py::arg("progress"), Documented("For interflect.probe()."));
     bind_grids(m);
     bind_glare(m);
 }

@@ -4,9 +4,13 @@ PYBIND11_MODULE(_core, module) {
     using namespace interflect::python;
     module.doc() = "The C++ library. Import interflect, which has the same names and more convenient arguments.";
     module.attr("version") = INTERFLECT_VERSION;
+    py::options options;
+    options.disable_function_signatures();  // see Documented
+    // In this order messages of wrong arguments name every class as Python does.
     bind_errors(module);
-    bind_scene(module);
+    bind_scene_parts(module);
     bind_light_sources(module);
+    bind_scene(module);
     bind_files(module);
     bind_solver(module);
     bind_solution(module);

@@ -142,11 +142,19 @@ py::array_t<std::uint8_t> display_bytes(const Image& mapped) {
 void bind_tracing(py::module_& m) {
     py::class_<PathTracing, SharedTracing>(m, "PathTracing", docs::PathTracing)
         .def_property_readonly(
-            "image", [](const SharedTracing& t) { return image_of_tracing(t, t->image); }, docs::PathTracing_image)
+            "image", [](const SharedTracing& t) { return image_of_tracing(t, t->image); },
+            array_text("(height, width, 3) float32", docs::PathTracing_image).c_str())
         .def_property_readonly(
             "standard_error", [](const SharedTracing& t) { return image_of_tracing(t, t->standard_error); },
-            docs::PathTracing_standard_error)
-        .def_property_readonly("layers", &layers_of, docs::PictureLayers)
+            array_text("(height, width, 3) float32", docs::PathTracing_standard_error).c_str())
+        .def_property_readonly(
+            "layers", &layers_of,
+            "Dict of read-only float32 arrays, the means over the samples of each pixel. (height, width, 3): "
+            "'emitted', "
+            "'direct' and 'indirect', whose sum is `image`; 'albedo', 'normal', 'position' of the visible surface, "
+            "relative "
+            "to Scene.origin [m]. (height, width): 'depth' [m]; 'level' of the visible element; 'direct_variance' and "
+            "'indirect_variance' of the channel means.")
         .def_readonly("relative_error", &PathTracing::relative_error, docs::PathTracing_relative_error)
         .def_readonly("rays", &PathTracing::rays, docs::PathTracing_rays)
         .def_readonly("paths", &PathTracing::paths, "Number of paths.")
@@ -156,7 +164,7 @@ void bind_tracing(py::module_& m) {
             [](const SharedTracing& t) {
                 return array_of(long_work(py::none(), 0, [&](const Monitor&) { return denoise(t->layers); }));
             },
-            docs::denoise)
+            Documented(docs::denoise).returns("The picture, float32 (height, width, 3), in the same unit."))
         .def("__repr__", [](const PathTracing& t) {
             return fmt::format("<PathTracing: {} x {}, {} paths, relative error {:.3g}>", t.image.width, t.image.height,
                                t.paths, t.relative_error);
@@ -169,13 +177,17 @@ void bind_differences(py::module_& m) {
         .def_readonly("block", &BlockDifference::block, "Side of a block [pixels].")
         .def_readonly("relative_rmse", &BlockDifference::relative_rmse, "Relative root mean square error.")
         .def_readonly("trimmed_relative_rmse", &BlockDifference::trimmed_relative_rmse,
-                      "Without the worst 1% of blocks.");
+                      "The same without the worst 1% of blocks.")
+        .def("__repr__", [](const BlockDifference& d) {
+            return fmt::format("<BlockDifference: {} x {} pixels, relative_rmse {:.4g}>", d.block, d.block,
+                               d.relative_rmse);
+        });
     py::class_<ImageDifference, std::shared_ptr<ImageDifference>>(m, "ImageDifference", "Image minus reference.")
         .def_readonly("ratio_of_means", &ImageDifference::ratio_of_means, "Mean luminance: image / reference.")
         .def_readonly("rmse", &ImageDifference::rmse, "sqrt(mean of (a - b)^2) [unit of the images].")
         .def_readonly("relative_mse", &ImageDifference::relative_mse,
-                      "Mean of (a - b)^2 / (b^2 + (0.01 m)^2), m the mean luminance of b.")
-        .def_readonly("maximum", &ImageDifference::maximum, "Largest |a - b| [unit of the images].")
+                      "Mean of (a - b)^2 / (b^2 + (0.01 m)^2), where m is the mean luminance of b.")
+        .def_readonly("maximum", &ImageDifference::maximum, "Largest absolute difference [unit of the images].")
         .def_readonly("perceptual_distance", &ImageDifference::perceptual_distance,
                       "First model of Rushmeier et al. 1995.")
         .def_readonly("flip", &ImageDifference::flip, "Mean of `flip_map` (Andersson et al. 2020).")
@@ -183,7 +195,7 @@ void bind_differences(py::module_& m) {
         .def_readonly("non_finite_pixels", &ImageDifference::non_finite_pixels, "If > 0, measures are NaN.")
         .def_property_readonly(
             "flip_map", [](const ImageDifference& d) { return array_of(d.flip_map); },
-            "Visible difference of each pixel, 0 to 1, (height, width, 3).")
+            "(height, width, 3) float32: visible difference of each pixel, 0 to 1.")
         .def("__repr__", [](const ImageDifference& d) {
             return fmt::format("<ImageDifference: relative_mse {:.4g}, ratio_of_means {:.4g}, flip {:.4g}>",
                                d.relative_mse, d.ratio_of_means, d.flip);
@@ -216,13 +228,16 @@ void bind_pictures(py::module_& m) {
     bind_differences(m);
     m.def("render_elements", &render_elements, py::arg("solution"), py::arg("view"), py::arg("width"),
           py::arg("height"), py::arg("samples"), py::arg("is_flat"), py::arg("irradiance"), py::arg("crease_angle"),
-          py::arg("seed"), py::arg("threads"), py::arg("progress"), docs::render);
+          py::arg("seed"), py::arg("threads"), py::arg("progress"), Documented("For interflect.render()."));
     m.def("trace", &trace, py::arg("lit"), py::arg("shading"), py::arg("view"), py::arg("width"), py::arg("height"),
           py::arg("samples"), py::arg("until"), py::arg("max_samples"), py::arg("time"), py::arg("irradiance"),
-          py::arg("mirrors"), py::arg("light_walks"), py::arg("seed"), py::arg("threads"), py::arg("progress"));
+          py::arg("mirrors"), py::arg("light_walks"), py::arg("seed"), py::arg("threads"), py::arg("progress"),
+          Documented("For interflect.trace()."));
     m.def(
         "automatic_exposure", [](const Floats& image) { return automatic_exposure(image_of(image, "image")); },
-        py::arg("image"), docs::automatic_exposure);
+        py::arg("image"),
+        Documented(docs::automatic_exposure, {{"image", "Radiance, (height, width, 3)."}})
+            .raises("InputError: for another shape."));
     m.def(
         "tonemap",
         [](const Floats& image, const std::optional<float>& exposure, const std::string& curve,
@@ -230,7 +245,8 @@ void bind_pictures(py::module_& m) {
             const Image mapped = display_values(image, exposure, curve, display_luminance);
             return display_bytes(mapped);
         },
-        py::arg("image"), py::arg("exposure"), py::arg("curve"), py::arg("display_luminance"), docs::tone_map);
+        py::arg("image"), py::arg("exposure"), py::arg("curve"), py::arg("display_luminance"),
+        Documented("For interflect.tonemap()."));
     m.def(
         "png",
         [](const Floats& image, const std::optional<float>& exposure, const std::string& curve) {
@@ -238,10 +254,10 @@ void bind_pictures(py::module_& m) {
                 detail::codecs::encode_png(display_values(image, exposure, curve, usual_display_luminance)));
         },
         py::arg("image"), py::arg("exposure") = py::none(), py::arg("curve") = "srgb",
-        "PNG file of a picture of radiance, as for tonemap().");
+        Documented("PNG file of a picture of radiance, for notebooks."));
     m.def(
         "read_image", [](const std::filesystem::path& path) { return array_of(read_image(path)); }, py::arg("path"),
-        docs::read_image);
+        Documented(docs::read_image).returns("float32 (height, width, 3), row 0 at the top."));
     m.def(
         "write_image",
         [](const std::filesystem::path& path, const Floats& image, const std::optional<float>& exposure,
@@ -257,8 +273,15 @@ void bind_pictures(py::module_& m) {
         },
         py::arg("path"), py::arg("image"), py::arg("exposure") = py::none(), py::arg("curve") = "srgb",
         py::arg("quantity") = "radiance [cd/m^2]",
-        "Writes a picture of radiance. For .png and .jpg it is tone-mapped, see tonemap(); .exr and .hdr contain the "
-        "values themselves.\n\nRaises:\n    InputError: for an unknown extension or shape.");
+        Documented(
+            "Writes a picture of radiance. For .png and .jpg it is tone-mapped, see tonemap(); .exr and .hdr contain "
+            "the values themselves.",
+            {{"path", "File to write: .png, .jpg, .exr or .hdr."},
+             {"image", "Radiance or another quantity, (height, width, 3); [cd/m^2] for ward, tumblin and ferwerda."},
+             {"exposure", "As of tonemap(), for .png and .jpg."},
+             {"curve", "As of tonemap(), for .png and .jpg."},
+             {"quantity", "Name and unit of the values, which .exr files contain."}})
+            .raises("InputError: for an unknown extension or another shape.\nError: if the file cannot be written."));
     m.def(
         "compare",
         [](const Floats& image, const Floats& reference, bool scale, double field_of_view, bool tone_mapped) {
@@ -270,11 +293,15 @@ void bind_pictures(py::module_& m) {
         },
         py::arg("image"), py::arg("reference"), py::kw_only(), py::arg("scale") = false, py::arg("field_of_view") = 45,
         py::arg("tone_mapped") = false,
-        "Difference of two pictures of the same light, as interflect compare (docs/metrics.md).\n\nArgs:\n"
-        "    image: (h, w, 3). Larger than the reference by a whole factor, it is averaged over blocks.\n"
-        "    reference: (h, w, 3).\n    scale: Divides the image by the ratio of the means first.\n"
-        "    field_of_view: Vertical [degrees], in (0, 180).\n    tone_mapped: Whether both are display values in "
-        "[0, 1].\n\nRaises:\n    InputError: for other sizes or an option out of range.");
+        Documented(
+            "Computes the difference of two pictures of the same light, as `interflect compare` does "
+            "(docs/metrics.md).",
+            {{"image", "(height, width, 3). Larger than the reference by a whole factor, it is averaged over blocks."},
+             {"reference", "(height, width, 3)."},
+             {"scale", "Whether to divide the image by the ratio of the means first."},
+             {"field_of_view", "Vertical angle of the picture, for `flip` [degrees], in (0, 180)."},
+             {"tone_mapped", "Whether both are display values in [0, 1]."}})
+            .raises("InputError: for other sizes, and for an option out of range."));
 }
 
 }  // namespace interflect::python

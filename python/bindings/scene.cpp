@@ -11,7 +11,57 @@ namespace {
 
 using SharedScene = std::shared_ptr<Scene>;
 
-void bind_parts(py::module_& m) {
+/// None for a scene without these attributes.
+template <class Member>
+auto vertex_array(Member Scene::*member) {
+    return [member](const SharedScene& scene) -> py::object {
+        if (((*scene).*member).empty()) return py::none();
+        return rows<float>(scene, (*scene).*member);
+    };
+}
+
+/// Parts of a scene, which may be changed in Python without effect on the scene.
+template <class Part>
+auto copies(std::vector<Part> Scene::*member) {
+    return [member](const Scene& scene) -> std::vector<Part> { return scene.*member; };
+}
+
+/// Index of a patch, or -1.
+py::array_t<std::int64_t> other_sides(const Scene& scene) {
+    py::array_t<std::int64_t> result(static_cast<py::ssize_t>(scene.patches.size()));
+    for (std::size_t i = 0; i < scene.patches.size(); ++i) {
+        const std::uint32_t other = scene.patches[i].other_side;
+        result.mutable_at(static_cast<py::ssize_t>(i)) = other == none ? -1 : static_cast<std::int64_t>(other);
+    }
+    return result;
+}
+
+py::list warnings_of(const Scene& scene) {
+    py::list result;
+    for (const Warnings::Entry& w : scene.warnings.entries()) {
+        const std::string times = w.count > 1 ? fmt::format(" ({} times)", w.count) : "";
+        result.append(fmt::format("{}{}{}", w.where.empty() ? "" : w.where + ": ", w.message, times));
+    }
+    return result;
+}
+
+std::string describe(const Scene& s) {
+    return fmt::format("<Scene '{}': {} patches, {} materials, {} luminaires, {} views>", s.name, s.patches.size(),
+                       s.materials.size(), s.luminaires.size(), s.views.size());
+}
+
+}  // namespace
+
+View view_of(const Scene& scene, const py::object& view) {
+    if (py::isinstance<View>(view)) return py::cast<View>(view);
+    if (py::isinstance<py::str>(view)) return detail::find_view(scene, py::cast<std::string>(view));
+    if (!view.is_none())
+        throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " +
+                             std::string(py::repr(view)));
+    return scene.views.empty() ? detail::overview(scene) : scene.views.front();
+}
+
+void bind_scene_parts(py::module_& m) {
     const auto texture = [](std::uint32_t Material::*member) {
         return [member](const Material& material) -> std::optional<std::uint32_t> {
             return material.*member == none ? std::nullopt : std::optional(material.*member);
@@ -50,7 +100,12 @@ void bind_parts(py::module_& m) {
         .field("pattern", &LightGroup::pattern, docs::LightGroup_pattern)
         .finish();
     py::class_<Texture, std::shared_ptr<Texture>>(m, "Texture", docs::Texture)
-        .def(py::init(&texture_from_array), py::arg("texels"), py::arg("name") = "texture")
+        .def(py::init(&texture_from_array), py::arg("texels"), py::arg("name") = "texture",
+             Documented("Makes a texture from an array, which is copied.",
+                        {{"texels", "(height, width, 3): linear Rec. 709, >= 0, row 0 at the top."},
+                         {"name", "Name for messages."}})
+                 .raises("InputError: for another shape, for texels that are negative or not finite, and for a side of "
+                         "more than 16384 texels."))
         .def_readonly("name", &Texture::name, docs::Texture_name)
         .def_property_readonly(
             "texels",
@@ -65,66 +120,25 @@ void bind_parts(py::module_& m) {
              [](const Texture& t) { return fmt::format("<Texture '{}': {} x {}>", t.name, t.width, t.height); });
 }
 
-/// None for a scene without these attributes.
-template <class Member>
-auto vertex_array(Member Scene::*member) {
-    return [member](const SharedScene& scene) -> py::object {
-        if (((*scene).*member).empty()) return py::none();
-        return rows<float>(scene, (*scene).*member);
-    };
-}
-
-/// Index of a patch, or -1.
-py::array_t<std::int64_t> other_sides(const Scene& scene) {
-    py::array_t<std::int64_t> result(static_cast<py::ssize_t>(scene.patches.size()));
-    for (std::size_t i = 0; i < scene.patches.size(); ++i) {
-        const std::uint32_t other = scene.patches[i].other_side;
-        result.mutable_at(static_cast<py::ssize_t>(i)) = other == none ? -1 : static_cast<std::int64_t>(other);
-    }
-    return result;
-}
-
-py::list warnings_of(const Scene& scene) {
-    py::list result;
-    for (const Warnings::Entry& w : scene.warnings.entries()) {
-        const std::string times = w.count > 1 ? fmt::format(" ({} times)", w.count) : "";
-        result.append(fmt::format("{}{}{}", w.where.empty() ? "" : w.where + ": ", w.message, times));
-    }
-    return result;
-}
-
-std::string describe(const Scene& s) {
-    return fmt::format("<Scene '{}': {} patches, {} materials, {} luminaires, {} views>", s.name, s.patches.size(),
-                       s.materials.size(), s.luminaires.size(), s.views.size());
-}
-
-}  // namespace
-
-View view_of(const Scene& scene, const py::object& view) {
-    if (py::isinstance<View>(view)) return py::cast<View>(view);
-    if (py::isinstance<py::str>(view)) return detail::find_view(scene, py::cast<std::string>(view));
-    if (!view.is_none())
-        throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " +
-                             std::string(py::repr(view)));
-    return scene.views.empty() ? detail::overview(scene) : scene.views.front();
-}
-
 void bind_scene(py::module_& m) {
-    bind_parts(m);
-    py::class_<Scene, SharedScene> scene(m, "Scene", docs::Scene);
-    scene
+    py::class_<Scene, SharedScene>(m, "Scene", docs::Scene)
         .def(py::init(&scene_from_arrays), py::arg("vertices"), py::arg("faces"), py::arg("materials"), py::kw_only(),
              py::arg("face_materials") = py::none(), py::arg("two_sided") = false, py::arg("objects") = py::none(),
              py::arg("face_objects") = py::none(), py::arg("normals") = py::none(),
              py::arg("texture_coordinates") = py::none(), py::arg("lightmap_coordinates") = py::none(),
              py::arg("textures") = std::vector<std::shared_ptr<Texture>>(),
              py::arg("luminaires") = std::vector<Luminaire>(), py::arg("views") = std::vector<View>(),
-             py::arg("light_groups") = std::vector<LightGroup>(), py::arg("name") = "arrays", scene_from_arrays_doc)
+             py::arg("light_groups") = std::vector<LightGroup>(), py::arg("name") = "arrays", scene_from_arrays_text())
         .def("replace", &replaced, py::kw_only(), py::arg("materials") = py::none(), py::arg("luminaires") = py::none(),
              py::arg("views") = py::none(), py::arg("light_groups") = py::none(), py::arg("textures") = py::none(),
-             "A copy with other materials, luminaires, views, light groups or textures.\n\nRaises:\n    InputError: "
-             "that "
-             "lists every fault of the result.")
+             Documented("Copies the scene, with other materials, luminaires, views, light groups or textures. The copy "
+                        "shares no memory with the scene.",
+                        {{"materials", "Sequence of Material; None: unchanged, as for the others."},
+                         {"luminaires", "Sequence of Luminaire."},
+                         {"views", "Sequence of View."},
+                         {"light_groups", "Sequence of LightGroup."},
+                         {"textures", "Sequence of Texture."}})
+                 .raises("InputError: that lists every fault of the result."))
         .def_readonly("name", &Scene::name, docs::Scene_name)
         .def_readonly("origin", &Scene::origin, docs::Scene_origin)
         .def_property_readonly(
@@ -139,8 +153,8 @@ void bind_scene(py::module_& m) {
                                  {sizeof(Patch), sizeof(std::uint32_t)});
             },
             "(m, 4) uint32, read-only, without a copy: vertices of each patch, counter-clockwise seen from the lit "
-            "side; "
-            "the last is 4294967295 (interflect.none) for a triangle. A patch is one side of a face; the patches of a "
+            "side; the last is 4294967295 (interflect.none) for a triangle. A patch is one side of a face; the patches "
+            "of a "
             "two-sided face are adjacent, the front first.")
         .def_property_readonly(
             "face_materials",
@@ -152,12 +166,21 @@ void bind_scene(py::module_& m) {
         .def_property_readonly(
             "other_sides", [](const SharedScene& s) { return other_sides(*s); },
             "(m,) int64: the patch on the back of each face, or -1.")
-        .def_property_readonly("normals", vertex_array(&Scene::normals), docs::Scene_normals)
-        .def_property_readonly("texture_coordinates", vertex_array(&Scene::texture_coordinates),
-                               docs::Scene_texture_coordinates)
-        .def_property_readonly("lightmap_coordinates", vertex_array(&Scene::lightmap_coordinates),
-                               docs::Scene_lightmap_coordinates)
-        .def_readonly("materials", &Scene::materials, "Copies of the materials; see replace().")
+        .def_property_readonly("normals", vertex_array(&Scene::normals),
+                               "(n, 3) float32, read-only: unit normal of the smooth surface at every vertex, of "
+                               "arbitrary sign; (0, 0, 0) at "
+                               "vertices without one. None if no vertex has one. Rays meet the flat patches; normals "
+                               "decide where shading is "
+                               "smooth and how it varies within a patch.")
+        .def_property_readonly(
+            "texture_coordinates", vertex_array(&Scene::texture_coordinates),
+            "(n, 2) float32, read-only: (u, v) of every vertex; (0, 0) is the lower left corner of an "
+            "image. None if no patch is textured.")
+        .def_property_readonly(
+            "lightmap_coordinates", vertex_array(&Scene::lightmap_coordinates),
+            "(n, 2) float32, read-only: (u, v) in [0, 1] of every vertex in the lightmap of its object, "
+            "NaN without; (0, 0) is the lower left corner. None without any.")
+        .def_property_readonly("materials", copies(&Scene::materials), "Copies of the materials; see replace().")
         .def_property_readonly(
             "textures",
             [](const SharedScene& s) {
@@ -166,10 +189,12 @@ void bind_scene(py::module_& m) {
                 return textures;
             },
             "Images of the materials, without a copy.")
-        .def_readonly("luminaires", &Scene::luminaires, docs::Scene_luminaires)
-        .def_readonly("light_groups", &Scene::light_groups, docs::Scene_light_groups)
+        .def_property_readonly("luminaires", copies(&Scene::luminaires),
+                               (std::string(docs::Scene_luminaires) + " Copies; see replace().").c_str())
+        .def_property_readonly("light_groups", copies(&Scene::light_groups),
+                               (std::string(docs::Scene_light_groups) + " Copies; see replace().").c_str())
         .def_readonly("objects", &Scene::objects, docs::Scene_objects)
-        .def_readonly("views", &Scene::views, "Views of the file.")
+        .def_property_readonly("views", copies(&Scene::views), "Named views. Copies; see replace().")
         .def_readonly("files", &Scene::files, docs::Scene_files)
         .def_property_readonly(
             "warnings", [](const SharedScene& s) { return warnings_of(*s); },
@@ -178,10 +203,10 @@ void bind_scene(py::module_& m) {
     m.attr("none") = none;
     m.def(
         "groups_by_name", [](const SharedScene& s) { return groups_by_name(*s); }, py::arg("scene"),
-        docs::groups_by_name);
+        Documented(docs::groups_by_name));
     m.def(
         "overview", [](const SharedScene& s) { return detail::overview(*s); }, py::arg("scene"),
-        "A view from inside an upper corner of the scene to its middle.");
+        Documented("Returns a view from inside an upper corner of the scene to its middle."));
 }
 
 }  // namespace interflect::python

@@ -182,32 +182,36 @@ void set_textures(Scene& scene, const Textures& textures) {
 
 }  // namespace
 
-const char* const scene_from_arrays_doc =
-    R"doc(Makes a scene from arrays. It is validated as a whole: one exception lists all faults.
-
-Args:
-    vertices: (n, 3) numbers, world coordinates [m].
-    faces: (m, 3) or (m, 4) integers: vertices of triangles or planar convex quadrilaterals, counter-clockwise seen from
-        the lit side; -1 as the fourth for a triangle. Each face becomes one patch, a two-sided face two adjacent ones.
-    materials: Material, or a sequence of them.
-    face_materials: (m,) integers, indices into `materials`; None: all 0.
-    two_sided: True, False, or (m,) booleans: whether faces have a back of the same material. Light passes through the
-        backs of other faces.
-    objects: Names of objects, such as "room.desk"; the first is usually "".
-    face_objects: (m,) integers, indices into `objects`; None: all 0.
-    normals: (n, 3) unit normals of the smooth surface at each vertex, or None.
-    texture_coordinates: (n, 2), or None: (0, 0) is the lower left corner of an image.
-    lightmap_coordinates: (n, 2) in [0, 1], or None.
-    textures: Images that materials refer to by index.
-    luminaires: Light sources that are not surfaces. Their positions are relative to `origin`, which is (0, 0, 0) unless
-        the scene is far from it compared with its size.
-    views: Views; solve() and render() find them by name.
-    light_groups: Groups whose light is kept separate.
-    name: Name for messages.
-
-Raises:
-    InputError: that lists every fault in `faults`: shapes, types, indices, numbers that are not finite, reflectances
-        outside [0, 1), degenerate faces.)doc";
+Documented scene_from_arrays_text() {
+    return Documented(
+               "Makes a scene from arrays, which are copied. It is validated as a whole: one exception lists all "
+               "faults.",
+               {{"vertices", "(n, 3) numbers, world coordinates [m]."},
+                {"faces",
+                 "(m, 3) or (m, 4) integers: vertices of triangles or planar convex quadrilaterals, "
+                 "counter-clockwise seen from the lit side; -1 as the fourth for a triangle. Each face becomes one "
+                 "patch, a two-sided face two adjacent ones."},
+                {"materials", "Material, or a sequence of them."},
+                {"face_materials", "(m,) integers, indices into `materials`; None: all 0."},
+                {"two_sided",
+                 "True, False, or (m,) booleans: whether faces have a back of the same material. Light passes "
+                 "through the backs of other faces."},
+                {"objects", "Names of objects, such as \"room.desk\"; the first is usually \"\"."},
+                {"face_objects", "(m,) integers, indices into `objects`; None: all 0."},
+                {"normals", "(n, 3) unit normals of the smooth surface at each vertex, or None."},
+                {"texture_coordinates", "(n, 2), or None: (0, 0) is the lower left corner of an image."},
+                {"lightmap_coordinates", "(n, 2) in [0, 1], or None."},
+                {"textures", "Images that materials refer to by index."},
+                {"luminaires",
+                 "Light sources that are not surfaces. Their positions are relative to `origin`, which is "
+                 "(0, 0, 0) unless the scene is far from it compared with its size."},
+                {"views", "Views; solve() and render() find them by name."},
+                {"light_groups", "Groups whose light is kept separate."},
+                {"name", "Name for messages."}})
+        .raises(
+            "InputError: that lists every fault in `faults`: shapes, types, indices, numbers that are not finite, "
+            "reflectances outside [0, 1), degenerate faces.");
+}
 
 std::shared_ptr<Scene> scene_from_arrays(const py::object& vertices, const py::object& faces,
                                          const py::object& materials, const py::object& face_materials,

@@ -10,11 +10,11 @@
 
 namespace interflect::python {
 
-extern const char* const scene_from_arrays_doc;
+Documented scene_from_arrays_text();
 
 using Textures = std::vector<std::shared_ptr<Texture>>;
 
-/// As scene_from_arrays_doc says.
+/// As scene_from_arrays_text() says.
 std::shared_ptr<Scene> scene_from_arrays(
     const py::object& vertices, const py::object& faces, const py::object& materials, const py::object& face_materials,
     const py::object& two_sided, const py::object& objects, const py::object& face_objects, const py::object& normals,

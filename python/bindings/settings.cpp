@@ -80,6 +80,10 @@ Limits limits_of(const py::object& rays, const py::object& time, const py::objec
     if (!rays.is_none()) limits.rays = whole_number(rays, "rays");
     if (!time.is_none()) limits.time = setting("time", time, nullptr).get<double>();
     if (!until.is_none()) limits.until = setting("until", until, nullptr).get<double>();
+    if (limits.rays <= 0) throw InputError("rays: expected more than 0");
+    if (!(limits.time > 0)) throw InputError("time: expected more than 0");
+    if (!(limits.until >= 0 && limits.until < 1))
+        throw InputError("until: expected a relative error from 0 to below 1");
     return limits;
 }
 

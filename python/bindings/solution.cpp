@@ -117,18 +117,29 @@ void bind_elements(py::module_& m) {
     py::class_<Elements>(m, "Elements",
                          "Arrays with one row per element of the quadtrees, read-only, without copies; inner elements "
                          "hold the mean of their children. Solution.element selects the leaves.")
-        .def_property_readonly("irradiance", element_array(&Solution::irradiance), docs::Solution_irradiance)
-        .def_property_readonly("groups", element_arrays(&Solution::groups), docs::Solution_groups)
-        .def_property_readonly("direct", element_arrays(&Solution::direct), docs::Solution_direct)
+        .def_property_readonly("irradiance", element_array(&Solution::irradiance),
+                               array_text("(n, 3) float32", docs::Solution_irradiance).c_str())
+        .def_property_readonly(
+            "groups", element_arrays(&Solution::groups),
+            "List of (n, 3) float32: parts of `irradiance`, one per name of Solution.group_names, whose "
+            "sum it is. Empty without light groups.")
+        .def_property_readonly(
+            "direct", element_arrays(&Solution::direct),
+            "List of (n, 3) float32: parts of `irradiance` that come straight from sources, one per light "
+            "group, or one without groups. Empty without the setting keep_direct.")
         .def_property_readonly("view_importance", element_array(&Solution::view_importance),
-                               docs::Solution_view_importance)
+                               "(n,) float32: importance directly from the views, v [1/m^2]. None without a view.")
         .def_property_readonly("indirect_importance", element_array(&Solution::indirect_importance),
-                               docs::Solution_indirect_importance)
+                               "(n,) float32: the rest of importance, psi - v [1/m^2]. None without a view.")
         .def_property_readonly("standard_error", element_array(&Solution::standard_error),
-                               docs::Solution_standard_error)
+                               array_text("(n,) float32", docs::Solution_standard_error).c_str())
         .def_property_readonly("discretisation_error", element_array(&Solution::discretisation_error),
-                               docs::Solution_discretisation_error)
-        .def_property_readonly("rays", element_array(&Solution::rays), docs::Solution_rays);
+                               array_text("(n,) float32", docs::Solution_discretisation_error).c_str())
+        .def_property_readonly("rays", element_array(&Solution::rays),
+                               array_text("(n,) float32", docs::Solution_rays).c_str())
+        .def("__repr__", [](const Elements& e) {
+            return fmt::format("<Elements: {} of '{}'>", e.light->solution->irradiance.size(), e.light->scene->name);
+        });
 }
 
 }  // namespace
@@ -140,7 +151,11 @@ void bind_solution(py::module_& m) {
         .def_readonly("absorbed", &PowerBalance::absorbed, docs::PowerBalance_absorbed)
         .def_readonly("escaped", &PowerBalance::escaped, docs::PowerBalance_escaped)
         .def_property_readonly("relative_difference", &PowerBalance::relative_difference,
-                               docs::PowerBalance_relative_difference);
+                               docs::PowerBalance_relative_difference.text)
+        .def("__repr__", [](const PowerBalance& b) {
+            return fmt::format("<PowerBalance: emitted {:.4g}, absorbed {:.4g}, escaped {:.4g}>", luminance(b.emitted),
+                               luminance(b.absorbed), luminance(b.escaped));
+        });
     py::class_<Light, SharedLight>(
         m, "Solution",
         "Light of a scene. Its arrays have one row per leaf of the mesh, a patch or a piece of one. They are read-only "
@@ -148,17 +163,21 @@ void bind_solution(py::module_& m) {
         "solver and this object are gone.")
         .def_property_readonly("irradiance", leaf_column<float>(&Leaf::irradiance, 3),
                                "(n, 3) float32: H [lm/m^2 or W/m^2].")
-        .def_property_readonly("direct", leaf_column<float>(&Leaf::direct, 3), docs::Leaf_direct)
-        .def_property_readonly("importance", leaf_column<float>(&Leaf::importance), docs::Leaf_importance)
+        .def_property_readonly("direct", leaf_column<float>(&Leaf::direct, 3),
+                               array_text("(n, 3) float32", docs::Leaf_direct).c_str())
+        .def_property_readonly("importance", leaf_column<float>(&Leaf::importance),
+                               array_text("(n,) float32", docs::Leaf_importance).c_str())
         .def_property_readonly("standard_error", leaf_column<float>(&Leaf::standard_error),
-                               docs::Solution_standard_error)
+                               array_text("(n,) float32", docs::Solution_standard_error).c_str())
         .def_property_readonly("discretisation_error", leaf_column<float>(&Leaf::discretisation_error),
-                               docs::Solution_discretisation_error)
+                               array_text("(n,) float32", docs::Solution_discretisation_error).c_str())
         .def_property_readonly("error", &total_error,
                                "(n,) float32: root of the sum of the squares of `standard_error` and "
                                "`discretisation_error`, computed on request.")
-        .def_property_readonly("level", leaf_column<std::int32_t>(&Leaf::level), docs::Leaf_level)
-        .def_property_readonly("area", leaf_column<float>(&Leaf::area), docs::Leaf_area)
+        .def_property_readonly("level", leaf_column<std::int32_t>(&Leaf::level),
+                               array_text("(n,) int32", docs::Leaf_level).c_str())
+        .def_property_readonly("area", leaf_column<float>(&Leaf::area),
+                               array_text("(n,) float32", docs::Leaf_area).c_str())
         .def_property_readonly("patch", leaf_column<std::uint32_t>(&Leaf::patch),
                                "(n,) uint32: the patch of the leaf, an index into Scene.faces of `scene`.")
         .def_property_readonly("element", leaf_column<std::uint32_t>(&Leaf::element),
@@ -166,7 +185,8 @@ void bind_solution(py::module_& m) {
         .def_property_readonly("vertices", &vertices_of,
                                "(n, 4, 3) float64: world coordinates [m], counter-clockwise seen from the lit side. A "
                                "triangle repeats the last.")
-        .def_property_readonly("vertex_count", leaf_column<std::int32_t>(&Leaf::vertex_count), docs::Leaf_vertex_count)
+        .def_property_readonly("vertex_count", leaf_column<std::int32_t>(&Leaf::vertex_count),
+                               array_text("(n,) int32", docs::Leaf_vertex_count).c_str())
         .def_property_readonly(
             "elements", [](const SharedLight& light) { return Elements{light}; },
             "Arrays of all elements, inner ones included.")
@@ -176,13 +196,14 @@ void bind_solution(py::module_& m) {
         .def_property_readonly(
             "views", [](const Light& light) { return light.solution->options.views; }, "Views that defined importance.")
         .def_property_readonly(
-            "options", [](const Light& light) { return settings_of(light.solution->options); }, "Settings by name.")
+            "options", [](const Light& light) { return settings_of(light.solution->options); },
+            "Settings by name: a dict.")
         .def_property_readonly(
             "iterations", &iterations_of,
-            "One dict per iteration, named as in IterationReport, with counts since the start and the luminance of "
-            "powers. pandas.DataFrame takes the list.")
+            "List of a dict per iteration, with counts since the start and the luminance of powers [lm or W]. "
+            "pandas.DataFrame takes the list.")
         .def_property_readonly(
-            "group_names", [](const Light& light) { return light.solution->group_names; }, docs::Solution_group_names)
+            "group_names", [](const Light& light) { return light.solution->group_names; }, docs::SourceGroups_names)
         .def_property_readonly(
             "emitted_power", [](const Light& light) { return light.solution->emitted_power; },
             docs::Solution_emitted_power)
@@ -194,14 +215,16 @@ void bind_solution(py::module_& m) {
         .def_property_readonly("relative_error", &error_of, docs::IterationReport_error_estimate)
         .def(
             "power_balance", [](const Light& light) { return power_balance(*light.scene, *light.solution); },
-            docs::power_balance)
+            Documented(docs::power_balance))
         .def(
             "dim", &dimmed_light, py::arg("group"), py::arg("factor"),
-            "A copy whose sources of a light group and all of their light are scaled, without tracing rays.\n\nArgs:\n"
-            "    group: Name of a light group.\n    factor: Relative to the current emission; >= 0.\n\nRaises:\n"
-            "    InputError: that lists the groups, for an unknown group; for a factor that is negative or not finite.")
-        .def("save", &save, py::arg("path"), docs::write_solution)
-        .def_static("open", &open_light, py::arg("path"), docs::read_solution)
+            Documented("Copies the solution, with the sources of a light group and all of their light scaled, without "
+                       "tracing rays.",
+                       {{"group", "Name of a light group."}, {"factor", "Relative to the current emission; >= 0."}})
+                .raises("InputError: for an unknown group, with the names of all; for a factor that is negative or not "
+                        "finite."))
+        .def("save", &save, py::arg("path"), Documented(docs::write_solution))
+        .def_static("open", &open_light, py::arg("path"), Documented(docs::read_solution))
         .def("__len__", [](const Light& light) { return light.mesh().size(); })
         .def("__repr__", &describe);
 }

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+#include <pybind11/stl/filesystem.h>
+
 #include <atomic>
 #include <optional>
 
@@ -129,50 +132,67 @@ void bind_solver(py::module_& m) {
     py::class_<Progress>(m, "Progress", docs::Progress)
         .def_readonly("rays", &Progress::rays, docs::Progress_rays)
         .def_readonly("fraction", &Progress::fraction, docs::Progress_fraction)
-        .def_readonly("relative_error", &Progress::relative_error, docs::Progress_relative_error);
+        .def_readonly("relative_error", &Progress::relative_error, docs::Progress_relative_error)
+        .def("__repr__", [](const Progress& p) {
+            return fmt::format("<Progress: {:.0f}%, {} rays, error {:.3g}>", 100 * p.fraction, p.rays,
+                               p.relative_error);
+        });
     py::class_<AdvanceReport>(m, "AdvanceReport", docs::AdvanceReport)
         .def_readonly("error", &AdvanceReport::error, docs::AdvanceReport_error)
         .def_readonly("rays", &AdvanceReport::rays, docs::AdvanceReport_rays)
         .def_readonly("seconds", &AdvanceReport::seconds, docs::AdvanceReport_seconds)
         .def_readonly("is_finished", &AdvanceReport::is_finished, docs::AdvanceReport_is_finished)
         .def("__repr__", [](const AdvanceReport& r) {
-            return "<AdvanceReport: " + std::to_string(r.rays) + " rays, error " + std::to_string(r.error) + ", " +
-                   (r.is_finished ? "finished" : "not finished") + ">";
+            return fmt::format("<AdvanceReport: {} rays, error {:.3g}, {}>", r.rays, r.error,
+                               r.is_finished ? "finished" : "not finished");
         });
     py::class_<PythonSolver>(m, "Solver", docs::Solver)
         .def(py::init(&make_solver), py::arg("scene"), py::arg("method"), py::arg("views"), py::arg("threads"),
-             py::arg("contact_cuts"), py::arg("mesh_size"), py::arg("settings"))
+             py::arg("contact_cuts"), py::arg("mesh_size"), py::arg("settings"), Documented("For interflect.Solver."))
         .def("advance", &advance, py::arg("rays") = py::none(), py::arg("time") = py::none(),
-             py::arg("until") = py::none(), py::arg("progress") = py::none(), docs::Solver_advance)
+             py::arg("until") = py::none(), py::arg("progress") = py::none(),
+             Documented(docs::Solver_advance,
+                        {{"rays", "Number of rays to add; None: no limit."},
+                         {"time", "Duration of this call [s]; None: no limit."},
+                         {"until", "Target of the estimated relative error, in [0, 1); None: none."}})
+                 .raises("InputError: for a limit out of range.\n"
+                         "KeyboardInterrupt: at Ctrl-C; an exception of `progress` likewise. Completed iterations are "
+                         "kept, and the solver can continue."))
         .def(
             "set_views",
             [](PythonSolver& self, const py::object& views) {
                 const Use solver(self);
                 solver->set_views(weighted_views(solver->scene(), views));
             },
-            py::arg("views"), docs::Solver_set_views)
+            py::arg("views"), Documented(docs::Solver_set_views, {{"views", "As of Solver."}}))
         .def(
             "set_dimming",
             [](PythonSolver& self, const std::string& group, float factor) { Use(self)->set_dimming(group, factor); },
-            py::arg("group"), py::arg("factor"), docs::Solver_set_dimming)
+            py::arg("group"), py::arg("factor"),
+            Documented(docs::Solver_set_dimming,
+                       {{"group", "Name of a light group."}, {"factor", "Relative to the original emission; >= 0."}}))
         .def(
             "set_plan",
             [](PythonSolver& self, const py::object& rays, const py::object& time, const py::object& until) {
                 Use(self)->set_plan(limits_of(rays, time, until));
             },
             py::arg("rays") = py::none(), py::arg("time") = py::none(), py::arg("until") = py::none(),
-            docs::Solver_set_plan)
-        .def_property_readonly("solution", &PythonSolver::light, docs::Solver_shared_solution)
-        .def("take_solution", &PythonSolver::take_light, docs::Solver_take_solution)
+            Documented(docs::Solver_set_plan, {{"rays", "Total number of rays; None: no limit."},
+                                               {"time", "Time spent on solving [s]; None: no limit."},
+                                               {"until", "Target of the estimated relative error, in [0, 1)."}}))
+        .def_property_readonly("solution", &PythonSolver::light, docs::Solver_solution.text)
+        .def("take_solution", &PythonSolver::take_light,
+             Documented("Current solution without a copy. Closes the solver."))
         .def_property_readonly(
-            "scene", [](PythonSolver& self) { return shown(Use(self)->shared_scene()); }, docs::Solver_scene)
+            "scene", [](PythonSolver& self) { return shown(Use(self)->shared_scene()); }, docs::Solver_scene.text)
         .def_property_readonly(
             "options", [](PythonSolver& self) { return settings_of(Use(self)->options()); }, "Settings by name.")
         .def_property_readonly(
             "views", [](PythonSolver& self) { return Use(self)->options().views; }, "Views that define importance.")
-        .def("save", &save_run, py::arg("path"), docs::Solver_save)
-        .def_static("open", &open_run, py::arg("path"), py::arg("threads") = 0, docs::Solver_open)
-        .def("close", &PythonSolver::close, "Frees the memory of the run; solutions and their arrays stay valid.")
+        .def("save", &save_run, py::arg("path"), Documented(docs::Solver_save))
+        .def_static("open", &open_run, py::arg("path"), py::arg("threads") = 0, Documented(docs::Solver_open))
+        .def("close", &PythonSolver::close,
+             Documented("Frees the memory of the run. Solutions and their arrays stay valid; other calls raise Error."))
         .def_property_readonly("is_closed", &PythonSolver::is_closed, "Whether close() was called.");
 }
 

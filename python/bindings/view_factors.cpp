@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "bindings.h"
+#include "documented.h"
 #include "long_work.h"
 
 namespace interflect::python {
@@ -139,7 +140,7 @@ void bind_view_factors(py::module_& m) {
         .def_property_readonly("blocked_errors", array(&ViewFactors::blocked_errors), docs::ViewFactors_blocked)
         .def_readonly("rays_per_group", &ViewFactors::rays_per_group, "Number of rays of each group.")
         .def(
-            "consistency", [](const SharedFactors& f) { return consistency(*f); }, docs::consistency)
+            "consistency", [](const SharedFactors& f) { return consistency(*f); }, Documented(docs::consistency))
         .def(
             "reconciled",
             [](const SharedFactors& f, bool closure, bool reciprocity, int threads, const py::object& progress) {
@@ -150,14 +151,18 @@ void bind_view_factors(py::module_& m) {
                 });
             },
             py::arg("closure") = true, py::arg("reciprocity") = true, py::kw_only(), py::arg("threads") = 0,
-            py::arg("progress") = py::none(), docs::reconcile)
+            py::arg("progress") = py::none(),
+            Documented(docs::reconcile, {{"closure", "Whether rows sum to 1, with sky, ground and blocked."},
+                                         {"reciprocity", "Whether A_i F_ij = A_j F_ji."}})
+                .returns("The fitted copy, and a report of the consistency before and after."))
         .def("__len__", &ViewFactors::size)
         .def("__repr__", [](const ViewFactors& f) {
             return fmt::format("<ViewFactors of {} groups, {} non-zero, {} rays each>", f.size(), f.values.size(),
                                f.rays_per_group);
         });
     m.def("view_factors", &compute, py::arg("scene"), py::arg("groups"), py::arg("rays"), py::arg("sides"),
-          py::arg("opaque_backs"), py::arg("seed"), py::arg("threads"), py::arg("progress"), docs::view_factors);
+          py::arg("opaque_backs"), py::arg("seed"), py::arg("threads"), py::arg("progress"),
+          Documented(docs::view_factors));
 }
 
 }  // namespace interflect::python

@@ -76,6 +76,7 @@ def render(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, he
         raise TypeError(f"{shading} shading takes no {', '.join(options)}")
     if denoise:
         raise TypeError(f"{shading} shading has no noise to filter")
+    assert isinstance(source, _core.Solution)  # see _lit()
     count = SAMPLES[shading] if samples is None else samples
     with reporting(progress, "drawing") as report:
         return _core.render_elements(source, _view(source, view), width, height, count, shading == "flat",
@@ -86,7 +87,8 @@ def trace(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, hei
           samples: int | None = None, quantity: str = "radiance", until: float = 0, max_samples: int = 16_384,
           time: float = float("inf"), mirrors: bool = True, light_walks: int = 16_384, seed: int = 1, threads: int = 0,
           progress: ProgressArgument = None) -> _core.PathTracing:
-    """Draws a view by paths, with its standard error and its layers.
+    """Draws a view by paths, with its standard error and its layers: path tracing, an independent reference without a
+    solution; instant radiosity; final gathering or hybrid shading of a solution.
 
     Args:
         lit, view, width, height, samples, quantity, seed, threads, progress: As of render().
@@ -97,8 +99,11 @@ def trace(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, hei
         mirrors: Whether the camera sees mirrors.
         light_walks: Instant radiosity: walks from the light sources for a batch of paths.
 
+    Returns:
+        The picture, in the units of render().
+
     Raises:
-        InputError: as render().
+        InputError: as render(); also for "smooth" and "flat".
     """
     source = _lit(lit, shading)
     if shading in ("smooth", "flat"):
@@ -136,10 +141,14 @@ def probe(solution: _core.Solution, points: ArrayLike | _core.MeasuringGrid, nor
             irradiance.
         normals: (n, 3) or (3,); default: the grid's, or up. Need not be normalised.
         receiver: "planar", "cylindrical" or "semicylindrical" (EN 12464-1, CIE 136).
-        axis: Axis of cylinders.
+        axis: (3,) or (n, 3): axis of cylinders. Need not be normalised.
         shading: "gather" from the solution, or "path" for path tracing alone.
         samples: Directions per point; with a target the minimum.
         until: Target of the relative standard error; 0: none.
+        seed, threads, progress: As of render().
+
+    Returns:
+        Irradiance with its standard error, one row per point.
 
     Raises:
         InputError: for other shapes, and for points that are not finite.
@@ -160,6 +169,7 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         solution: Result of solve().
         path: .glb, .gltf, .ply, .obj, .vtkhdf, .vtu or .json.
         lightmap: Stores the light in lightmaps rather than in vertices.
+        threads, progress: As of render().
         options: exposure, up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
             max_triangles. In lightmaps: texels_per_metre, max_size, gutter, image, own_charts, groups, content. For
             probes: spacing, rays.
@@ -175,9 +185,19 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         return _core.export_solution(solution, path, lightmap=lightmap, threads=threads, progress=report, **options)
 
 
-def _repr_png(solution: _core.Solution) -> bytes:
+def rate_glare(solution: _core.Solution, eyes: ArrayLike, lines_of_sight: ArrayLike, *, samples: int = 4096, seed: int = 1,
+               threads: int = 0, progress: ProgressArgument = None) -> list[_core.GlareRating]:
+    with reporting(progress, "rating glare") as report:
+        return _core.rate_glare(solution, eyes, lines_of_sight, samples=samples, seed=seed, threads=threads,
+                                progress=report)
+
+
+rate_glare.__doc__ = _core.rate_glare.__doc__
+
+
+def _repr_png(self: _core.Solution) -> bytes:
     """Small picture for notebooks."""
-    return _core.png(render(solution, width=480, height=270, shading="smooth", samples=4, progress=False))
+    return _core.png(render(self, width=480, height=270, shading="smooth", samples=4, progress=False))
 
 
-_core.Solution._repr_png_ = _repr_png
+setattr(_core.Solution, "_repr_png_", _repr_png)

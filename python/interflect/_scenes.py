@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 
 from interflect import _core
-from interflect._errors import Warning
+from interflect._errors import InputError, Warning
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.3048}
 
@@ -39,7 +39,9 @@ def load(path: str | os.PathLike[str], *, unit: float | str = 1.0, up_axis: str 
     """
     length = UNITS.get(unit, unit) if isinstance(unit, str) else unit
     if isinstance(length, str):
-        raise ValueError(f"unit: expected one of {', '.join(UNITS)}, or metres, found {unit!r}")
+        raise InputError(f"unit: expected one of {', '.join(UNITS)}, or metres, found {unit!r}")
+    if not isinstance(path, (str, os.PathLike)):
+        raise TypeError(f"expected a scene or the path of one, found {path!r}")
     scene = _core.load(path, length, up_axis, curve_divisions, max_patches, outside_files, list(luminaires), daylight)
     for message in scene.warnings:
         warnings.warn(message, Warning, stacklevel=2)

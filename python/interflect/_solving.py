@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
 
 from interflect import _core
 from interflect._progress import ProgressArgument, reporting
@@ -14,6 +14,17 @@ from interflect._scenes import scene_of
 ViewArgument = _core.View | _core.WeightedView | str
 ViewsArgument = ViewArgument | Iterable[ViewArgument] | None
 SceneArgument = _core.Scene | str | os.PathLike[str]
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _documented_as(original: Callable[..., Any]) -> Callable[[Function], Function]:
+    """Copies the docstring of a method of the C++ library."""
+
+    def with_docstring(method: Function) -> Function:
+        method.__doc__ = original.__doc__
+        return method
+
+    return with_docstring
 
 
 class Solver:
@@ -30,17 +41,21 @@ class Solver:
         self._solver = solver
         return self
 
+    @_documented_as(_core.Solver.advance)
     def advance(self, rays: float | None = None, time: float | None = None, until: float | None = None, *,
                 progress: ProgressArgument = None) -> _core.AdvanceReport:
         with reporting(progress, "solving") as report:
             return self._solver.advance(rays, time, until, report)
 
+    @_documented_as(_core.Solver.set_views)
     def set_views(self, views: ViewsArgument) -> None:
         self._solver.set_views(views)
 
+    @_documented_as(_core.Solver.set_dimming)
     def set_dimming(self, group: str, factor: float) -> None:
         self._solver.set_dimming(group, factor)
 
+    @_documented_as(_core.Solver.set_plan)
     def set_plan(self, rays: float | None = None, time: float | None = None, until: float | None = None) -> None:
         self._solver.set_plan(rays, time, until)
 
@@ -60,18 +75,20 @@ class Solver:
 
     @property
     def views(self) -> list[_core.WeightedView]:
-        """Views that define importance."""
+        """Views that define importance, with their weights."""
         return self._solver.views
 
     @property
     def options(self) -> dict[str, Any]:
-        """Settings by name."""
+        """Settings by name, with those that have defaults."""
         return self._solver.options
 
+    @_documented_as(_core.Solver.save)
     def save(self, path: str | os.PathLike[str]) -> None:
         self._solver.save(path)
 
     @classmethod
+    @_documented_as(_core.Solver.open)
     def open(cls, path: str | os.PathLike[str], *, threads: int = 0) -> Solver:
         return cls._of(_core.Solver.open(path, threads))
 
@@ -113,9 +130,6 @@ Raises:
     InputError: that lists every setting out of range and every fault of the scene.
     TypeError: for an unknown setting or a value of another type.
 """
-for _name in ("advance", "set_views", "set_dimming", "set_plan", "save", "open"):
-    _method = getattr(Solver, _name)
-    getattr(_method, "__func__", _method).__doc__ = getattr(_core.Solver, _name).__doc__.split("\n\n", 1)[1]
 
 
 def solve(scene: SceneArgument, *, view: ViewArgument | None = None, views: ViewsArgument = None,
@@ -148,5 +162,12 @@ def solve(scene: SceneArgument, *, view: ViewArgument | None = None, views: View
 
 
 def open_solution(path: str | os.PathLike[str]) -> _core.Solution:
-    """Reads a solution file, as Solution.open()."""
+    """Reads a solution file, as Solution.open().
+
+    Args:
+        path: File of Solution.save(), Solver.save() or `interflect solve`.
+
+    Raises:
+        InputError: for a file that is missing, damaged or of another kind.
+    """
     return _core.Solution.open(path)

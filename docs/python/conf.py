@@ -1,0 +1,66 @@
+"""Pages of the Python module: sphinx-build -W -b html docs/python out/python, with the module on PYTHONPATH.
+
+The text of the API pages is that of the docstrings, which repeat the comments of include/interflect (python/docstrings.py).
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import interflect
+from sphinx.ext.autodoc import ClassDocumenter
+from sphinx.ext.napoleon import Config, GoogleDocstring
+
+project = "Interflect"
+author = "The Interflect authors"
+copyright = author
+version = release = interflect.__version__
+
+extensions = ["sphinx.ext.autodoc"]
+html_theme = "alabaster"
+html_theme_options = {"page_width": "1200px", "body_max_width": "950px", "font_family": "sans-serif",
+                      "head_font_family": "sans-serif"}
+html_static_path = ["_static"]
+html_css_files = ["style.css"]
+html_copy_source = False
+default_role = "literal"  # `name`, as in the docstrings
+highlight_language = "python"
+
+autodoc_typehints = "none"  # the descriptions of arguments and attributes have shapes, units and ranges
+autodoc_default_options = {"members": True}
+autoclass_content = "both"  # of the class and of its constructor
+
+FUNCTION = re.compile(r"(?<![`\w.])(?:([A-Z]\w+)\.)?([a-z]\w+)\(\)")
+
+
+class ClassInOrder(ClassDocumenter):
+    """Lists the members of a class in the order of their definition, also those of the compiled module."""
+
+    def sort_members(self, documenters: list[tuple[Any, bool]], order: str) -> list[tuple[Any, bool]]:
+        names = list(vars(self.object))
+        return sorted(documenters, key=lambda member: names.index(member[0].name.rpartition(".")[2]))
+
+
+def linked(line: str) -> str:
+    """Links the functions that a docstring names, `solve()` and `Solution.save()`."""
+
+    def link(found: re.Match[str]) -> str:
+        scope, function = found.groups()
+        if not hasattr(getattr(interflect, scope, None) if scope else interflect, function):
+            return found.group(0)
+        return f":py:obj:`~interflect.{scope}.{function}`" if scope else f":py:obj:`~interflect.{function}`"
+
+    return FUNCTION.sub(link, line)
+
+
+def convert(app: Any, what: str, name: str, value: object, options: Any, lines: list[str]) -> None:
+    """Converts a docstring to reStructuredText. Those of attributes have no sections."""
+    lines[:] = [linked(line) for line in lines]
+    if what not in ("attribute", "property"):
+        lines[:] = GoogleDocstring(lines, Config(), app, what, name, value, options).lines()
+
+
+def setup(app: Any) -> None:
+    app.add_autodocumenter(ClassInOrder, override=True)
+    app.connect("autodoc-process-docstring", convert)

@@ -1,0 +1,47 @@
+"""The pages of the Python module: Sphinx makes them without warnings, and the code on them runs."""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = ROOT / "docs/python"
+
+
+class Pages(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def run_python(self, *arguments: str) -> str:
+        result = subprocess.run([sys.executable, "-B", *arguments], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, check=False)
+        self.assertEqual(result.returncode, 0, result.stdout)
+        return result.stdout
+
+    def test_sphinx_has_no_warnings_and_describes_every_name(self) -> None:
+        self.run_python("-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(PAGES), "html")
+        import interflect as ifl
+
+        text = "".join(page.read_text(encoding="utf-8") for page in self.folder.glob("html/api/*.html"))
+        missing = [name for name in ifl.__all__ if name != "__version__" and f'id="interflect.{name}"' not in text]
+        self.assertEqual(missing, [])
+
+    def test_examples_of_errors_are_as_printed(self) -> None:
+        (self.folder / "room.mgf").write_text("v a =\n\tp 0 0 0\nf a b d\n")
+        self.run_python("-c", f"import doctest, interflect as ifl\n"
+                              f"failed, tried = doctest.testfile('{PAGES}/api/errors.rst', False, globs={{'ifl': ifl}})\n"
+                              f"assert tried and not failed")
+
+    def test_the_tutorial_runs(self) -> None:
+        printed = self.run_python(str(PAGES / "tutorial.py"))
+        self.assertRegex(printed, r"\d+ \+- \d+\.\d lx, uniformity 0\.\d\d\n$")
+        for picture in ("room.png", "plan.png"):
+            self.assertTrue((self.folder / picture).read_bytes().startswith(b"\x89PNG"))
+
+
+if __name__ == "__main__":
+    unittest.main()
