@@ -133,6 +133,7 @@ void take(py::dict& left, const char* name, Value& value) {
 std::vector<std::filesystem::path> export_light(const SharedLight& light, const std::filesystem::path& path,
                                                 bool lightmap, int threads, const py::object& progress,
                                                 const py::kwargs& keywords) {
+    if (is_scene_export(path)) throw InputError(path, 0, "export_scene() writes this format");
     ExportOptions options;
     LightmapOptions texels;
     py::dict left(keywords);
@@ -195,6 +196,7 @@ void bind_files(py::module_& m) {
     m.def(
         "cut_at_contacts",
         [](const std::shared_ptr<Scene>& scene, const std::optional<float>& min_extent) {
+            if (min_extent && !(*min_extent >= 0)) throw InputError("min_extent: expected 0 m or more");
             return long_work(py::none(), 0, [&](const Monitor&) {
                 const float usual = static_cast<float>(2 * detail::default_element_size(*scene));
                 return std::make_shared<Scene>(cut_at_contacts(*scene, {.min_extent = min_extent.value_or(usual)}));
@@ -206,7 +208,7 @@ void bind_files(py::module_& m) {
             {{"min_extent",
               "Minimum extent of connected segments [m], >= 0; smaller ones are ignored. None: twice the side of "
               "the smallest elements of a solution."}})
-            .raises(""));
+            .raises("InputError: for a negative extent."));
     m.def("export_solution", &export_light, py::arg("solution"), py::arg("path"), py::kw_only(),
           py::arg("lightmap") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
           Documented("For interflect.export()."));

@@ -76,7 +76,7 @@ class Solver:
 
     @property
     def options(self) -> dict[str, Any]:
-        """Settings by name, with those that have defaults."""
+        """Settings by name, including defaults."""
         return self._solver.options
 
     @_documented_as(_core.Solver.save)
