@@ -8,7 +8,7 @@
 
 Lengths are in metres, light in photometric or radiometric units, as the scene has them. Colours are linear Rec. 709:
 tuples of three numbers, or one number for grey; points and directions are tuples of three numbers. Objects of plain
-data, such as a View, take their attributes by position or by name; they have replace(**attributes), ==, copies and
+data, such as a View, take their attributes by position or by name; they have replace(), ==, copies and
 pickle. The same seed gives the same bits for any number of threads, and the bits of the command `interflect`. Arrays
 of scenes and solutions are read-only and not copied. Calls that take long release the lock of the interpreter; Ctrl-C
 ends them.
