@@ -49,7 +49,7 @@ def linked(line: str) -> str:
         scope, function = found.groups()
         if not hasattr(getattr(interflect, scope, None) if scope else interflect, function):
             return found.group(0)
-        return f":py:obj:`~interflect.{scope}.{function}`" if scope else f":py:obj:`~interflect.{function}`"
+        return f":py:meth:`~interflect.{scope}.{function}`" if scope else f":py:func:`~interflect.{function}`"
 
     return FUNCTION.sub(link, line)
 
@@ -58,7 +58,7 @@ def convert(app: Any, what: str, name: str, value: object, options: Any, lines: 
     """Converts a docstring to reStructuredText. Docstrings of attributes have no sections."""
     lines[:] = [linked(line) for line in lines]
     if what not in ("attribute", "property"):
-        lines[:] = GoogleDocstring(lines, Config(), app, what, name, value, options).lines()
+        lines[:] = GoogleDocstring(lines, Config(napoleon_use_param=False), app, what, name, value, options).lines()
 
 
 def with_dots(app: Any, what: str, name: str, value: object, options: Any, signature: str, returns: str) -> tuple[str, str]:
