@@ -108,7 +108,9 @@ void bind_findings(py::module_& m) {
             return long_work(py::none(), 0, [&](const Monitor&) { return validate(*scene, RayCaster(*scene)); });
         },
         py::arg("scene"),
-        Documented(docs::validate, {{"scene", "Scene as read by load(), before cut_at_contacts()."}}).raises(""));
+        Documented(docs::validate, {{"scene", "Scene as read by load(), before cut_at_contacts()."}})
+            .returns("A list of Finding, in the order above.")
+            .raises(""));
 }
 
 BakeShading bake_shading_of(const std::string& name) {
