@@ -5,7 +5,6 @@
 #include "fields.h"
 #include "interflect/export.h"
 #include "interflect/formats/view_files.h"
-#include "interflect/formats/write_mgf.h"
 #include "interflect/geometry/split.h"
 #include "interflect/load.h"
 #include "interflect/prepare.h"
@@ -184,6 +183,11 @@ void bind_files(py::module_& m) {
           py::arg("max_patches"), py::arg("outside_files"), py::arg("luminaires"), py::arg("daylight"),
           Documented("For interflect.load()."));
     m.def(
+        "read_radiance_view", &detail::read_radiance_view, py::arg("path"),
+        Documented("Reads a view file of Radiance (.vf), with Radiance's defaults; it is named after the file.")
+            .raises(
+                "InputError: for an invalid file, for projections other than -vtv, shift, lift and clipping planes."));
+    m.def(
         "load_photometric_web",
         [](const std::filesystem::path& path) {
             Warnings warnings;
@@ -223,7 +227,7 @@ void bind_files(py::module_& m) {
         Documented(docs::export_scene, {{"path",
                                          "File to write: .rad (Radiance), .xml (Mitsuba 3), .pbrt (pbrt-v4) or .py "
                                          "(a script for Blender)."}})
-            .returns("The files that were written: a list of pathlib.Path."));
+            .returns("A list of the files that were written, as pathlib.Path."));
 }
 
 }  // namespace interflect::python

@@ -21,7 +21,7 @@ from interflect._core import (
     PointLight, PowerBalance, Progress, Scene, SkyDome, SkyModel, Solution, SpotLight, Sun, Texture, UniformSky, View,
     WeightedView, area_grid, automatic_exposure, cie_standard_sky, compare, cut_at_contacts, export_scene, find_floor,
     find_surface, find_top, grid_spacing, groups_by_name, line_grid, load_photometric_web, none, overview, read_image,
-    validate, write_image,
+    read_radiance_view, validate, write_image,
 )
 from interflect._core import version as __version__
 from interflect._errors import Error, InputError, Stopped, TooManyPatches, Warning
@@ -38,7 +38,7 @@ __all__ = [
     "UniformSky", "View", "Warning", "WeightedView", "__version__", "area_grid", "automatic_exposure", "cie_standard_sky",
     "compare", "cut_at_contacts", "export", "export_scene", "find_floor", "find_surface", "find_top", "grid_spacing",
     "groups_by_name", "line_grid", "load", "load_photometric_web", "none", "open_solution", "overview", "probe",
-    "rate_glare", "read_image", "render", "solve", "tonemap", "trace", "validate", "write_image",
+    "rate_glare", "read_image", "read_radiance_view", "render", "solve", "tonemap", "trace", "validate", "write_image",
 ]
 
 # Messages and help() show the names under which users find these.
