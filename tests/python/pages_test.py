@@ -55,6 +55,15 @@ class Pages(unittest.TestCase):
         missing = {option for option in options - listed if option.replace("-", "_") not in arguments}
         self.assertEqual(missing, {"help", "output"})
 
+    def test_a_picture_of_another_size_has_the_bits_of_the_command(self) -> None:
+        subprocess.run([os.environ["INTERFLECT_COMMAND"], "render", "maze:2", "--view", "room-0", "--rays", "20k", "--size",
+                        "64x36", "--samples", "2", "-o", self.folder / "picture.exr"], check=True, stderr=subprocess.DEVNULL)
+        scene = ifl.load("maze:2")
+        (view,) = (view for view in scene.views if view.name == "room-0")
+        solution = ifl.solve(scene, view=ifl.WeightedView(view, aspect=64 / 36, pixel_rows=36), rays=2e4)
+        picture = ifl.render(solution, width=64, height=36, samples=2)
+        self.assertTrue((picture == ifl.read_image(self.folder / "picture.exr")).all())
+
     def test_the_tutorial_runs(self) -> None:
         printed = self.run_python(str(PAGES / "tutorial.py"))
         self.assertRegex(printed, r"\d+ \+- \d+\.\d lx, uniformity 0\.\d\d\n$")
