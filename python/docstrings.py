@@ -75,6 +75,9 @@ def comments(header: str) -> dict[str, Comment]:
         stripped = line.strip()
         if stripped.startswith("template"):
             continue
+        if stripped.startswith("#"):  # ends the comment of a file
+            pending = []
+            continue
         trailing = TRAILING.match(line)
         if stripped.startswith("///") and not stripped.startswith("///<"):
             pending.append(re.sub(r"^\s*/// ?", "", line))

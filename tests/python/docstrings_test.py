@@ -18,6 +18,9 @@ sys.modules["docstrings"] = docstrings
 specification.loader.exec_module(docstrings)
 
 HEADER = """
+/// @file
+/// Lamps.
+#pragma once
 namespace interflect {
 
 /// A lamp, as null says:
