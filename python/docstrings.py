@@ -1,9 +1,9 @@
 """Writes the comments of the public headers as C++ constants: docstrings.py OUTPUT HEADER...
 
-The comment of `Solver::advance()` becomes `docs::Solver_advance`, a Comment of python/bindings/documented.h; that of a
-type or a member, such as `View::fov`, becomes the string `docs::View_fov`. The bindings make docstrings of them, so the
-comment of a header is the only text of a contract. What differs between the languages is converted here: `nullopt` and
-`null` become None, `Scene::origin` becomes `Scene.origin`, functions have their names in Python. Paragraphs that start
+The comment of `Solver::advance()` becomes `docs::Solver_advance`, a Comment of python/bindings/documented.h; the
+comment of a type or a member, such as `View::fov`, becomes the string `docs::View_fov`. The bindings make docstrings of
+them: the comment of a header is the only text of a contract. Words of C++ are converted here: `nullopt` and `null` become
+None, `Scene::origin` becomes `Scene.origin`, functions have their names in Python. Paragraphs that start
 with @note, and references in parentheses to code, are about C++ and are omitted.
 """
 
@@ -75,6 +75,9 @@ def comments(header: str) -> dict[str, Comment]:
         stripped = line.strip()
         if stripped.startswith("template"):
             continue
+        if stripped.startswith("#"):  # ends the comment of a file
+            pending = []
+            continue
         trailing = TRAILING.match(line)
         if stripped.startswith("///") and not stripped.startswith("///<"):
             pending.append(re.sub(r"^\s*/// ?", "", line))
@@ -115,7 +118,7 @@ def without_initialisers(declaration: str) -> str:
 
 
 def is_function(declaration: str) -> bool:
-    """Whether a declaration is that of a function."""
+    """Whether a declaration declares a function."""
     return not declaration.startswith("using") and FUNCTION.search(without_initialisers(declaration)) is not None
 
 
@@ -130,7 +133,7 @@ def names_of(declaration: str) -> list[str]:
 
 
 def in_python(text: str) -> str:
-    """Replaces names of C++ by those of Python."""
+    """Replaces names of C++ by names of Python."""
     text = REFERENCE.sub("", text)
     return PYTHON_NAME.sub(lambda name: PYTHON_NAMES[name.group(0)], text).replace("::", ".")
 
@@ -140,7 +143,7 @@ def one_line(text: str) -> str:
 
 
 def parse(lines: list[str], is_function: bool) -> Comment:
-    """Divides a comment at its commands @param, @return, @throws and @note. A cost after one of them belongs to the text."""
+    """Divides a comment at its commands @param, @return, @throws and @note. A cost after a command belongs to the text."""
     first, *rest = COMMAND.split("\n".join(lines))
     result = Comment(first.strip(), is_function=is_function)
     for command, content in zip(rest[::2], rest[1::2]):

@@ -5,7 +5,7 @@ import numpy as np
 
 import interflect as ifl
 
-# The corners of the room, then those of a lamp 1 cm below the ceiling. Faces are
+# The corners of the room, then the corners of a lamp 1 cm below the ceiling. Faces are
 # counter-clockwise seen from the inside.
 floor = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)]
 lamp = [(1.5, 1.2), (1.5, 1.8), (2.5, 1.8), (2.5, 1.2)]

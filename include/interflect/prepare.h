@@ -76,8 +76,8 @@ struct ValidateOptions {
 /// not), "hidden-lamp" (covered, or enclosed by close surfaces), "open-lamp-back" (one-sided, close before a surface
 /// that its reflected light reaches), "zero-power-lamp", "high-reflectance", "no-light", "implausible-size",
 /// "maintenance-factor". Notes: "coincident-face" (partly covered by another in its plane), "open-edge" (belongs to one
-/// face only) and "no-view"; then mistakes of placement, units and axes (validate_setup()). Surroundings of faces and lamps are sampled with 64
-/// rays a face, for at most 4096 faces of a kind.
+/// face only) and "no-view"; then mistakes of placement, units and axes (validate_setup()). Surroundings of faces and
+/// lamps are sampled with 64 rays a face, for at most 4096 faces of a kind.
 /// @param ray_caster  Of this scene.
 /// @return            In the order above. Cost: O(n log n) for n patches.
 /// @throws InputError for a ray caster of another scene.

@@ -117,8 +117,8 @@ struct PictureLayers {
 /// A picture with its standard error.
 struct PathTracing {
     /// Radiance L = (M + rho H) / pi seen by each pixel, the mean over its square; the sky for escaped rays. In the
-    /// units of render(). Unbiased if traced without a solution: the expected value is then exact. Pixels not reached by
-    /// an interrupted run are black.
+    /// units of render(). Unbiased if traced without a solution: the expected value is then exact. Pixels not reached
+    /// by an interrupted run are black.
     Image image;
     PictureLayers layers;
     /// Standard error of each pixel and channel, in the same unit, from the spread of independent batches of paths.

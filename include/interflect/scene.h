@@ -66,7 +66,7 @@ bool matches_object(std::string_view pattern, std::string_view name);
 
 /// Group of each source: the first whose pattern matches.
 struct SourceGroups {
-    std::vector<std::string> names;          ///< Those of Scene::light_groups, then "other" if some sources match none.
+    std::vector<std::string> names;          ///< Names of Scene::light_groups, then "other" if a source matches none.
     std::vector<std::uint8_t> of_patch;      ///< Index into names; undefined for patches that do not emit.
     std::vector<std::uint8_t> of_luminaire;  ///< Index into names.
 

@@ -54,7 +54,7 @@ struct IterationTraffic {
 /// their children.
 struct Solution {
     std::shared_ptr<const detail::ElementForest> forest;  ///< Quadtrees of the elements, opaque; see leaves().
-    std::vector<Rgb> irradiance;                          ///< H [lm/m^2 or W/m^2].
+    std::vector<Rgb> irradiance;                          ///< Irradiance H [lm/m^2 or W/m^2].
     /// Parts of H by light group, [group][element]; they sum to H. Empty without light groups.
     std::vector<std::vector<Rgb>> groups;
     /// Part of H that comes straight from sources, by light group as `groups`, or in one entry without groups; their
@@ -89,9 +89,9 @@ struct Leaf {
     /// World coordinates [m], counter-clockwise seen from the lit side. A triangle repeats the last.
     std::array<Imath::V3d, 4> vertices{};
     float area = 0;                  ///< Area [m^2].
-    Rgb irradiance{0, 0, 0};         ///< H [lm/m^2 or W/m^2].
+    Rgb irradiance{0, 0, 0};         ///< Irradiance H [lm/m^2 or W/m^2].
     Rgb direct{0, 0, 0};             ///< Part of H straight from sources; 0 without SolveOptions::keep_direct [as H].
-    float importance = 0;            ///< psi, all bounces; 0 without a view [1/m^2].
+    float importance = 0;            ///< Importance psi, all bounces; 0 without a view [1/m^2].
     float standard_error = 0;        ///< As Solution::standard_error.
     float discretisation_error = 0;  ///< As Solution::discretisation_error.
 };

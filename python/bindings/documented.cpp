@@ -28,7 +28,7 @@ const char* find(std::span<const Argument> arguments, std::string_view name) {
 
 /// Wraps a paragraph of a section to lines of 112 characters, the later ones further to the right.
 void append_wrapped(std::string& text, std::string_view paragraph) {
-    constexpr std::size_t width = 112;
+    constexpr std::size_t width = 112;  // 120, the columns of the code, less the 8 by which help() indents methods
     std::size_t column = 4;
     text += "\n    ";
     for (std::size_t begin = 0; begin < paragraph.size();) {
@@ -45,8 +45,7 @@ void append_wrapped(std::string& text, std::string_view paragraph) {
     }
 }
 
-/// Signature as inspect.signature() reads it: "(scene, object, facing=None)". Values that are not literals of Python
-/// are shown as "...".
+/// Signature as inspect.signature() reads it: "(scene, object, facing=None)". Defaults must be literals of Python.
 std::string signature_of(const py::detail::function_record& function) {
     std::string text;
     const auto add = [&](const std::string& argument) { text += (text.empty() ? "" : ", ") + argument; };

@@ -32,11 +32,11 @@ inline std::string array_text(const char* shape_and_type, const char* comment) {
 
 /// Docstring of a function or method, the last argument of pybind11's def(). It starts with the signature, from which
 /// Python makes `__text_signature__` for inspect.signature() and help(). The section "Args" has the arguments of the
-/// Python function in their order; those of the comment that Python does not have are omitted.
+/// Python function in their order; other parameters of the comment are omitted.
 class Documented {
   public:
-    /// @param own  Arguments that the comment does not describe, or describes otherwise; a description that is the same
-    ///             everywhere, such as that of `threads`, is found by name.
+    /// @param own  Arguments that the comment does not describe, or describes otherwise. Common arguments, such as
+    ///             `threads`, have a description already.
     explicit Documented(const Comment& comment, std::initializer_list<Argument> own = {})
         : comment_(comment), own_(own) {}
     /// A function that is in Python only, without exceptions of its own.

@@ -133,7 +133,7 @@ class Fields {
             const bool is_object = value.find_first_of("<=(") != std::string::npos && value.front() != '(';
             arguments += ", " + field.name + "=" + (is_object ? "..." : value);
         }
-        return "__init__(self" + arguments + ")\n--\n\nMakes an object from its attributes, by position or by name.";
+        return "__init__(self" + arguments + ")\n--\n\n";
     }
 
     pybind11::class_<T, std::shared_ptr<T>> class_;

@@ -4,7 +4,6 @@
 #include "fields.h"
 #include "interflect/export.h"
 #include "interflect/formats/view_files.h"
-#include "interflect/formats/write_mgf.h"
 #include "interflect/geometry/split.h"
 #include "interflect/load.h"
 #include "interflect/prepare.h"
@@ -107,7 +106,9 @@ void bind_findings(py::module_& m) {
             return long_work(py::none(), 0, [&](const Monitor&) { return validate(*scene, RayCaster(*scene)); });
         },
         py::arg("scene"),
-        Documented(docs::validate, {{"scene", "Scene as read by load(), before cut_at_contacts()."}}).raises(""));
+        Documented(docs::validate, {{"scene", "Scene as read by load(), before cut_at_contacts()."}})
+            .returns("A list of Finding, in the order above.")
+            .raises(""));
 }
 
 BakeShading bake_shading_of(const std::string& name) {
@@ -132,6 +133,7 @@ void take(py::dict& left, const char* name, Value& value) {
 std::vector<std::filesystem::path> export_light(const SharedLight& light, const std::filesystem::path& path,
                                                 bool lightmap, int threads, const py::object& progress,
                                                 const py::kwargs& keywords) {
+    if (is_scene_export(path)) throw InputError(path, 0, "export_scene() writes this format");
     ExportOptions options;
     LightmapOptions texels;
     py::dict left(keywords);
@@ -180,6 +182,11 @@ void bind_files(py::module_& m) {
           py::arg("max_patches"), py::arg("outside_files"), py::arg("luminaires"), py::arg("daylight"),
           Documented("For interflect.load()."));
     m.def(
+        "read_radiance_view", &detail::read_radiance_view, py::arg("path"),
+        Documented("Reads a view file of Radiance (.vf), with Radiance's defaults; it is named after the file.")
+            .raises(
+                "InputError: for an invalid file, for projections other than -vtv, shift, lift and clipping planes."));
+    m.def(
         "load_photometric_web",
         [](const std::filesystem::path& path) {
             Warnings warnings;
@@ -194,6 +201,7 @@ void bind_files(py::module_& m) {
     m.def(
         "cut_at_contacts",
         [](const std::shared_ptr<Scene>& scene, const std::optional<float>& min_extent) {
+            if (min_extent && !(*min_extent >= 0)) throw InputError("min_extent: expected 0 m or more");
             return long_work(py::none(), 0, [&](const Monitor&) {
                 const float usual = static_cast<float>(2 * detail::default_element_size(*scene));
                 return std::make_shared<Scene>(cut_at_contacts(*scene, {.min_extent = min_extent.value_or(usual)}));
@@ -205,7 +213,7 @@ void bind_files(py::module_& m) {
             {{"min_extent",
               "Minimum extent of connected segments [m], >= 0; smaller ones are ignored. None: twice the side of "
               "the smallest elements of a solution."}})
-            .raises(""));
+            .raises("InputError: for a negative extent."));
     m.def("export_solution", &export_light, py::arg("solution"), py::arg("path"), py::kw_only(),
           py::arg("lightmap") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
           Documented("For interflect.export()."));
@@ -218,7 +226,7 @@ void bind_files(py::module_& m) {
         Documented(docs::export_scene, {{"path",
                                          "File to write: .rad (Radiance), .xml (Mitsuba 3), .pbrt (pbrt-v4) or .py "
                                          "(a script for Blender)."}})
-            .returns("The files that were written: a list of pathlib.Path."));
+            .returns("A list of the files that were written, as pathlib.Path."));
 }
 
 }  // namespace interflect::python

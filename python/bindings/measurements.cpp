@@ -177,7 +177,8 @@ void bind_glare(py::module_& m) {
         py::arg("solution"), py::arg("eyes"), py::arg("lines_of_sight"), py::kw_only(), py::arg("samples") = 4096,
         py::arg("seed") = 1, py::arg("threads") = 0, py::arg("progress") = py::none(),
         Documented(docs::rate_glare,
-                   {{"eyes", "(n, 3), or (3,): positions of the observers, in world coordinates [m]."},
+                   {{"solution", "Result of solve()."},
+                    {"eyes", "(n, 3), or (3,): positions of the observers, in world coordinates [m]."},
                     {"lines_of_sight", "(n, 3), or (3,) for all: directions, which need not be normalised."},
                     {"samples", "Gathered directions per observer, >= 2."}})
             .returns("A list with the rating of each observer.")

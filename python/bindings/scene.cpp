@@ -115,7 +115,7 @@ void bind_scene_parts(py::module_& m) {
                                  {static_cast<py::ssize_t>(t->height), width, 3},
                                  {width * 3 * number, 3 * number, number});
             },
-            "Texels (height, width, 3), float32: linear Rec. 709, >= 0, row 0 at the top.")
+            "(height, width, 3) float32: linear Rec. 709, >= 0, row 0 at the top.")
         .def("__repr__",
              [](const Texture& t) { return fmt::format("<Texture '{}': {} x {}>", t.name, t.width, t.height); });
 }

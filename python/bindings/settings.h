@@ -19,7 +19,7 @@ SolveOptions solve_options(const Scene& scene, const pybind11::object& method, c
 /// Inverse: all settings by name, with `method` and `seed`.
 pybind11::dict settings_of(const SolveOptions& options);
 
-/// Limits by name: rays, time [s], until; None for those that are not set. @throws InputError for one out of range.
+/// Limits by name: rays, time [s], until; None: no limit. @throws InputError for one out of range.
 Limits limits_of(const pybind11::object& rays, const pybind11::object& time, const pybind11::object& until);
 
 std::vector<WeightedView> weighted_views(const Scene& scene, const pybind11::object& views);

@@ -162,7 +162,7 @@ void bind_solution(py::module_& m) {
         "views of one array of structures, which the first request makes (152 bytes a leaf); they stay valid when the "
         "solver and this object are gone.")
         .def_property_readonly("irradiance", leaf_column<float>(&Leaf::irradiance, 3),
-                               "(n, 3) float32: H [lm/m^2 or W/m^2].")
+                               array_text("(n, 3) float32", docs::Leaf_irradiance).c_str())
         .def_property_readonly("direct", leaf_column<float>(&Leaf::direct, 3),
                                array_text("(n, 3) float32", docs::Leaf_direct).c_str())
         .def_property_readonly("importance", leaf_column<float>(&Leaf::importance),

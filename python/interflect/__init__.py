@@ -6,10 +6,12 @@
     picture = ifl.render(solution)            # float32 (720, 1280, 3), cd/m^2
     ifl.write_image("desk.png", picture)
 
-Lengths are in metres, light in photometric or radiometric units, as the scene has them. Colours are linear Rec. 709: tuples
-of three numbers, or one number for grey; points and directions are tuples of three numbers. The same seed gives the same
-bits for any number of threads, and the bits of the command `interflect`. Arrays of scenes and solutions are read-only and
-not copied. Calls that take long release the lock of the interpreter; Ctrl-C ends them.
+Lengths are in metres, light in photometric or radiometric units, as the scene has them. Colours are linear Rec. 709:
+tuples of three numbers, or one number for grey; points and directions are tuples of three numbers. Objects of plain
+data, such as a View, take their attributes by position or by name; they have replace(), ==, copies and
+pickle. The same seed gives the same bits for any number of threads, and the bits of the command `interflect`. Arrays
+of scenes and solutions are read-only and not copied. Calls that take long release the lock of the interpreter; Ctrl-C
+ends them.
 """
 
 from interflect._core import (
@@ -19,7 +21,7 @@ from interflect._core import (
     PointLight, PowerBalance, Progress, Reconciliation, Scene, SkyDome, SkyModel, Solution, SpotLight, Sun, Texture, UniformSky, View,
     WeightedView, area_grid, automatic_exposure, cie_standard_sky, compare, cut_at_contacts, export_scene, find_floor,
     find_surface, find_top, grid_spacing, groups_by_name, line_grid, load_photometric_web, none, overview, read_image,
-    validate, write_image,
+    read_radiance_view, validate, write_image,
 )
 from interflect._core import version as __version__
 from interflect._errors import Error, InputError, Stopped, TooManyPatches, Warning
@@ -37,7 +39,8 @@ __all__ = [
     "UniformSky", "View", "ViewFactors", "Warning", "WeightedView", "__version__", "area_grid", "automatic_exposure", "cie_standard_sky",
     "compare", "cut_at_contacts", "export", "export_scene", "find_floor", "find_surface", "find_top", "grid_spacing",
     "groups_by_name", "line_grid", "load", "load_photometric_web", "none", "open_solution", "overview", "probe",
-    "rate_glare", "read_image", "render", "solve", "tonemap", "trace", "validate", "view_factors", "write_image",
+    "rate_glare", "read_image", "read_radiance_view", "render", "solve", "tonemap", "trace", "validate",
+    "view_factors", "write_image",
 ]
 
 # Messages and help() show the names under which users find these.

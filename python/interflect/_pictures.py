@@ -116,7 +116,8 @@ def trace(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, hei
 
 def tonemap(image: ArrayLike, *, exposure: float | None = None, curve: str = "srgb",
             display_luminance: float = 100) -> NDArray[np.uint8]:
-    """Display values of a picture: uint8 (height, width, 3), sRGB, for matplotlib and Pillow.
+    """Display values of a picture: uint8 (height, width, 3), sRGB, for matplotlib and Pillow. Pixels that are not finite
+    become magenta.
 
     Args:
         image: (height, width, 3): radiance; [cd/m^2] for the last three curves.
@@ -125,7 +126,7 @@ def tonemap(image: ArrayLike, *, exposure: float | None = None, curve: str = "sr
         display_luminance: White of the display [cd/m^2], for the last three.
 
     Raises:
-        InputError: for another shape, an unknown curve and values that are not finite.
+        InputError: for another shape, and for an unknown curve.
     """
     return _core.tonemap(np.asarray(image, np.float32), exposure, curve, display_luminance)
 
@@ -167,7 +168,7 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
 
     Args:
         solution: Result of solve().
-        path: .glb, .gltf, .ply, .obj, .vtkhdf, .vtu or .json.
+        path: .glb, .gltf, .ply, .obj, .vtkhdf, .hdf or .vtu; .json or .exr for probes.
         lightmap: Stores the light in lightmaps rather than in vertices.
         threads, progress: As of render().
         options: exposure, up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,

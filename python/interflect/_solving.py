@@ -80,7 +80,7 @@ class Solver:
 
     @property
     def options(self) -> dict[str, Any]:
-        """Settings by name, with those that have defaults."""
+        """Settings by name, including defaults."""
         return self._solver.options
 
     @_documented_as(_core.Solver.save)
@@ -96,6 +96,11 @@ class Solver:
         """Frees the memory of the run. Solutions and their arrays stay valid; other calls raise Error."""
         self._solver.close()
 
+    @property
+    def is_closed(self) -> bool:
+        """Whether close() was called."""
+        return self._solver.is_closed
+
     def __enter__(self) -> Solver:
         return self
 
@@ -104,7 +109,7 @@ class Solver:
         self.close()
 
     def __repr__(self) -> str:
-        if self._solver.is_closed:
+        if self.is_closed:
             return "<Solver: closed>"
         return f"<Solver of '{self.scene.name}': {self.options['method']}>"
 

@@ -18,6 +18,9 @@ sys.modules["docstrings"] = docstrings
 specification.loader.exec_module(docstrings)
 
 HEADER = """
+/// @file
+/// Lamps.
+#pragma once
 namespace interflect {
 
 /// A lamp, as null says:
@@ -136,7 +139,7 @@ class Docstrings(unittest.TestCase):
 
     def test_there_is_no_cpp_in_them(self) -> None:
         cpp = re.compile(r"::|std\b|nullopt|\bnull\b|\btrue\b|\bfalse\b|Monitor|Options\b|\bLimits\.|\bconst\b|"
-                         r"@\w+|\w\.h\b|_core|<[a-z_]+>|ray_caster|vector<|\bLeaf\b")
+                         r"@\w+|\w\.h\b|_core|<[a-z_]+>|ray_caster|\bmonitor\b|vector<|\bLeaf\b")
         for name, value in public_names():
             with self.subTest(name):
                 self.assertIsNone(cpp.search(inspect.getdoc(value)), inspect.getdoc(value))
@@ -154,6 +157,15 @@ class Docstrings(unittest.TestCase):
             for scope, member in re.findall(r"\b([A-Z][a-z]\w*)\.([a-z]\w*)\b(?!\()", text):
                 with self.subTest(name, member=f"{scope}.{member}"):
                     self.assertTrue(hasattr(ifl, scope) and hasattr(getattr(ifl, scope), member))
+
+
+    def test_the_words_in_backticks_are_names(self) -> None:
+        members = {member for kind in vars(ifl).values() if inspect.isclass(kind) for member in dir(kind)}
+        for name, value in public_names():
+            arguments = set(inspect.signature(value).parameters) if inspect.isroutine(value) else set()
+            for word in re.findall(r"`([a-z]\w*)`", inspect.getdoc(value)):
+                with self.subTest(name, word=word):
+                    self.assertIn(word, members | arguments | set(ifl.__all__) | {"interflect"})
 
 
 if __name__ == "__main__":
