@@ -152,17 +152,14 @@ class ViewFactors(CommandTest):
 
     def test_an_interrupt_leaves_no_file(self):
         self.write("cube.vs3", CUBE)
-        for enforce in ((), ("--enforce", "closure,reciprocity")):
-            run = subprocess.Popen(
-                [COMMAND, "viewfactors", "cube.vs3", "-o", "f.csv", "--rays", "10T", *enforce],
-                cwd=self.folder, stderr=subprocess.PIPE, text=True,
-            )
+        command = [COMMAND, "viewfactors", "cube.vs3", "-o", "f.csv", "--rays", "10T"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True) as run:
             time.sleep(1)
             run.send_signal(signal.SIGINT)
             _, stderr = run.communicate(timeout=10)
-            self.assertEqual(run.returncode, INTERRUPTED)
-            self.assertIn("the view factors of 6 of 6 groups are missing: nothing is written", stderr)
-            self.assertEqual(self.files(), ["cube.vs3"])
+        self.assertEqual(run.returncode, INTERRUPTED)
+        self.assertIn("the view factors of 6 of 6 groups are missing: nothing is written", stderr)
+        self.assertEqual(self.files(), ["cube.vs3"])
 
     def test_faults_name_their_option(self):
         self.write("cube.vs3", CUBE)

@@ -2,6 +2,10 @@
 // (coaxial discs) and C-13/C-15 (form_factors.h).
 //
 // Each statistical test compares independent seeds by a t test at `false_alarm`.
+//
+// Seen to fail if directions lack the cosine, patches of a group are chosen regardless of area, starts on covered parts
+// are kept, covered area is counted, sky and ground are swapped, all replicates share a scrambling, the seed is
+// ignored, errors belong to one replicate, backs are transparent, or backs have priority over faces.
 
 #include "interflect/view_factors.h"
 
@@ -192,7 +196,7 @@ TEST(ViewFactors, AreForTheUncoveredAreaAlone) {
     const ViewFactors f = view_factors(scene, RayCaster(scene), squares, {1 << 14});
     EXPECT_NEAR(f.areas[0], 0.25, 1e-6);
     const double expected = form_factor({{0.75, 0, 0}, {0.25, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}});
-    EXPECT_LT(expected, 0.18) << "0.2 for the whole square";
+    EXPECT_LT(expected, 0.19) << "0.2 for the whole square";
     EXPECT_GT(p_value(scene, squares, 1 << 16, expected, [](const ViewFactors& g) { return g.factor(0, 1).value; }),
               false_alarm);
     EXPECT_GT(p_value(scene, squares, 1 << 16, expected / 4, [](const ViewFactors& g) { return g.factor(1, 0).value; }),
