@@ -126,6 +126,7 @@ void print_summary(const ViewFactors& f, const std::optional<Reconciliation>& fi
     print_deviation("closure", when, now.closure);
     print_deviation("reciprocity", when, now.reciprocity);
     if (!fit) return;
+    print_line("fit          {} linear systems, {} conjugate gradient steps", fit->solves, fit->iterations);
     print_deviation("closure", "after", fit->after.closure);
     print_deviation("reciprocity", "after", fit->after.reciprocity);
 }

@@ -19,8 +19,9 @@ struct FaceGroup {
     std::vector<std::uint32_t> patches;  ///< Indices into Scene::patches, each at most once.
 };
 
-/// Adds a black back without names to every one-sided face, which lets rays through otherwise. Visibility, and hence
-/// reciprocity, then is symmetric. The patches of the result have other indices.
+/// Appends a black back without names for every one-sided face, so that it blocks from both sides. Otherwise rays pass
+/// through it from behind, visibility is not symmetric, and reciprocity fails. Existing patches keep their indices, and
+/// have priority over coincident backs.
 Scene with_opaque_backs(const Scene& scene);
 
 /// Sides of two-sided faces that belong to groups; the others only block. One-sided faces always belong.
@@ -59,9 +60,9 @@ struct ViewFactorOptions {
 /// View factors F_ij = values of row i and column j: the fraction of the diffuse radiation that leaves group i and
 /// reaches group j directly. A sparse matrix in compressed rows, whose arrays SciPy's csr_matrix accepts.
 struct ViewFactors {
-    std::vector<std::string> names;         ///< Of the groups.
+    std::vector<std::string> names;         ///< Names of the groups.
     std::vector<double> areas;              ///< Uncovered area of each group [m^2].
-    std::vector<std::int64_t> row_offsets;  ///< Of each row in the next three, and their length; size() + 1.
+    std::vector<std::int64_t> row_offsets;  ///< Start of each row in the next three arrays, and the end; size() + 1.
     std::vector<std::int32_t> columns;      ///< Increasing within a row.
     std::vector<float> values;              ///< In [0, 1].
     std::vector<float> errors;              ///< Standard errors. Absent entries have `smallest_error`.
@@ -95,9 +96,12 @@ struct ViewFactors {
 /// @param ray_caster  Of this scene.
 /// @throws InputError for groups with common or missing patches, a number of rays out of range and a ray caster of
 ///         another scene; Stopped.
-/// Cost: O(rays log(patches)); 12 bytes per non-zero factor, of which a group has at most as many as rays.
+/// Cost: O(rays log(patches)); 12 bytes per non-zero factor.
 ViewFactors view_factors(const Scene& scene, const RayCaster& ray_caster, std::span<const FaceGroup> groups,
                          const ViewFactorOptions& options = {}, const Monitor& monitor = {});
+/// The same for with_opaque_backs(scene), with its own ray caster: both sides of all faces block.
+ViewFactors view_factors(const Scene& scene, std::span<const FaceGroup> groups, const ViewFactorOptions& options = {},
+                         const Monitor& monitor = {});
 
 /// Deviations from a law that exact factors obey.
 struct Deviation {
@@ -106,7 +110,7 @@ struct Deviation {
 };
 
 struct Consistency {
-    /// closure(i) - 1. Ray casting counts every ray once, so its estimate has none beyond rounding.
+    /// closure(i) - 1. Zero to rounding for view_factors(), which counts every ray once.
     Deviation closure;
     /// (A_i F_ij - A_j F_ji) / min(A_i, A_j), over pairs with a non-zero factor: relative to the largest possible
     /// A_i F_ij.
@@ -121,18 +125,18 @@ struct ReconcileOptions {
 
 struct Reconciliation {
     Consistency before, after;
-    int solves = 0, iterations = 0;  ///< Of linear systems, and of conjugate gradients in total.
+    int solves = 0, iterations = 0;  ///< Number of linear systems and of all steps of conjugate gradients.
 };
 
 /// Replaces factors by the nearest that obey reciprocity and closure and are non-negative: weighted least squares,
 /// weights from the standard errors (after Larsen and Howell 1986; Lawson 1995; Taylor and Luck 1995). Both directions
-/// of a pair are first averaged, with their rays per area as weights. Sky, ground and blocked are further columns; zero
+/// of a pair are first averaged, with weights 1 / (A_i (1 - F_ij)). Sky, ground and blocked are further columns; zero
 /// columns and pairs without any hit stay zero.
 ///
 /// Afterwards reciprocity holds to 2^-22 of each factor and closure to 1e-6, if the laws are compatible. Two surfaces
 /// of different areas that see only each other are not, for example; `after` then reports the rest.
 ///
-/// The errors become those of the averages of both directions. The fit usually reduces them further.
+/// The errors become the errors of the averages of both directions. The fit usually reduces them further.
 /// Memory: at most 24 bytes per non-zero factor in addition.
 /// @throws Stopped, and then leaves `factors` as they were.
 Reconciliation reconcile(ViewFactors& factors, const ReconcileOptions& options = {}, const Monitor& monitor = {});

@@ -1,18 +1,21 @@
 """`viewfactors`: tables and arrays of View3D's files, against View3D itself, and of groups by name.
 
-View3D 4.0.0 (github.com/jasondegraw/View3D) computed the figures below, with a convergence limit of 1e-6. One of these
-40 factors is beyond 5 of its standard errors, which have 31 degrees of freedom, with a probability of 0.1%.
+View3D 4.0.0 (github.com/jasondegraw/View3D) computed the figures below, with a convergence limit of 1e-6. The
+standard errors have 31 degrees of freedom: with a probability of 0.1%, a correct factor deviates by more than 5 errors.
 """
 
 import ast
 import csv
 import io
 import math
+import signal
 import struct
+import subprocess
+import time
 import unittest
 import zipfile
 
-from command import BAD_INPUT, WRONG_USAGE, CommandTest, room
+from command import BAD_INPUT, COMMAND, INTERRUPTED, WRONG_USAGE, CommandTest, room
 
 CORNERS = [(x, y, z) for z in (0, 1) for (x, y) in ((0, 0), (1, 0), (1, 1), (0, 1))]
 CUBE_FACES = {"zeq0": "1 2 3 4", "xeq0": "1 4 8 5", "yeq0": "1 5 6 2", "zeq1": "7 6 5 8", "xeq1": "7 3 2 6", "yeq1": "7 8 4 3"}
@@ -146,6 +149,17 @@ class ViewFactors(CommandTest):
             tables.append(self.bytes("f.npz"))
         self.assertEqual(tables[0], tables[1])
         self.assertNotEqual(tables[0], tables[2])
+
+    def test_an_interrupt_leaves_no_file(self):
+        self.write("cube.vs3", CUBE)
+        command = [COMMAND, "viewfactors", "cube.vs3", "-o", "f.csv", "--rays", "10T"]
+        with subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True) as run:
+            time.sleep(1)
+            run.send_signal(signal.SIGINT)
+            _, stderr = run.communicate(timeout=10)
+        self.assertEqual(run.returncode, INTERRUPTED)
+        self.assertIn("the view factors of 6 of 6 groups are missing: nothing is written", stderr)
+        self.assertEqual(self.files(), ["cube.vs3"])
 
     def test_faults_name_their_option(self):
         self.write("cube.vs3", CUBE)

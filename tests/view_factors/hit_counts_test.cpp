@@ -1,4 +1,6 @@
 // Factors and standard errors of a row from counted hits, by hand.
+//
+// Seen to fail without the resolution of a count, with the error of one replicate, and if the spread of rays counts.
 
 #include "interflect/view_factors/hit_counts.h"
 

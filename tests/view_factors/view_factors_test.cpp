@@ -2,6 +2,10 @@
 // (coaxial discs) and C-13/C-15 (form_factors.h).
 //
 // Each statistical test compares independent seeds by a t test at `false_alarm`.
+//
+// Seen to fail if directions lack the cosine, patches of a group are chosen regardless of area, starts on covered parts
+// are kept, covered area is counted, sky and ground are swapped, all replicates share a scrambling, the seed is
+// ignored, errors belong to one replicate, backs are transparent, or backs have priority over faces.
 
 #include "interflect/view_factors.h"
 
@@ -141,15 +145,40 @@ TEST(ViewFactors, OfOneSidedFacesAreReciprocalWithOpaqueBacks) {
     add_rectangle(scene, {0.25f, 0.25f, 0.5f}, {0, 0.5f, 0}, {0.5f, 0, 0}, 0);
     const ViewFactors open = view_factors(scene, RayCaster(scene), facet_groups(scene), {3 << 14});
     EXPECT_GT(open.factor(1, 0).value, open.factor(0, 1).value + 0.03);
-    const Scene opaque = with_opaque_backs(scene);
-    const ViewFactors f = view_factors(opaque, RayCaster(opaque), facet_groups(opaque), {3 << 14});
+    const ViewFactors f = view_factors(scene, facet_groups(scene), {3 << 14});
     EXPECT_EQ(f.size(), 3u);
     EXPECT_GT(f.blocked[1], 0.03);
     EXPECT_LT(consistency(f).reciprocity.largest_in_errors, 5);
 }
 
+TEST(ViewFactors, OfAThinPartitionAreThoseOfItsTwoSides) {
+    // Two one-sided faces in one plane between opposite squares; the upper one is smaller.
+    Scene scene = opposite_squares();
+    add_rectangle(scene, {0.25f, 0.25f, 0.5f}, {0.5f, 0, 0}, {0, 0.5f, 0}, 0);
+    add_rectangle(scene, {0, 0, 0.5f}, {0, 1, 0}, {1, 0, 0}, 0);
+    const ViewFactors f = view_factors(scene, facet_groups(scene), {4 << 14});
+    EXPECT_NEAR(f.areas[2], 0.25, 1e-6);
+    EXPECT_NEAR(f.areas[3], 1, 1e-6) << "backs cover no face";
+    EXPECT_GT(p_value(with_opaque_backs(scene), facet_groups(scene), 4 << 12,
+                      form_factor({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5}, {0, 1, 0}, {1, 0, 0}}),
+                      [](const ViewFactors& g) { return g.factor(0, 3).value; }),
+              false_alarm);
+    EXPECT_EQ(f.factor(0, 1).value, 0);
+    EXPECT_GT(f.factor(1, 2).value, 0.1);
+    EXPECT_GT(f.blocked[1], 0.1);
+}
+
+TEST(ViewFactors, OfAnOpenBoxSeeTheSkyThroughItsOpening) {
+    Scene scene = closed_box({2, 3, 1}, 1, {black});
+    scene.objects = {""};
+    scene.patches.pop_back();  // the ceiling
+    const double opening = form_factor({{0, 0, 0}, {2, 0, 0}, {0, 3, 0}}, {{0, 0, 1}, {0, 3, 0}, {2, 0, 0}});
+    EXPECT_GT(p_value(scene, facet_groups(scene), 5 << 14, opening, [](const ViewFactors& f) { return f.sky[4]; }),
+              false_alarm);
+}
+
 TEST(ViewFactors, CountTheSkyAboveTheHorizonAndTheGroundBelow) {
-    // A wall on the floor of a street: half of its radiation goes down, where there is a floor or nothing.
+    // Half of the radiation of a single wall goes down.
     Scene scene = empty_scene();
     add_rectangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 0);
     EXPECT_GT(p_value(scene, facet_groups(scene), 1 << 14, 0.5, [](const ViewFactors& f) { return f.sky[0]; }),
@@ -160,16 +189,17 @@ TEST(ViewFactors, CountTheSkyAboveTheHorizonAndTheGroundBelow) {
 }
 
 TEST(ViewFactors, AreForTheUncoveredAreaAlone) {
-    // A sheet of half the area lies on the lower square: the rest has half the area and sees the upper square.
+    // A sheet covers three quarters of the lower square. The quarter at the border sees less of the upper square.
     Scene scene = opposite_squares();
     const std::vector<FaceGroup> squares = facet_groups(scene);
-    add_rectangle(scene, {0, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}, 0);
+    add_rectangle(scene, {0, 0, 0}, {0.75f, 0, 0}, {0, 1, 0}, 0);
     const ViewFactors f = view_factors(scene, RayCaster(scene), squares, {1 << 14});
-    EXPECT_NEAR(f.areas[0], 0.5, 1e-6);
-    const double expected = form_factor({{0.5, 0, 0}, {0.5, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}});
+    EXPECT_NEAR(f.areas[0], 0.25, 1e-6);
+    const double expected = form_factor({{0.75, 0, 0}, {0.25, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}});
+    EXPECT_LT(expected, 0.19) << "0.2 for the whole square";
     EXPECT_GT(p_value(scene, squares, 1 << 16, expected, [](const ViewFactors& g) { return g.factor(0, 1).value; }),
               false_alarm);
-    EXPECT_GT(p_value(scene, squares, 1 << 16, expected / 2, [](const ViewFactors& g) { return g.factor(1, 0).value; }),
+    EXPECT_GT(p_value(scene, squares, 1 << 16, expected / 4, [](const ViewFactors& g) { return g.factor(1, 0).value; }),
               false_alarm);
 }
 

@@ -70,7 +70,7 @@ struct Vs3Surface {
     char type = 'S';  // S, M, N or O
     std::int64_t line = 0;
     std::vector<V3d> corners;
-    int combined_with = 0;  // number of the surface; 0: none
+    int combined_with = 0;  // number of the surface; 0: not combined
     double emittance = 1;
     std::string name;
 };
@@ -284,12 +284,20 @@ class Vs3Reader {
         return static_cast<std::uint32_t>(model.objects.size() - 1);
     }
 
+    static void keep_fronts(Scene& scene) {
+        std::vector<Patch> fronts;
+        for (std::size_t p = 0; p < scene.patches.size(); ++p)
+            if (scene.patches[p].other_side > p) fronts.push_back(scene.patches[p]);
+        for (Patch& patch : fronts) patch.other_side = none;
+        scene.patches = std::move(fronts);
+    }
+
     Scene make_scene() {
         Model model;
         model.file = path_;
         model.files.push_back(path_.string());
         model.warnings = warnings_;
-        model.materials.emplace_back();  // black: obstructions and backs
+        model.materials.emplace_back();  // black: obstructions and null surfaces
         const double distance = mask_distance();
         std::vector<std::uint32_t> objects;  // by surface
         for (std::size_t i = 0; i < surfaces_.size(); ++i) {
@@ -302,6 +310,8 @@ class Vs3Reader {
             Mesh& mesh = model.meshes.emplace_back();
             mesh.name = fmt::format("surface {} of line {}", i + 1, surface.line);
             mesh.positions = surface.corners;
+            if (surface.type == 'N')  // faces its base, which its other side covers
+                std::reverse(mesh.positions.begin(), mesh.positions.end());
             if (surface.type == 'M') {
                 const V3d normal = (surface.corners[1] - surface.corners[0])
                                        .cross(surface.corners[2] - surface.corners[0])
@@ -314,8 +324,7 @@ class Vs3Reader {
             model.instances.push_back({static_cast<std::uint32_t>(i), file_to_world(options_), objects.back()});
         }
         Scene scene = scene_of(std::move(model), options_);
-        for (std::size_t p = 0; p < scene.patches.size(); ++p)
-            if (Patch& patch = scene.patches[p]; patch.other_side < p) patch.object = 0, patch.material = 0;
+        keep_fronts(scene);
         return scene;
     }
 

@@ -8,8 +8,8 @@
 
 namespace interflect::detail {
 
-/// Reads View3D's scenes, format 3 and 3a (docs/formats.md). Each surface is an object; combined surfaces are one. Both
-/// sides block: the fronts of radiating surfaces belong to their objects, all backs and obstructions to none.
+/// Reads View3D's scenes, format 3 and 3a (docs/formats.md), as one-sided faces. Each radiating surface is an object;
+/// combined surfaces are one. Obstructions and null surfaces have no object.
 /// @throws InputError; see also scene_of().
 Scene read_vs3(const std::filesystem::path& path, const ReadOptions& options = {});
 

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
-#include "interflect/geometry/add_face.h"
 #include "interflect/view_factors.h"
 
 namespace interflect {
@@ -15,7 +15,7 @@ bool belongs(const Scene& scene, std::uint32_t patch, FaceSides sides) {
     return (patch < other) == (sides == FaceSides::front);
 }
 
-/// @param group_of  Index below `names.size()`, or anything else for none.
+/// @param group_of  Index of the group of a patch; names.size() or more if it has no group.
 template <class GroupOf>
 std::vector<FaceGroup> collect(const Scene& scene, FaceSides sides, const std::vector<std::string>& names,
                                const GroupOf& group_of) {
@@ -47,17 +47,15 @@ Scene with_opaque_backs(const Scene& scene) {
     Scene result = scene;
     const auto black = static_cast<std::uint32_t>(result.materials.size());
     result.materials.emplace_back();
-    result.patches.clear();
+    // Larger surfaces have lower priority: all backs together are one.
+    std::uint32_t surface = 0;
+    for (const Patch& patch : scene.patches)
+        if (patch.surface != none) surface = std::max(surface, patch.surface + 1);
     for (const Patch& patch : scene.patches) {
-        if (patch.other_side == none) {
-            detail::add_face(result, patch, black);
-            result.patches.back().object = 0;
-        } else {
-            const auto moved = static_cast<std::uint32_t>(result.patches.size());
-            const bool is_front = &patch - scene.patches.data() < patch.other_side;
-            result.patches.push_back(patch);
-            result.patches.back().other_side = is_front ? moved + 1 : moved - 1;  // the sides are adjacent
-        }
+        if (patch.other_side != none) continue;
+        Patch back{patch.vertices, black, none, 0, surface};
+        std::reverse(back.vertices.begin() + 1, back.vertices.begin() + back.vertex_count());
+        result.patches.push_back(back);
     }
     return result;
 }
@@ -87,7 +85,7 @@ std::vector<FaceGroup> pattern_groups(const Scene& scene, std::span<const FacePa
     require_patterns(patterns);
     std::vector<std::string> names;
     for (const FacePattern& p : patterns) names.push_back(p.name);
-    // Index of the first matching pattern by object and by material; their number: none.
+    // First matching pattern of each object and material; patterns.size() without a match.
     const auto first_match = [&](const auto& is_match) {
         std::size_t first = 0;
         while (first < patterns.size() && !is_match(patterns[first].pattern)) ++first;

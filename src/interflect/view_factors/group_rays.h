@@ -25,7 +25,7 @@ class GroupRays {
         std::vector<Hit> hits;
         std::vector<std::uint32_t> sources;
     };
-    /// Makes rays first ... of the sequence `key` in batch.rays, without those that start on covered parts.
+    /// Makes rays first ... of the sequence `key` in batch.rays. Omits rays that start on covered parts.
     /// @param count  At most PointBlock::capacity.
     void make(std::uint64_t key, std::uint64_t first, std::size_t count, Batch& batch) const;
 

@@ -15,7 +15,7 @@ namespace {
 
 /// Closure, relative to each row: below the rounding of a sum of floats.
 constexpr double tolerance = 1e-8;
-/// Far above the numbers in use: 2 to 5 solves with 10 to 50 iterations (docs/view-factors.md).
+/// Far above the numbers in use: 1 to 3 solves with 4 to 26 iterations in total (docs/view-factors.md).
 constexpr int max_solves = 50, max_iterations = 1000;
 
 /// Weighted least squares: minimises sum (X - Y)^2 / V over X >= 0 whose rows sum to the areas, for the values Y and

@@ -221,4 +221,10 @@ ViewFactors view_factors(const Scene& scene, const RayCaster& ray_caster, std::s
     return Estimator(scene, ray_caster, groups, options).estimate(monitor);
 }
 
+ViewFactors view_factors(const Scene& scene, std::span<const FaceGroup> groups, const ViewFactorOptions& options,
+                         const Monitor& monitor) {
+    const Scene opaque = with_opaque_backs(scene);
+    return view_factors(opaque, RayCaster(opaque), groups, options, monitor);
+}
+
 }  // namespace interflect
