@@ -5,8 +5,9 @@ PYBIND11_MODULE(_core, module) {
     module.doc() = "The C++ library. Import interflect, which has the same names and more convenient arguments.";
     module.attr("version") = INTERFLECT_VERSION;
     bind_errors(module);
-    bind_scene(module);
+    bind_scene_parts(module);
     bind_light_sources(module);
+    bind_scene(module);
     bind_files(module);
     bind_solver(module);
     bind_solution(module);

@@ -11,7 +11,42 @@ namespace {
 
 using SharedScene = std::shared_ptr<Scene>;
 
-void bind_parts(py::module_& m) {
+/// None for a scene without these attributes.
+template <class Member>
+auto vertex_array(Member Scene::*member) {
+    return [member](const SharedScene& scene) -> py::object {
+        if (((*scene).*member).empty()) return py::none();
+        return rows<float>(scene, (*scene).*member);
+    };
+}
+
+/// Index of a patch, or -1.
+py::array_t<std::int64_t> other_sides(const Scene& scene) {
+    py::array_t<std::int64_t> result(static_cast<py::ssize_t>(scene.patches.size()));
+    for (std::size_t i = 0; i < scene.patches.size(); ++i) {
+        const std::uint32_t other = scene.patches[i].other_side;
+        result.mutable_at(static_cast<py::ssize_t>(i)) = other == none ? -1 : static_cast<std::int64_t>(other);
+    }
+    return result;
+}
+
+std::string describe(const Scene& s) {
+    return fmt::format("<Scene '{}': {} patches, {} materials, {} luminaires, {} views>", s.name, s.patches.size(),
+                       s.materials.size(), s.luminaires.size(), s.views.size());
+}
+
+}  // namespace
+
+View view_of(const Scene& scene, const py::object& view) {
+    if (py::isinstance<View>(view)) return py::cast<View>(view);
+    if (py::isinstance<py::str>(view)) return detail::find_view(scene, py::cast<std::string>(view));
+    if (!view.is_none())
+        throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " +
+                             std::string(py::repr(view)));
+    return scene.views.empty() ? detail::overview(scene) : scene.views.front();
+}
+
+void bind_scene_parts(py::module_& m) {
     const auto texture = [](std::uint32_t Material::*member) {
         return [member](const Material& material) -> std::optional<std::uint32_t> {
             return material.*member == none ? std::nullopt : std::optional(material.*member);
@@ -65,52 +100,7 @@ void bind_parts(py::module_& m) {
              [](const Texture& t) { return fmt::format("<Texture '{}': {} x {}>", t.name, t.width, t.height); });
 }
 
-/// None for a scene without these attributes.
-template <class Member>
-auto vertex_array(Member Scene::*member) {
-    return [member](const SharedScene& scene) -> py::object {
-        if (((*scene).*member).empty()) return py::none();
-        return rows<float>(scene, (*scene).*member);
-    };
-}
-
-/// Index of a patch, or -1.
-py::array_t<std::int64_t> other_sides(const Scene& scene) {
-    py::array_t<std::int64_t> result(static_cast<py::ssize_t>(scene.patches.size()));
-    for (std::size_t i = 0; i < scene.patches.size(); ++i) {
-        const std::uint32_t other = scene.patches[i].other_side;
-        result.mutable_at(static_cast<py::ssize_t>(i)) = other == none ? -1 : static_cast<std::int64_t>(other);
-    }
-    return result;
-}
-
-py::list warnings_of(const Scene& scene) {
-    py::list result;
-    for (const Warnings::Entry& w : scene.warnings.entries()) {
-        const std::string times = w.count > 1 ? fmt::format(" ({} times)", w.count) : "";
-        result.append(fmt::format("{}{}{}", w.where.empty() ? "" : w.where + ": ", w.message, times));
-    }
-    return result;
-}
-
-std::string describe(const Scene& s) {
-    return fmt::format("<Scene '{}': {} patches, {} materials, {} luminaires, {} views>", s.name, s.patches.size(),
-                       s.materials.size(), s.luminaires.size(), s.views.size());
-}
-
-}  // namespace
-
-View view_of(const Scene& scene, const py::object& view) {
-    if (py::isinstance<View>(view)) return py::cast<View>(view);
-    if (py::isinstance<py::str>(view)) return detail::find_view(scene, py::cast<std::string>(view));
-    if (!view.is_none())
-        throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " +
-                             std::string(py::repr(view)));
-    return scene.views.empty() ? detail::overview(scene) : scene.views.front();
-}
-
 void bind_scene(py::module_& m) {
-    bind_parts(m);
     py::class_<Scene, SharedScene> scene(m, "Scene", docs::Scene);
     scene
         .def(py::init(&scene_from_arrays), py::arg("vertices"), py::arg("faces"), py::arg("materials"), py::kw_only(),
@@ -172,7 +162,7 @@ void bind_scene(py::module_& m) {
         .def_readonly("views", &Scene::views, "Views of the file.")
         .def_readonly("files", &Scene::files, docs::Scene_files)
         .def_property_readonly(
-            "warnings", [](const SharedScene& s) { return warnings_of(*s); },
+            "warnings", [](const SharedScene& s) { return sentences(s->warnings); },
             "Unsupported features of the file, one sentence each.")
         .def("__repr__", [](const SharedScene& s) { return describe(*s); });
     m.attr("none") = none;

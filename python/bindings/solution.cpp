@@ -81,10 +81,10 @@ py::list iterations_of(const Light& light) {
     return result;
 }
 
-SharedLight dimmed_light(const Light& light, const std::string& group, float factor) {
+SharedLight dimmed_light(const Light& light, const std::map<std::string, float>& factors) {
     auto scene = std::make_shared<Scene>(*light.scene);
     auto solution = std::make_shared<Solution>(*light.solution);
-    dim(*scene, *solution, group, factor);
+    for (const auto& [group, factor] : factors) dim(*scene, *solution, group, factor);
     return std::make_shared<Light>(std::move(scene), std::move(solution), light.ray_caster);
 }
 
@@ -197,10 +197,16 @@ void bind_solution(py::module_& m) {
             "power_balance", [](const Light& light) { return power_balance(*light.scene, *light.solution); },
             docs::power_balance)
         .def(
-            "dim", &dimmed_light, py::arg("group"), py::arg("factor"),
+            "dim",
+            [](const Light& light, const std::string& group, float factor) {
+                return dimmed_light(light, {{group, factor}});
+            },
+            py::arg("group"), py::arg("factor"),
             "A copy whose sources of a light group and all of their light are scaled, without tracing rays.\n\nArgs:\n"
-            "    group: Name of a light group.\n    factor: Relative to the current emission; >= 0.\n\nRaises:\n"
+            "    group: Name of a light group.\n    factor: Relative to the current emission; >= 0.\n"
+            "    factors: Of several groups, by name, in one copy.\n\nRaises:\n"
             "    InputError: that lists the groups, for an unknown group; for a factor that is negative or not finite.")
+        .def("dim", &dimmed_light, py::arg("factors"))
         .def("save", &save, py::arg("path"), docs::write_solution)
         .def_static("open", &open_light, py::arg("path"), docs::read_solution)
         .def("__len__", [](const Light& light) { return light.mesh().size(); })
