@@ -12,12 +12,10 @@ import argparse
 from pathlib import Path
 
 import interflect as ifl
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 
 SCENE, VIEW = "maze:4", "room-0"
 SIZE = {"width": 160, "height": 90}  # pixels
@@ -52,7 +50,7 @@ def measure(scene: ifl.Scene, reference: np.ndarray, rays: list[int], seeds: int
     return pd.DataFrame(rows)
 
 
-def draw(table: pd.DataFrame, path: Path) -> None:
+def draw(table: pd.DataFrame) -> plt.Figure:
     """Draws the mean error over the seeds. `table` has one column per variant and one row per number of rays."""
     figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
     for name in table:
@@ -63,8 +61,7 @@ def draw(table: pd.DataFrame, path: Path) -> None:
     axes.set(xlabel="rays", ylabel="relative error of the picture", title="Eight variants, preset “paper”")
     axes.grid(which="both", alpha=0.3)
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))
-    figure.savefig(path, dpi=120)
-    plt.close(figure)
+    return figure
 
 
 def main(arguments: list[str] | None = None) -> pd.DataFrame:
@@ -83,7 +80,7 @@ def main(arguments: list[str] | None = None) -> pd.DataFrame:
     runs = measure(scene, reference, rays, options.seeds)
     runs.to_csv(options.output / "convergence.csv", index=False)
     table = runs.pivot_table(index="rays", columns="variant", values="error", sort=False)
-    draw(table, options.output / "convergence.png")
+    draw(table).savefig(options.output / "convergence.png", dpi=120)
     print(f"Relative error of the picture of {VIEW} in {SCENE}, mean of {options.seeds} seeds")
     print(table.to_string(float_format="{:.3f}".format))
     return table

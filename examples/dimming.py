@@ -15,12 +15,10 @@ import argparse
 from pathlib import Path
 
 import interflect as ifl
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 from scipy.optimize import linprog
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 
 LENGTH, WIDTH, HEIGHT = 9.0, 6.0, 3.0  # of the room [m]
 LAMP_SIZE, LAMP_EXITANCE, LAMP_POWER = 0.6, 11_000, 36  # side [m], [lm/m^2], [W] at full light
@@ -99,7 +97,7 @@ def report(title: str, illuminance: np.ndarray, lamps: np.ndarray) -> None:
     print(f"{title:24} {LAMP_POWER * lamps.sum():4.0f} W   mean {mean:4.0f} lx   U0 {uniformity:.2f}")
 
 
-def draw(grid: ifl.MeasuringGrid, plans: dict[str, np.ndarray], path: Path) -> None:
+def draw(grid: ifl.MeasuringGrid, plans: dict[str, np.ndarray]) -> plt.Figure:
     figure, panels = plt.subplots(1, len(plans), figsize=(13, 3.6), layout="constrained")
     x = grid.corner[0] + (np.arange(grid.columns) + 0.5) * grid.column_spacing
     y = grid.corner[1] + (np.arange(grid.rows) + 0.5) * grid.row_spacing
@@ -113,8 +111,7 @@ def draw(grid: ifl.MeasuringGrid, plans: dict[str, np.ndarray], path: Path) -> N
         axes.clabel(lines, fmt="%d lx", fontsize=7)
         axes.set(title=title, xlabel="x [m], window at y = 0", ylabel="y [m]", aspect="equal")
     figure.colorbar(colours, ax=panels, label="illuminance [lx]")
-    figure.savefig(path, dpi=120)
-    plt.close(figure)
+    return figure
 
 
 def main(arguments: list[str] | None = None) -> dict[str, np.ndarray]:
@@ -152,8 +149,12 @@ def main(arguments: list[str] | None = None) -> dict[str, np.ndarray]:
     print(f"energy saved by optimisation: {100 * (1 - factors[is_lamp].sum() / (common * is_lamp.sum())):.0f}%")
     for row in range(3):
         print("  dimming of row", row + 1, " ".join(f"{100 * f:4.0f}%" for f in factors[is_lamp].reshape(3, 4)[row]))
-    draw(grid, {"full power": daylight + lamps, f"all lamps at {100 * common:.0f}%": daylight + common * lamps,
-                "optimised": groups @ factors}, options.output / "dimming.png")
+    plans = {
+        "full power": daylight + lamps,
+        f"all lamps at {100 * common:.0f}%": daylight + common * lamps,
+        "optimised": groups @ factors,
+    }
+    draw(grid, plans).savefig(options.output / "dimming.png", dpi=120)
     return {"points": grid.points, "factors": factors, "predicted": groups @ factors, "scaled": scaled, "solved": solved}
 
 

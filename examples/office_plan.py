@@ -7,11 +7,9 @@ import argparse
 from pathlib import Path
 
 import interflect as ifl
-import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 
 SCENE = Path(__file__).resolve().parents[1] / "scenes" / "office.mgf"
 FURNITURE = ("office.desks", "office.north_wall", "office.lounge", "office.vase")
@@ -57,7 +55,7 @@ def print_summary(title: str, grid: ifl.MeasuringGrid, measured: ifl.Measurement
     print(f"  U0 {summary.uniformity:.2f} (needed: {NEEDED_UNIFORMITY})")
 
 
-def draw(axes: plt.Axes, title: str, grid: ifl.MeasuringGrid, illuminance: np.ndarray) -> matplotlib.cm.ScalarMappable:
+def draw(axes: plt.Axes, title: str, grid: ifl.MeasuringGrid, illuminance: np.ndarray) -> plt.cm.ScalarMappable:
     """Draws a plan with contour lines; cells without a measuring point stay white."""
     plan = np.full(grid.rows * grid.columns, np.nan)
     plan[grid.cells] = illuminance
@@ -89,7 +87,6 @@ def main(arguments: list[str] | None = None) -> dict[str, ifl.Measurement]:
         colours = draw(panel, title, grid, measured.illuminance)
     figure.colorbar(colours, ax=axes, label=f"illuminance {WORKING_PLANE} m above the floor [lx]", extend="max")
     figure.savefig(options.output / "office-plan.png", dpi=120)
-    plt.close(figure)
     return {title: measured for title, (_, measured) in plans.items()}
 
 

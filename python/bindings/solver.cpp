@@ -1,3 +1,5 @@
+#include <pybind11/stl/filesystem.h>
+
 #include <atomic>
 #include <optional>
 
