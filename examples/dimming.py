@@ -81,7 +81,11 @@ def illuminance_of_groups(solution: ifl.Solution, grid: ifl.MeasuringGrid, sampl
 
 
 def cheapest_factors(illuminance: np.ndarray, is_lamp: np.ndarray) -> np.ndarray:
-    """Factors of all groups with the least power that meet both targets. @raises RuntimeError if none do."""
+    """Factors of all groups with the least power that meet both targets.
+
+    Raises:
+        RuntimeError: if full power does not meet them.
+    """
     mean = illuminance.mean(axis=0)
     limits = np.vstack([-mean, MARGIN * NEEDED_UNIFORMITY * mean - illuminance])
     bounds = [(0, 1) if lamp else (1, 1) for lamp in is_lamp]
@@ -137,7 +141,7 @@ def main(arguments: list[str] | None = None) -> dict[str, np.ndarray]:
         report(f"all lamps at {100 * common:.0f}%", daylight + common * lamps, common * is_lamp)
         report("optimised", groups @ factors, factors[is_lamp])
 
-        # Check: the light of the dimmed scene, first scaled, then with as many new rays.
+        # Check: first the scaled solution, then a solution of the dimmed scene, which doubles the number of rays.
         dimming = dict(zip(solution.group_names, factors))
         scaled = ifl.probe(solution.dim(dimming), grid, samples=options.samples).illuminance
         report("  check, scaled", scaled, factors[is_lamp])

@@ -16,7 +16,7 @@ from interflect._scenes import scene_of
 
 # Samples per pixel, as the command `interflect render` has.
 SAMPLES = {"hybrid": 32, "gather": 16, "path": 64, "instant": 64, "smooth": 16, "flat": 16}
-# Formats with 8-bit colours. Their automatic exposure is that of the command.
+# Formats with 8-bit colours, for which export() computes the automatic exposure.
 COLOUR_FORMATS = (".glb", ".gltf", ".ply", ".obj")
 FROM_SCENE = ("path", "instant")
 ViewArgument = _core.View | str | None

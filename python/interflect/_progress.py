@@ -42,7 +42,7 @@ def reporting(progress: ProgressArgument, what: str) -> Iterator[Report | None]:
     except ImportError:
         yield None
         return
-    # Bars that nobody asked for appear only for long work, and disappear at its end.
+    # Default bars appear only for long work, and disappear at its end.
     quiet = {"leave": False, "delay": UNNOTICED} if progress is None else {}
     form = "{l_bar}{bar}| {elapsed}<{remaining}{postfix}"
     with tqdm(total=100, desc=what, unit="%", bar_format=form, **quiet) as bar:
