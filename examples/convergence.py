@@ -18,7 +18,7 @@ import pandas as pd
 
 
 SCENE, VIEW = "maze:4", "room-0"
-SIZE = {"width": 160, "height": 90}  # pixels
+WIDTH, HEIGHT = 160, 90  # pixels
 VARIANTS = {
     name: {
         "separate_iterations": name.startswith("si"),
@@ -34,7 +34,7 @@ def error(solution: ifl.Solution, reference: np.ndarray) -> float:
 
     Blocks average the noise of the reference, which the difference would otherwise contain.
     """
-    picture = ifl.render(solution, VIEW, shading="smooth", samples=16, **SIZE)
+    picture = ifl.render(solution, VIEW, shading="smooth", samples=16, width=WIDTH, height=HEIGHT)
     return next(d.relative_rmse for d in ifl.compare(picture, reference).blocks if d.block == 5)
 
 
@@ -75,7 +75,7 @@ def main(arguments: list[str] | None = None) -> pd.DataFrame:
 
     scene = ifl.load(SCENE)
     # The path tracer shares no estimate with the solver.
-    reference = ifl.render(scene, VIEW, shading="path", samples=options.samples, **SIZE)
+    reference = ifl.render(scene, VIEW, shading="path", samples=options.samples, width=WIDTH, height=HEIGHT)
     rays = [round(options.rays / 4**step) for step in (3, 2, 1, 0)]
     runs = measure(scene, reference, rays, options.seeds)
     runs.to_csv(options.output / "convergence.csv", index=False)

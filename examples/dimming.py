@@ -29,8 +29,7 @@ MARGIN = 1.02  # the optimum lies on the limits of the targets: 2% more covers t
 
 def rectangle(corner: tuple, a: tuple, b: tuple) -> np.ndarray:
     """Corners of a rectangle with the edges a and b [m]; its normal is a x b."""
-    corner, a, b = np.array(corner), np.array(a), np.array(b)
-    return np.array([corner, corner + a, corner + a + b, corner + b])
+    return corner + np.array([(0, 0, 0), a, np.add(a, b), b])
 
 
 def make_scene() -> ifl.Scene:
