@@ -3,7 +3,7 @@
     python3 examples/convergence.py
 
 A variant combines three choices:
-    ci, si  Rays carry power and importance together (combined iterations), or each ray carries one (separate iterations).
+    ci, si  Combined iterations: rays carry power and importance. Separate iterations: each ray carries one of them.
     hi      Elements keep their own importance. Otherwise all elements of a patch share its importance.
     dr      Deferred refinement: the mesh stays coarse during the warm-up.
 """

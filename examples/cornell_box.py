@@ -9,7 +9,8 @@ from pathlib import Path
 import interflect as ifl
 import numpy as np
 
-# The unit cube: vertex 4x + 2y + z, and its sides (bottom, top, left, right, back, front), counter-clockwise from outside.
+# The unit cube: vertices in the order 4x + 2y + z; sides in the order bottom, top, left, right, back, front,
+# counter-clockwise seen from outside.
 CUBE = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
 SIDES = np.array([(0, 2, 6, 4), (1, 5, 7, 3), (0, 1, 3, 2), (4, 6, 7, 5), (2, 3, 7, 6), (0, 4, 5, 1)])
 

@@ -2,8 +2,9 @@
 
     python3 examples/dimming.py
 
-A classroom has a window on one side and 12 lamps. Light is additive: the illuminance at point i is the sum over the groups
-g of E_ig f_g, E_ig measured once with all lamps at full power, f_g the dimming factor. So the cheapest factors solve
+A classroom has a window on one side and 12 lamps, each in a light group of its own. Light is additive: the illuminance
+at point i is the sum over the groups g of E_ig f_g. E_ig is the illuminance by group g alone at full power, f_g the
+dimming factor. So the cheapest factors solve
 
     minimise    sum of f_g                  (the power: equal lamps, dimmed linearly)
     subject to  mean of E f >= 500 lx
@@ -158,7 +159,8 @@ def main(arguments: list[str] | None = None) -> dict[str, np.ndarray]:
         "optimised": groups @ factors,
     }
     draw(grid, plans).savefig(options.output / "dimming.png", dpi=120)
-    return {"points": grid.points, "factors": factors, "predicted": groups @ factors, "scaled": scaled, "solved": solved}
+    predicted = groups @ factors
+    return {"points": grid.points, "factors": factors, "predicted": predicted, "scaled": scaled, "solved": solved}
 
 
 if __name__ == "__main__":

@@ -59,7 +59,8 @@ def draw(leaves: pd.DataFrame, iterations: pd.DataFrame) -> plt.Figure:
     bins = np.geomspace(1, 10_000, 60)
     left.hist(leaves["illuminance"], bins, weights=leaves["area"])
     left.set(xscale="log", xlabel="illuminance [lx]", ylabel="area [m²]", title="Illuminance of the surfaces")
-    for column, label in (("error_estimate", "total"), ("noise_estimate", "noise"), ("discretisation_estimate", "mesh")):
+    labels = {"error_estimate": "total", "noise_estimate": "noise", "discretisation_estimate": "mesh"}
+    for column, label in labels.items():
         right.semilogy(iterations["rays"], iterations[column], marker="o", markersize=3, label=label)
     right.set(xlabel="rays", ylabel="estimated relative error", title="Error of the picture")
     right.grid(which="both", alpha=0.3)
@@ -70,8 +71,8 @@ def draw(leaves: pd.DataFrame, iterations: pd.DataFrame) -> plt.Figure:
 def grid_of_leaves(solution: ifl.Solution, values: dict[str, np.ndarray]) -> vtkUnstructuredGrid:
     """One VTK cell per leaf, with arrays of cells.
 
-    VTK reads contiguous arrays in place and keeps a reference to them. Arrays of leaves are columns of a wider table, so
-    they are copied here once; `solution.elements` has contiguous arrays.
+    VTK reads contiguous arrays in place and keeps a reference to them. Arrays of leaves are columns of a wider table,
+    so they are copied here once; `solution.elements` has contiguous arrays.
     """
     points = np.ascontiguousarray(solution.vertices).reshape(-1, 3)
     corners = solution.vertex_count
