@@ -17,6 +17,7 @@ void add_export(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_validate(CLI::App& app, int& exit_code);
+void add_viewfactors(CLI::App& app, int& exit_code);
 void add_make_scene(CLI::App& app);
 
 }  // namespace interflect::command

@@ -27,9 +27,9 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 }
 
 /// Extensions of all files that the command reads or writes, except text. They decide how a file is read.
-constexpr std::array<std::string_view, 25> known_extensions = {
-    ".mgf", ".gltf", ".glb", ".obj", ".mtl", ".ply",  ".stl", ".rad", ".vf",     ".ies", ".ldt",  ".h5", ".png",
-    ".jpg", ".jpeg", ".exr", ".hdr", ".xml", ".pbrt", ".py",  ".vtu", ".vtkhdf", ".hdf", ".html", ".htm"};
+constexpr std::array<std::string_view, 27> known_extensions = {
+    ".mgf", ".gltf", ".glb", ".obj", ".mtl", ".ply",  ".stl", ".rad", ".vs3",    ".vf",  ".ies",  ".ldt", ".h5", ".png",
+    ".jpg", ".jpeg", ".exr", ".hdr", ".xml", ".pbrt", ".py",  ".vtu", ".vtkhdf", ".hdf", ".html", ".htm", ".npz"};
 
 }  // namespace
 

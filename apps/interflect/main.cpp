@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
     add_export(app, exit_code);
     add_compare(app);
     add_validate(app, exit_code);
+    add_viewfactors(app, exit_code);
     add_bench(app);
     add_make_scene(app);
     app.footer(footer);  // after the subcommands, which would inherit it

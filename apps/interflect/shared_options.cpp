@@ -146,7 +146,7 @@ void SceneOptions::check_daylight(const CLI::App& command) const {
     check("--sky", part);
 }
 
-Scene SceneOptions::load() const {
+Scene SceneOptions::load(bool needs_light) const {
     ReadOptions limited = read;
     limited.max_patches = std::min(read.max_patches, patches_in_memory());
     try {
@@ -154,7 +154,7 @@ Scene SceneOptions::load() const {
             const LongWork work(fmt::format("reading {}", path.string()));
             return load_scene(path, limited, luminaires, placed_daylight());
         }();
-        log_warnings(scene.warnings);
+        log_warnings(scene.warnings, needs_light ? "" : "no-light");
         return scene;
     } catch (const TooManyPatches& e) {
         if (limited.max_patches < read.max_patches)
@@ -169,8 +169,9 @@ Scene SceneOptions::load() const {
     }
 }
 
-void log_warnings(const Warnings& warnings) {
+void log_warnings(const Warnings& warnings, std::string_view omitted) {
     for (const Warnings::Entry& w : warnings.entries()) {
+        if (w.kind == omitted) continue;
         const std::string times = w.count > 1 ? fmt::format(" ({} times)", w.count) : "";
         spdlog::warn("{}{}{}", w.where.empty() ? "" : w.where + ": ", w.message, times);
     }

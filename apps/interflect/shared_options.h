@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/interflect/distinct_files.h"
@@ -16,7 +17,7 @@ namespace interflect::command {
 
 inline constexpr const char* daylight_group = "Daylight";
 
-inline constexpr const char* scene_formats = "Scene file (.gltf, .glb, .obj, .ply, .stl, .rad, .mgf)";
+inline constexpr const char* scene_formats = "Scene file (.gltf, .glb, .obj, .ply, .stl, .rad, .vs3, .mgf)";
 
 struct SceneOptions {
     std::filesystem::path path;
@@ -28,7 +29,8 @@ struct SceneOptions {
     /// @param traces_paths  As for refuse_scene_options().
     /// @throws UsageError for invalid daylight and for options without effect on a solution or a maze.
     void check(const CLI::App& command, bool traces_paths = false) const;
-    Scene load() const;
+    /// @param needs_light  Whether the absence of light sources is worth a warning.
+    Scene load(bool needs_light = true) const;
 
   private:
     void add_daylight_to(CLI::App& app);
@@ -121,6 +123,7 @@ void add_method(CLI::App& app, std::optional<Method>& method);
 
 void add_threads(CLI::App& app, int& threads);
 
-void log_warnings(const Warnings& warnings);
+/// @param omitted  A kind of warnings.
+void log_warnings(const Warnings& warnings, std::string_view omitted = {});
 
 }  // namespace interflect::command

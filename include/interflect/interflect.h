@@ -12,6 +12,7 @@
 ///     render(scene, solution, ray_caster, scene.views[0]); // render.h; image.h writes files
 ///     measure_irradiance(...);                             // measure.h: lux at points and grids, glare, probes
 ///     export_solution("office.glb", scene, solution);      // export.h: lit glTF, lightmaps, other renderers
+///     view_factors(scene, ray_caster, object_groups(scene));          // view_factors.h: exchange of radiation
 ///
 /// Lengths are in metres, colours linear Rec. 709, light in photometric or radiometric units, as the scene has them.
 /// Wrong input causes an InputError that lists every fault (core.h). The same seed gives the same bits for any number
@@ -32,3 +33,4 @@
 #include "interflect/solve.h"
 #include "interflect/solve_options.h"
 #include "interflect/solver.h"
+#include "interflect/view_factors.h"

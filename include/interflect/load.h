@@ -102,9 +102,9 @@ double usual_sun_illuminance(int cie_type, double sun_altitude);
 ///         max_skies in the resulting scene.
 void add_daylight(Scene& scene, const Daylight& added);
 
-/// Reads a scene in the format of the file name's extension (.mgf, .gltf, .glb, .obj, .ply, .rad, .stl), and its named
-/// views if the file view_list_path() exists. The result has no scene_faults(). A scene without light gets the warning
-/// "no-light".
+/// Reads a scene in the format of the file name's extension (.mgf, .gltf, .glb, .obj, .ply, .rad, .stl, .vs3), and its
+/// named views if the file view_list_path() exists. The result has no scene_faults(). A scene without light gets the
+/// warning "no-light".
 ///
 /// Instead of a file, `maze:ROOMS` or `maze:ROOMS:furniture` creates that maze and its views in memory (make_maze(),
 /// other options at their defaults). `maze:9:furniture` has the size of the scene in Prikryl et al. 2000.

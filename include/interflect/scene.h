@@ -61,6 +61,8 @@ inline constexpr std::size_t max_light_groups = 32;
 
 /// Whether a pattern matches all of `name`. O(product of both lengths).
 bool matches(std::string_view pattern, std::string_view name);
+/// Whether a pattern matches the name of an object, "room.desk.leg", or of an enclosing one, "room" or "room.desk".
+bool matches_object(std::string_view pattern, std::string_view name);
 
 /// Group of each source: the first whose pattern matches.
 struct SourceGroups {

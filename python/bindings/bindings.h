@@ -4,6 +4,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <cstddef>
 #include <memory>
@@ -29,6 +30,7 @@ void bind_solution(py::module_& module);
 void bind_solver(py::module_& module);
 void bind_pictures(py::module_& module);
 void bind_measurements(py::module_& module);
+void bind_view_factors(py::module_& module);
 
 /// A scene with its light and its ray caster: `interflect.Solution`.
 class Light {

@@ -34,6 +34,8 @@ void bind_errors(py::module_&) {
     py::register_exception_translator([](std::exception_ptr thrown) {
         try {
             std::rethrow_exception(thrown);
+        } catch (const py::builtin_exception&) {
+            throw;  // pybind11's translator knows these
         } catch (const TooManyPatches& e) {
             raise_input_error("TooManyPatches", e);
         } catch (const InputError& e) {

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <pybind11/stl/filesystem.h>
 
 #include "bindings.h"
 #include "fields.h"
@@ -16,15 +15,15 @@ namespace interflect::python {
 
 namespace {
 
-constexpr std::array<std::pair<const char*, Axis>, 6> axes{{{"x", Axis::x},
-                                                            {"-x", Axis::minus_x},
-                                                            {"y", Axis::y},
-                                                            {"-y", Axis::minus_y},
-                                                            {"z", Axis::z},
-                                                            {"-z", Axis::minus_z}}};
+constexpr std::array<std::pair<const char*, Axis>, 6> axis_names{{{"x", Axis::x},
+                                                                  {"-x", Axis::minus_x},
+                                                                  {"y", Axis::y},
+                                                                  {"-y", Axis::minus_y},
+                                                                  {"z", Axis::z},
+                                                                  {"-z", Axis::minus_z}}};
 
 Axis axis_of(const std::string& name) {
-    for (const auto& [word, axis] : axes)
+    for (const auto& [word, axis] : axis_names)
         if (word == name) return axis;
     throw InputError(fmt::format("up_axis: expected x, -x, y, -y, z or -z, found '{}'", name));
 }

@@ -1,14 +1,17 @@
 #include "long_work.h"
 
 #include <pybind11/gil.h>
+#include <tbb/info.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
 #include <future>
 #include <mutex>
 #include <string>
+#include <utility>
 
 namespace interflect::python {
 
@@ -48,7 +51,8 @@ void run_long_work(const py::object& progress, int threads, const std::function<
     {
         const py::gil_scoped_release released;
         std::future<void> done = std::async(std::launch::async, [&] {
-            tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+            const int most = tbb::info::default_concurrency();
+            tbb::task_arena arena(threads > 0 ? std::min(threads, most) : most);
             arena.execute([&] { work(monitor); });
         });
         while (done.wait_for(between_checks) != std::future_status::ready) {

@@ -13,4 +13,5 @@ PYBIND11_MODULE(_core, module) {
     bind_solution(module);
     bind_measurements(module);
     bind_pictures(module);
+    bind_view_factors(module);
 }

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <pybind11/stl/filesystem.h>
 
 #include "bindings.h"
 #include "interflect/image/image_codecs.h"

@@ -50,6 +50,18 @@ class PythonSolver {
             light_ = std::make_shared<Light>(solver->shared_scene(), now, solver->shared_ray_caster());
         return light_;
     }
+    /// The current solution without a copy; closes the solver.
+    SharedLight take_light() {
+        const Use solver(*this);
+        const auto scene = solver->shared_scene();
+        const auto ray_caster = solver->shared_ray_caster();
+        auto solution = long_work(py::none(), threads_, [&](const Monitor&) {
+            return std::make_shared<const Solution>(std::move(*solver).take_solution());
+        });
+        solver_.reset();
+        light_.reset();
+        return std::make_shared<Light>(scene, std::move(solution), ray_caster);
+    }
     void close() {
         if (is_used_.exchange(true))
             throw std::runtime_error("the solver is in use by another thread or by its progress function");
@@ -97,7 +109,7 @@ AdvanceReport advance(PythonSolver& self, const py::object& rays, const py::obje
                      [&](const Monitor& monitor) { return solver->advance(limits, monitor); });
 }
 
-void save(PythonSolver& self, const std::filesystem::path& path) {
+void save_run(PythonSolver& self, const std::filesystem::path& path) {
     const Use solver(self);
     long_work(py::none(), self.threads(), [&](const Monitor&) { return solver->save(path), true; });
 }
@@ -153,13 +165,14 @@ void bind_solver(py::module_& m) {
             py::arg("rays") = py::none(), py::arg("time") = py::none(), py::arg("until") = py::none(),
             docs::Solver_set_plan)
         .def_property_readonly("solution", &PythonSolver::light, docs::Solver_shared_solution)
+        .def("take_solution", &PythonSolver::take_light, docs::Solver_take_solution)
         .def_property_readonly(
             "scene", [](PythonSolver& self) { return shown(Use(self)->shared_scene()); }, docs::Solver_scene)
         .def_property_readonly(
             "options", [](PythonSolver& self) { return settings_of(Use(self)->options()); }, "Settings by name.")
         .def_property_readonly(
             "views", [](PythonSolver& self) { return Use(self)->options().views; }, "Views that define importance.")
-        .def("save", &save, py::arg("path"), docs::Solver_save)
+        .def("save", &save_run, py::arg("path"), docs::Solver_save)
         .def_static("open", &open_run, py::arg("path"), py::arg("threads") = 0, docs::Solver_open)
         .def("close", &PythonSolver::close, "Frees the memory of the run; solutions and their arrays stay valid.")
         .def_property_readonly("is_closed", &PythonSolver::is_closed, "Whether close() was called.");

@@ -11,10 +11,10 @@ are read-only and not copied. Calls that take long release the lock of the inter
 """
 
 from interflect._core import (
-    AdvanceReport, CieSky, Daylight, DirectionalLight, Elements, Environment, EnvironmentMap, Finding, FindingPlace,
+    AdvanceReport, CieSky, Consistency, Daylight, Deviation, DirectionalLight, Elements, Environment, EnvironmentMap, Finding, FindingPlace,
     GlareRating, GlareSource, IlluminanceSummary, ImageDifference, LightGroup, Luminaire, Material, MeasuredLight,
     MeasuringGrid, Measurement, PathTracing, PerezSky, PhotometricWeb, PlacedLuminaire, PlanarArea, PointLight,
-    PowerBalance, Progress, Scene, SkyDome, SkyModel, Solution, SpotLight, Sun, Texture, UniformSky, View, WeightedView,
+    PowerBalance, Progress, Reconciliation, Scene, SkyDome, SkyModel, Solution, SpotLight, Sun, Texture, UniformSky, View, WeightedView,
     area_grid, automatic_exposure, cie_standard_sky, compare, cut_at_contacts, export_scene, find_floor, find_surface,
     find_top, grid_spacing, groups_by_name, line_grid, load_photometric_web, none, overview, rate_glare, read_image,
     validate, write_image,
@@ -24,5 +24,6 @@ from interflect._errors import Error, InputError, Stopped, TooManyPatches, Warni
 from interflect._pictures import export, probe, render, tonemap, trace
 from interflect._scenes import load
 from interflect._solving import Solver, open_solution, solve
+from interflect._view_factors import ViewFactors, view_factors
 
 __all__ = sorted(name for name in dir() if not name.startswith("_"))

@@ -49,6 +49,10 @@ class Solver:
         """Current solution, computed on first request in O(elements). It stays as it is when the solver goes on."""
         return self._solver.solution
 
+    def take_solution(self) -> _core.Solution:
+        """Current solution without a copy. Closes the solver."""
+        return self._solver.take_solution()
+
     @property
     def scene(self) -> _core.Scene:
         """The scene as it is solved, with its sources as scaled by set_dimming()."""
@@ -140,7 +144,7 @@ def solve(scene: SceneArgument, *, view: ViewArgument | None = None, views: View
                 **settings) as solver:
         while not solver.advance(progress=progress).is_finished:
             pass
-        return solver.solution
+        return solver.take_solution()
 
 
 def open_solution(path: str | os.PathLike[str]) -> _core.Solution:

@@ -55,7 +55,7 @@ class Readme(CommandTest):
             for line in output:
                 if line.strip() != "...":
                     self.assertIn(line, printed, example)
-        self.assertEqual(subcommands, {"info", "solve", "resume", "render", "probe", "report", "compare", "bench", "make-scene", "export"})
+        self.assertEqual(subcommands, {"info", "solve", "resume", "render", "probe", "report", "compare", "bench", "make-scene", "export", "viewfactors"})
 
 
 if __name__ == "__main__":

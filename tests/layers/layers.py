@@ -6,8 +6,8 @@ from pathlib import Path
 
 # A folder of src/interflect uses only those before it; the programs in apps/ may use them all.
 LAYERS = [
-    "base", "scene", "geometry", "image", "generators", "formats", "raycast", "luminaires", "checks", "elements", "solver",
-    "render", "photometry", "metrics", "exports", "cluster",
+    "base", "scene", "geometry", "image", "generators", "formats", "raycast", "luminaires", "checks", "view_factors",
+    "elements", "solver", "render", "photometry", "metrics", "exports", "cluster",
 ]
 
 # Their own folders, in the same order; files beside these come last.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "interflect/core.h"
 #include "interflect/formats/view_files.h"
@@ -142,6 +144,32 @@ TEST(SceneFaults, AreListedUpToTwenty) {
     Scene scene = valid_scene();
     scene.vertices.resize(1000, V3f(infinity));
     EXPECT_EQ(scene_faults(scene).size(), 20u);
+}
+
+TEST(InputErrors, KeepTheirPlace) {
+    const InputError error("room.mgf", 7, "expected a colour");
+    EXPECT_EQ(error.file(), "room.mgf");
+    EXPECT_EQ(error.line(), 7);
+    EXPECT_STREQ(error.what(), "room.mgf:7: expected a colour");
+    EXPECT_EQ(error.object(), "");
+    EXPECT_TRUE(error.faults().empty());
+}
+
+TEST(InputErrors, KeepTheFaultsAndTheFirstObject) {
+    const auto object_of = [](const std::string& fault) {
+        try {
+            require_no_faults({fault, "another"}, "cannot solve", valid_scene());
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.faults(), (std::vector<std::string>{fault, "another"}));
+            return error.object();
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(object_of("material 'white': reflectance (2, 2, 2) is not in [0, 1)"), "white");
+    EXPECT_EQ(object_of("light 'lamp' has no direction"), "lamp");
+    EXPECT_EQ(object_of("patch 3: there is no material 7"), "patch 3");
+    EXPECT_EQ(object_of("vertex 12 is not finite"), "vertex 12");
+    EXPECT_EQ(object_of("the scene is empty"), "");
 }
 
 }  // namespace

@@ -102,5 +102,22 @@ TEST(Solver, ConstFunctionsMayBeCalledFromSeveralThreads) {
     EXPECT_EQ(Solver::open(folder.path() / "0.h5").solution().irradiance, seen[0]);
 }
 
+TEST(Solver, SharedSolutionsOutliveChanges) {
+    std::shared_ptr<const Solution> kept;
+    std::vector<Rgb> irradiance;
+    {
+        Solver solver(furnished_room(), {.limits = {.rays = 100'000}});
+        solver.advance({.rays = 10'000});
+        kept = solver.shared_solution();
+        irradiance = kept->irradiance;
+        EXPECT_EQ(kept, solver.shared_solution()) << "made once";
+        solver.advance({});
+        EXPECT_NE(kept, solver.shared_solution());
+        EXPECT_NE(irradiance, solver.solution().irradiance);
+    }
+    EXPECT_EQ(kept->irradiance, irradiance);
+    EXPECT_EQ(kept->forest->size(), irradiance.size()) << "a forest of its own";
+}
+
 }  // namespace
 }  // namespace interflect

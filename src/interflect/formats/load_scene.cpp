@@ -21,6 +21,7 @@
 #include "interflect/formats/stl.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/view_files.h"
+#include "interflect/formats/vs3.h"
 #include "interflect/generators/maze.h"
 #include "interflect/scene/core.h"
 
@@ -38,7 +39,7 @@ struct Format {
 };
 
 constexpr Format formats[] = {{".mgf", read_mgf}, {".glb", read_gltf}, {".gltf", read_gltf}, {".obj", read_obj},
-                              {".ply", read_ply}, {".rad", read_rad},  {".stl", read_stl}};
+                              {".ply", read_ply}, {".rad", read_rad},  {".stl", read_stl},   {".vs3", read_vs3}};
 
 const Format& format_of(const fs::path& path) {
     const std::string extension = lower_case_extension(path);

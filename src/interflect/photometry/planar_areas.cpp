@@ -62,7 +62,8 @@ std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& obj
     if (patches.empty())
         throw InputError(
             scene.name, 0,
-            fmt::format("there is no object '{}' with faces; {}", object, text_of_nearest(object, scene.objects)));
+            fmt::format("there is no object '{}' with faces; {}", object, text_of_nearest(object, scene.objects)))
+            .set_object(object);
     return patches;
 }
 

@@ -21,13 +21,6 @@ std::string listed(const std::vector<std::string>& names) {
     return text;
 }
 
-/// Matches enclosing objects too.
-bool matches_object(std::string_view pattern, std::string_view name) {
-    for (std::size_t end = name.find('.'); end != name.npos; end = name.find('.', end + 1))
-        if (matches(pattern, name.substr(0, end))) return true;
-    return !name.empty() && matches(pattern, name);
-}
-
 std::string outermost(const std::string& object) { return object.substr(0, object.find('.')); }
 
 class Matcher {
@@ -91,6 +84,12 @@ bool matches(std::string_view pattern, std::string_view name) {
         }
     }
     return pattern.find_first_not_of('*', p) == pattern.npos;
+}
+
+bool matches_object(std::string_view pattern, std::string_view name) {
+    for (std::size_t end = name.find('.'); end != name.npos; end = name.find('.', end + 1))
+        if (matches(pattern, name.substr(0, end))) return true;
+    return !name.empty() && matches(pattern, name);
 }
 
 std::size_t SourceGroups::index_of(const std::string& name) const {

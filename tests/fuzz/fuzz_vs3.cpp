@@ -1,0 +1,14 @@
+// For arbitrary bytes, the View3D reader returns a valid scene or throws an InputError.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "interflect/formats/vs3.h"
+#include "tests/fuzz/scene_bytes.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    return interflect::fuzzing::require_scene_or_error([&](const interflect::ReadOptions& options) {
+        return interflect::detail::read_vs3_bytes(bytes, "fuzz.vs3", options);
+    });
+}
