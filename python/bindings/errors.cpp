@@ -42,8 +42,6 @@ void bind_errors(py::module_&) {
             raise_input_error("InputError", e);
         } catch (const Stopped& e) {
             PyErr_SetString(class_of("Stopped").ptr(), e.what());
-        } catch (const py::builtin_exception&) {
-            throw;  // TypeError and the like, which pybind11 raises itself
         } catch (const std::runtime_error& e) {
             PyErr_SetString(class_of("Error").ptr(), e.what());
         }

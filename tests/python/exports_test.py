@@ -1,4 +1,4 @@
-"""The module against the command: the same bits for the same scene, settings and seed."""
+"""Exports, display pictures and measurements of the module equal those of the command."""
 
 import unittest
 from contextlib import chdir
@@ -8,10 +8,10 @@ import interflect as ifl
 import numpy as np
 
 
-class SameAsTheCommand(command.RenderTest):
+class Exports(command.RenderTest):
     def setUp(self):
         super().setUp()
-        self.enterContext(chdir(self.folder))  # solution files contain the path of the scene as it was given
+        self.enterContext(chdir(self.folder))
         self.solve("--view", "door")
         self.solution = ifl.open_solution("room.h5")
         (self.folder / "module").mkdir()
@@ -23,26 +23,6 @@ class SameAsTheCommand(command.RenderTest):
         self.assertEqual(names, sorted(path.name for path in (self.folder / "module").iterdir()))
         for name in names:
             self.assertEqual(self.bytes(f"command/{name}"), self.bytes(f"module/{name}"), name)
-
-    def test_solution(self):
-        ifl.solve("room.mgf", view="door", rays=50_000, mesh_size=0.5).save("solved.h5")
-        self.assertEqual(self.bytes("solved.h5"), self.bytes("room.h5"))
-
-    def test_published_algorithm(self):
-        settings = ("--preset", "paper", "--separate-iterations", "--defer-refinement", "--seed", "7", "--rays", "30k")
-        self.interflect("solve", "room.mgf", "-o", "paper.h5", "--view", "door", *settings)
-        solution = ifl.solve(
-            "room.mgf", view="door", preset="paper", separate_iterations=True, defer_refinement=True, seed=7, rays=30e3
-        )
-        np.testing.assert_array_equal(solution.irradiance, ifl.open_solution("paper.h5").irradiance)
-
-    def test_pictures(self):
-        view = self.solution.scene.views[1]
-        for shading in ("hybrid", "gather", "smooth", "flat", "path"):
-            with self.subTest(shading):
-                self.render(f"command/{shading}.exr", "--view", view.name, "--shading", shading, source="room.h5")
-                picture = ifl.render(self.solution, view.name, width=32, height=18, samples=4, shading=shading)
-                np.testing.assert_array_equal(picture, ifl.read_image(f"command/{shading}.exr"))
 
     def test_tone_mapped_pictures(self):
         self.render("command/room.png", "--view", "floor", source="room.h5")  # whose noise the command filters
@@ -82,15 +62,6 @@ class SameAsTheCommand(command.RenderTest):
         with self.assertWarnsRegex(ifl.Warning, "light passes"):
             ifl.export_scene(ifl.load("room.mgf"), "module/room.rad")
         self.assert_same_files()
-
-    def test_run_that_is_saved_continues_as_if_it_was_not(self):
-        with ifl.Solver("room.mgf", views="door", rays=100_000) as solver:
-            solver.advance(rays=30_000)
-            solver.save("run.h5")
-            with ifl.Solver.open("run.h5") as opened:
-                self.assertFalse(opened.advance(rays=30_000).is_finished)
-                solver.advance(rays=30_000)
-                np.testing.assert_array_equal(solver.solution.irradiance, opened.solution.irradiance)
 
 
 if __name__ == "__main__":
