@@ -2,8 +2,8 @@
 
     python3 examples/view_factors.py
 
-The view factor F12 is the fraction of the diffuse radiation that leaves surface 1 and reaches surface 2 directly. Closed
-forms: J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-11, C-14 and C-41.
+The view factor F12 is the fraction of the diffuse radiation that leaves surface 1 and reaches surface 2 directly. The
+closed forms are C-11, C-14 and C-41 of J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors.
 """
 
 import argparse
