@@ -23,6 +23,7 @@ namespace interflect::python {
 namespace py = pybind11;
 
 void bind_errors(py::module_& module);
+void bind_scene_parts(py::module_& module);
 void bind_light_sources(py::module_& module);
 void bind_scene_parts(py::module_& module);
 void bind_scene(py::module_& module);
@@ -105,6 +106,11 @@ py::array_t<float> array_of(Image image);
 /// @param name  Of the argument, for messages.
 /// @throws InputError unless the array has the shape (height, width, 3).
 Image image_of(const py::array_t<float, py::array::c_style | py::array::forcecast>& array, const std::string& name);
+
+/// One sentence per warning.
+std::vector<std::string> sentences(const Warnings& warnings);
+/// Reports warnings by warnings.warn(). @param stack_level  1: at the caller of the C++ function.
+void warn(const Warnings& warnings, int stack_level);
 
 /// View of that name, the view itself, or for None the scene's first one.
 View view_of(const Scene& scene, const py::object& view);

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "bindings.h"
 
 namespace interflect::python {
@@ -13,6 +15,20 @@ void raise_input_error(const char* name, const InputError& e) {
 }
 
 }  // namespace
+
+std::vector<std::string> sentences(const Warnings& warnings) {
+    std::vector<std::string> result;
+    for (const Warnings::Entry& w : warnings.entries()) {
+        const std::string times = w.count > 1 ? fmt::format(" ({} times)", w.count) : "";
+        result.push_back(fmt::format("{}{}{}", w.where.empty() ? "" : w.where + ": ", w.message, times));
+    }
+    return result;
+}
+
+void warn(const Warnings& warnings, int stack_level) {
+    for (const std::string& sentence : sentences(warnings))
+        if (PyErr_WarnEx(class_of("Warning").ptr(), sentence.c_str(), stack_level) != 0) throw py::error_already_set();
+}
 
 void bind_errors(py::module_&) {
     py::register_exception_translator([](std::exception_ptr thrown) {

@@ -2,6 +2,7 @@
 
 #include "bindings.h"
 #include "fields.h"
+#include "interflect/checks/up_axis.h"
 #include "interflect/export.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/geometry/split.h"
@@ -130,6 +131,19 @@ void take(py::dict& left, const char* name, Value& value) {
     PyDict_DelItemString(left.ptr(), name);
 }
 
+/// Up axis as `interflect export` chooses it.
+V3f up_of(const Scene& scene, Warnings& warnings) {
+    const auto found = detail::find_up_axis(scene);
+    if (!found) {
+        warnings.add("up", "the up axis is unknown: taking z; the option up chooses another");
+        return {0, 0, 1};
+    }
+    const std::string axis = found->axis;
+    V3f up(0);
+    up[axis.back() - 'x'] = axis.front() == '-' ? -1.0f : 1.0f;
+    return up;
+}
+
 std::vector<std::filesystem::path> export_light(const SharedLight& light, const std::filesystem::path& path,
                                                 bool lightmap, int threads, const py::object& progress,
                                                 const py::kwargs& keywords) {
@@ -139,7 +153,13 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
     py::dict left(keywords);
     std::string shading = "hybrid", content = "irradiance";
     take(left, "exposure", options.exposure);
-    take(left, "up", options.up);
+    Warnings warnings;
+    options.warnings = &warnings;
+    if (left.contains("up")) {
+        take(left, "up", options.up);
+    } else {
+        options.up = up_of(*light->scene, warnings);
+    }
     take(left, "shading", shading);
     take(left, "samples", options.bake.samples);
     take(left, "seed", options.bake.seed);
@@ -167,10 +187,12 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
         throw py::type_error("export: there is no option '" + py::cast<std::string>(name) + "'" +
                              (lightmap ? "" : " without lightmap=True"));
     options.bake.shading = bake_shading_of(shading);
-    return long_work(progress, threads, [&](const Monitor& monitor) {
+    auto files = long_work(progress, threads, [&](const Monitor& monitor) {
         options.monitor = monitor;
         return export_solution(path, *light->scene, *light->solution, options);
     });
+    warn(warnings, 2);
+    return files;
 }
 
 }  // namespace
@@ -191,10 +213,7 @@ void bind_files(py::module_& m) {
         [](const std::filesystem::path& path) {
             Warnings warnings;
             auto web = std::make_shared<PhotometricWeb>(load_photometric_web(path, ReadOptions(), warnings));
-            const py::object kind = py::module_::import("interflect._errors").attr("Warning");
-            for (const Warnings::Entry& w : warnings.entries())
-                if (PyErr_WarnEx(kind.ptr(), (w.where + ": " + w.message).c_str(), 1) != 0)
-                    throw py::error_already_set();
+            warn(warnings, 1);
             return web;
         },
         py::arg("path"), Documented(docs::load_photometric_web));
@@ -220,7 +239,9 @@ void bind_files(py::module_& m) {
     m.def(
         "export_scene",
         [](const std::shared_ptr<Scene>& scene, const std::filesystem::path& path) {
-            return export_scene(path, *scene).files;
+            const SceneExport written = export_scene(path, *scene);
+            warn(written.warnings, 1);
+            return written.files;
         },
         py::arg("scene"), py::arg("path"),
         Documented(docs::export_scene, {{"path",

@@ -36,15 +36,6 @@ py::array_t<std::int64_t> other_sides(const Scene& scene) {
     return result;
 }
 
-py::list warnings_of(const Scene& scene) {
-    py::list result;
-    for (const Warnings::Entry& w : scene.warnings.entries()) {
-        const std::string times = w.count > 1 ? fmt::format(" ({} times)", w.count) : "";
-        result.append(fmt::format("{}{}{}", w.where.empty() ? "" : w.where + ": ", w.message, times));
-    }
-    return result;
-}
-
 std::string describe(const Scene& s) {
     return fmt::format("<Scene '{}': {} patches, {} materials, {} luminaires, {} views>", s.name, s.patches.size(),
                        s.materials.size(), s.luminaires.size(), s.views.size());
@@ -197,7 +188,7 @@ void bind_scene(py::module_& m) {
         .def_property_readonly("views", copies(&Scene::views), "Named views. Copies; see replace().")
         .def_readonly("files", &Scene::files, docs::Scene_files)
         .def_property_readonly(
-            "warnings", [](const SharedScene& s) { return warnings_of(*s); },
+            "warnings", [](const SharedScene& s) { return sentences(s->warnings); },
             "Unsupported features of the file, one sentence each.")
         .def("__repr__", [](const SharedScene& s) { return describe(*s); });
     m.attr("none") = none;

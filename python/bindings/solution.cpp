@@ -80,10 +80,18 @@ py::list iterations_of(const Light& light) {
     return result;
 }
 
-SharedLight dimmed_light(const Light& light, const std::string& group, float factor) {
+/// @param group  Name, or factors by name, without `factor`.
+SharedLight dimmed_light(const Light& light, const py::object& group, const std::optional<float>& factor) {
+    if (py::isinstance<py::dict>(group) == factor.has_value())
+        throw py::type_error("dim: expected the name of a group and a factor, or a dict of factors by name");
+    std::map<std::string, float> factors;
+    if (factor)
+        factors[py::cast<std::string>(group)] = *factor;
+    else
+        factors = py::cast<std::map<std::string, float>>(group);
     auto scene = std::make_shared<Scene>(*light.scene);
     auto solution = std::make_shared<Solution>(*light.solution);
-    dim(*scene, *solution, group, factor);
+    for (const auto& [group, factor] : factors) dim(*scene, *solution, group, factor);
     return std::make_shared<Light>(std::move(scene), std::move(solution), light.ray_caster);
 }
 
@@ -217,10 +225,11 @@ void bind_solution(py::module_& m) {
             "power_balance", [](const Light& light) { return power_balance(*light.scene, *light.solution); },
             Documented(docs::power_balance))
         .def(
-            "dim", &dimmed_light, py::arg("group"), py::arg("factor"),
-            Documented("Copies the solution, with the sources of a light group and all of their light scaled, without "
+            "dim", &dimmed_light, py::arg("group"), py::arg("factor") = py::none(),
+            Documented("Copies the solution, with the sources of light groups and all of their light scaled, without "
                        "tracing rays.",
-                       {{"group", "Name of a light group."}, {"factor", "Relative to the current emission; >= 0."}})
+                       {{"group", "Name of a light group, or a dict of factors by name."},
+                        {"factor", "Relative to the current emission; >= 0. None for a dict."}})
                 .raises("InputError: for an unknown group, with the names of all; for a factor that is negative or not "
                         "finite."))
         .def("save", &save, py::arg("path"), Documented(docs::write_solution))

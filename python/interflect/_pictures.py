@@ -16,6 +16,8 @@ from interflect._scenes import scene_of
 
 # Samples per pixel, as the command `interflect render` has.
 SAMPLES = {"hybrid": 32, "gather": 16, "path": 64, "instant": 64, "smooth": 16, "flat": 16}
+# Formats with 8-bit colours, for which export() computes the automatic exposure.
+COLOUR_FORMATS = (".glb", ".gltf", ".ply", ".obj")
 FROM_SCENE = ("path", "instant")
 ViewArgument = _core.View | str | None
 LitArgument = _core.Solution | _core.Scene | str | os.PathLike[str]
@@ -162,28 +164,35 @@ def probe(solution: _core.Solution, points: ArrayLike | _core.MeasuringGrid, nor
         return _core.probe(solution, points, normals, receiver, axis, shading, samples, until, seed, threads, report)
 
 
-def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: bool = False, threads: int = 0,
-           progress: ProgressArgument = None, **options: Any) -> list[Path]:
+def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: bool = False,
+           exposure: float | None = None, threads: int = 0, progress: ProgressArgument = None,
+           **options: Any) -> list[Path]:
     """Writes a solved scene for other programs, in the format of the extension of `path` (docs/export.md).
 
     Args:
         solution: Result of solve().
         path: .glb, .gltf, .ply, .obj, .vtkhdf, .hdf or .vtu; .json or .exr for probes.
         lightmap: Stores the light in lightmaps rather than in vertices.
+        exposure: [stops], of 8-bit colours, as of tonemap().
         threads, progress: As of render().
-        options: exposure, up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
+        options: up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
             max_triangles. In lightmaps: texels_per_metre, max_size, gutter, image, own_charts, groups, content. For
             probes: spacing, rays.
 
     Returns:
-        The files that were written.
+        The files that were written. Features that the format lacks are reported by warnings.warn().
 
     Raises:
         InputError: for an unknown extension and options out of range.
         TypeError: for an unknown option.
     """
+    if exposure is None and Path(path).suffix in COLOUR_FORMATS:
+        view = solution.scene.views[0] if solution.scene.views else _core.overview(solution.scene)
+        exposure = _core.automatic_exposure(
+            render(solution, view, width=160, height=90, shading="smooth", samples=4, threads=threads, progress=False))
     with reporting(progress, "exporting") as report:
-        return _core.export_solution(solution, path, lightmap=lightmap, threads=threads, progress=report, **options)
+        return _core.export_solution(solution, path, lightmap=lightmap, exposure=exposure or 0, threads=threads,
+                                     progress=report, **options)
 
 
 def rate_glare(solution: _core.Solution, eyes: ArrayLike, lines_of_sight: ArrayLike, *, samples: int = 4096, seed: int = 1,

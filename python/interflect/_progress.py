@@ -5,11 +5,14 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 from interflect import _core
 
 Report = Callable[[_core.Progress], Any]
+UNNOTICED = 1.0  # [s]: waiting that needs no explanation
 ProgressArgument = bool | Report | None
 
 
@@ -33,17 +36,21 @@ def reporting(progress: ProgressArgument, what: str) -> Iterator[Report | None]:
         yield None
         return
     try:
-        from tqdm.auto import tqdm
+        # Without ipywidgets tqdm.auto warns in every notebook.
+        has_widgets = _is_in_notebook() and find_spec("ipywidgets") is not None
+        tqdm = import_module("tqdm.notebook" if has_widgets else "tqdm").tqdm
     except ImportError:
         yield None
         return
-    with tqdm(total=100, desc=what, unit="%", bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}") as bar:
+    # Default bars appear only for long work, and disappear at its end.
+    quiet = {"leave": False, "delay": UNNOTICED} if progress is None else {}
+    form = "{l_bar}{bar}| {elapsed}<{remaining}{postfix}"
+    with tqdm(total=100, desc=what, unit="%", bar_format=form, **quiet) as bar:
 
         def show(now: _core.Progress) -> None:
-            bar.n = min(100, round(100 * now.fraction))
             error = f", error {100 * now.relative_error:.2g}%" if now.relative_error < float("inf") else ""
-            bar.set_postfix_str(f"{now.rays:.3g} rays{error}")
+            bar.set_postfix_str(f"{now.rays:.3g} rays{error}", refresh=False)
+            bar.update(min(100, round(100 * now.fraction)) - bar.n)
 
         yield show
-        bar.n = 100
-        bar.refresh()
+        bar.update(100 - bar.n)
