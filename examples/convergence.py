@@ -10,6 +10,7 @@ A variant combines three choices:
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 import interflect as ifl
 import matplotlib.pyplot as plt
@@ -19,7 +20,7 @@ import pandas as pd
 
 SCENE, VIEW = "maze:4", "room-0"
 WIDTH, HEIGHT = 160, 90  # pixels
-VARIANTS = {
+VARIANTS: dict[str, dict[str, Any]] = {
     name: {
         "separate_iterations": name.startswith("si"),
         "importance_at_patches": "hi" not in name,

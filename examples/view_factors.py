@@ -72,7 +72,7 @@ SIZES = (0.25, 0.5, 1, 2, 4)  # distance, or height of the perpendicular rectang
 
 
 def compare(rays: float) -> pd.DataFrame:
-    rows = []
+    rows: list[dict] = []
     for name, shape in SHAPES.items():
         for size in SIZES:
             scene, exact = shape(size)

@@ -1,6 +1,6 @@
 """Writes the comments of the public headers as C++ constants: docstrings.py OUTPUT HEADER...
 
-The comment of `Solver::advance()` becomes `docs::Solver_advance`, a Comment of python/bindings/documented.h; the
+The comment of `Solver::advance()` becomes `docs::Solver_advance`, a Comment of python/bindings/support/documented.h; the
 comment of a type or a member, such as `View::fov`, becomes the string `docs::View_fov`. The bindings make docstrings of
 them: the comment of a header is the only text of a contract. Words of C++ are converted here: `nullopt` and `null` become
 None, `Scene::origin` becomes `Scene.origin`, functions have their names in Python. Paragraphs that start

@@ -62,10 +62,10 @@ struct ViewFactorOptions {
 struct ViewFactors {
     std::vector<std::string> names;         ///< Names of the groups.
     std::vector<double> areas;              ///< Uncovered area of each group [m^2].
-    std::vector<std::int64_t> row_offsets;  ///< Start of each row in the next three arrays, and the end; size() + 1.
+    std::vector<std::int64_t> row_offsets;  ///< Start of each row in the next three arrays, and the end.
     std::vector<std::int32_t> columns;      ///< Increasing within a row.
     std::vector<float> values;              ///< In [0, 1].
-    std::vector<float> errors;              ///< Standard errors. Absent entries have `smallest_error`.
+    std::vector<float> errors;              ///< Standard errors. Absent entries have 1 / rays_per_group.
     /// Fractions that leave the scene above and below the horizon (the direction's z > 0 and < 0): the sky view factor,
     /// and its counterpart for the ground of a scene without one.
     std::vector<float> sky, sky_errors, ground, ground_errors;
@@ -138,7 +138,7 @@ struct Reconciliation {
 ///
 /// The errors become the errors of the averages of both directions. The fit usually reduces them further.
 /// Memory: at most 24 bytes per non-zero factor in addition.
-/// @throws Stopped, and then leaves `factors` as they were.
+/// @throws Stopped, and then leaves the factors as they were.
 Reconciliation reconcile(ViewFactors& factors, const ReconcileOptions& options = {}, const Monitor& monitor = {});
 
 }  // namespace interflect

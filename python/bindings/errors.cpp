@@ -35,15 +35,13 @@ void bind_errors(py::module_&) {
         try {
             std::rethrow_exception(thrown);
         } catch (const py::builtin_exception&) {
-            throw;  // pybind11's translator knows these
+            throw;  // such as py::type_error; for pybind11's own translator
         } catch (const TooManyPatches& e) {
             raise_input_error("TooManyPatches", e);
         } catch (const InputError& e) {
             raise_input_error("InputError", e);
         } catch (const Stopped& e) {
             PyErr_SetString(class_of("Stopped").ptr(), e.what());
-        } catch (const py::builtin_exception&) {  // such as py::type_error; for pybind11's own translator
-            throw;
         } catch (const std::runtime_error& e) {
             PyErr_SetString(class_of("Error").ptr(), e.what());
         }

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "bindings.h"
 #include "long_work.h"
@@ -84,14 +86,11 @@ py::list iterations_of(const Light& light) {
 SharedLight dimmed_light(const Light& light, const py::object& group, const std::optional<float>& factor) {
     if (py::isinstance<py::dict>(group) == factor.has_value())
         throw py::type_error("dim: expected the name of a group and a factor, or a dict of factors by name");
-    std::map<std::string, float> factors;
-    if (factor)
-        factors[py::cast<std::string>(group)] = *factor;
-    else
-        factors = py::cast<std::map<std::string, float>>(group);
+    const auto factors = factor ? std::map<std::string, float>{{py::cast<std::string>(group), *factor}}
+                                : py::cast<std::map<std::string, float>>(group);
     auto scene = std::make_shared<Scene>(*light.scene);
     auto solution = std::make_shared<Solution>(*light.solution);
-    for (const auto& [group, factor] : factors) dim(*scene, *solution, group, factor);
+    for (const auto& [name, scale] : factors) dim(*scene, *solution, name, scale);
     return std::make_shared<Light>(std::move(scene), std::move(solution), light.ray_caster);
 }
 
@@ -114,7 +113,7 @@ double error_of(const Light& light) {
     return iterations.empty() ? std::numeric_limits<double>::infinity() : iterations.back().error_estimate;
 }
 
-std::string describe(const Light& light) {
+std::string describe_light(const Light& light) {
     const auto& iterations = light.solution->iterations;
     return fmt::format("<Solution of '{}': {} leaves, {} rays, error {:.3g}>", light.scene->name,
                        iterations.empty() ? 0 : iterations.back().leaves,
@@ -235,7 +234,7 @@ void bind_solution(py::module_& m) {
         .def("save", &save, py::arg("path"), Documented(docs::write_solution))
         .def_static("open", &open_light, py::arg("path"), Documented(docs::read_solution))
         .def("__len__", [](const Light& light) { return light.mesh().size(); })
-        .def("__repr__", &describe);
+        .def("__repr__", &describe_light);
 }
 
 }  // namespace interflect::python

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "bindings.h"
 #include "documented.h"
+#include "interflect/base/pending_file.h"
+#include "interflect/view_factors/write_npz.h"
 #include "long_work.h"
 
 namespace interflect::python {
@@ -67,37 +71,60 @@ std::vector<FaceGroup> groups_of(const Scene& scene, const py::object& groups, F
     return pattern_groups(scene, patterns, sides);
 }
 
-/// Changes indices of patches to those of with_opaque_backs(), where each one-sided patch is followed by its back.
-void move_to_opaque(std::vector<FaceGroup>& groups, const Scene& scene) {
-    std::vector<std::uint32_t> moved;
-    std::uint32_t next = 0;
-    for (const Patch& patch : scene.patches) {
-        moved.push_back(next);
-        next += patch.other_side == none ? 2 : 1;
-    }
-    for (FaceGroup& group : groups)
-        for (std::uint32_t& patch : group.patches) patch = moved[patch];
-}
-
 SharedFactors compute(const std::shared_ptr<Scene>& scene, const py::object& groups, std::int64_t rays,
                       const std::string& sides, bool opaque_backs, std::uint64_t seed, int threads,
                       const py::object& progress) {
-    std::vector<FaceGroup> chosen = groups_of(*scene, groups, sides_of(sides));
-    std::shared_ptr<const Scene> traced = scene;
-    if (opaque_backs) {
-        traced = std::make_shared<const Scene>(with_opaque_backs(*scene));
-        move_to_opaque(chosen, *scene);
-    }
+    const std::vector<FaceGroup> chosen = groups_of(*scene, groups, sides_of(sides));
+    const ViewFactorOptions options{.rays = rays, .seed = seed};
     return long_work(progress, threads, [&](const Monitor& monitor) {
-        const RayCaster ray_caster(*traced);
-        return std::make_shared<ViewFactors>(
-            view_factors(*traced, ray_caster, chosen, {.rays = rays, .seed = seed}, monitor));
+        return std::make_shared<ViewFactors>(opaque_backs
+                                                 ? view_factors(*scene, chosen, options, monitor)
+                                                 : view_factors(*scene, RayCaster(*scene), chosen, options, monitor));
     });
 }
 
 template <class Number>
 auto array(std::vector<Number> ViewFactors::*member) {
     return [member](const SharedFactors& factors) { return rows<Number>(factors, (*factors).*member); };
+}
+
+/// Calls use(i, j, entry) for each entry of the rows.
+template <class Use>
+void for_each_entry(const ViewFactors& f, const Use& use) {
+    for (std::size_t i = 0; i < f.size(); ++i)
+        for (std::int64_t e = f.row_offsets[i]; e < f.row_offsets[i + 1]; ++e)
+            use(static_cast<py::ssize_t>(i), static_cast<py::ssize_t>(f.columns[static_cast<std::size_t>(e)]),
+                static_cast<std::size_t>(e));
+}
+
+/// (n, n), `absent` where there is no entry.
+py::array_t<double> dense(const ViewFactors& f, const std::vector<float>& entries, double absent) {
+    const auto n = static_cast<py::ssize_t>(f.size());
+    py::array_t<double> result({n, n});
+    std::fill_n(result.mutable_data(), result.size(), absent);
+    for_each_entry(f, [&](py::ssize_t i, py::ssize_t j, std::size_t e) {
+        result.mutable_at(i, j) = static_cast<double>(entries[e]);
+    });
+    return result;
+}
+
+/// Matrix of SciPy that shares the entries and the columns.
+py::object sparse(const SharedFactors& f, const std::vector<float>& entries) {
+    const py::tuple arrays = py::make_tuple(rows<float>(f, entries), rows<std::int32_t>(f, f->columns),
+                                            rows<std::int64_t>(f, f->row_offsets));
+    return py::module_::import("scipy.sparse")
+        .attr("csr_matrix")(arrays, py::arg("shape") = py::make_tuple(f->size(), f->size()), py::arg("copy") = false);
+}
+
+py::array_t<double> closures(const ViewFactors& f) {
+    py::array_t<double> result(static_cast<py::ssize_t>(f.size()));
+    for (std::size_t i = 0; i < f.size(); ++i) result.mutable_at(static_cast<py::ssize_t>(i)) = f.closure(i);
+    return result;
+}
+
+void save_npz(const ViewFactors& f, const std::filesystem::path& path) {
+    detail::PendingFile file(path);
+    detail::write_npz(file, f);
 }
 
 void bind_consistency(py::module_& m) {
@@ -116,7 +143,7 @@ void bind_consistency(py::module_& m) {
             return fmt::format("<Consistency: closure within {:.3g}, reciprocity within {:.3g}>", c.closure.largest,
                                c.reciprocity.largest);
         });
-    py::class_<Reconciliation>(m, "Reconciliation", "Result of ViewFactors.reconcile().")
+    py::class_<Reconciliation>(m, "Reconciliation", "Result of ViewFactors.reconciled().")
         .def_readonly("before", &Reconciliation::before, "Consistency of the estimate.")
         .def_readonly("after", &Reconciliation::after, "Consistency of the fit.");
 }
@@ -127,20 +154,50 @@ void bind_view_factors(py::module_& m) {
     bind_consistency(m);
     py::class_<ViewFactors, SharedFactors>(m, "ViewFactors", docs::ViewFactors)
         .def_readonly("names", &ViewFactors::names, docs::ViewFactors_names)
-        .def_property_readonly("areas", array(&ViewFactors::areas), docs::ViewFactors_areas)
-        .def_property_readonly("row_offsets", array(&ViewFactors::row_offsets), docs::ViewFactors_row_offsets)
-        .def_property_readonly("columns", array(&ViewFactors::columns), docs::ViewFactors_columns)
-        .def_property_readonly("values", array(&ViewFactors::values), docs::ViewFactors_values)
-        .def_property_readonly("errors", array(&ViewFactors::errors), docs::ViewFactors_errors)
-        .def_property_readonly("sky", array(&ViewFactors::sky), docs::ViewFactors_sky)
-        .def_property_readonly("sky_errors", array(&ViewFactors::sky_errors), docs::ViewFactors_sky)
-        .def_property_readonly("ground", array(&ViewFactors::ground), docs::ViewFactors_sky)
-        .def_property_readonly("ground_errors", array(&ViewFactors::ground_errors), docs::ViewFactors_sky)
-        .def_property_readonly("blocked", array(&ViewFactors::blocked), docs::ViewFactors_blocked)
-        .def_property_readonly("blocked_errors", array(&ViewFactors::blocked_errors), docs::ViewFactors_blocked)
+        .def_property_readonly("areas", array(&ViewFactors::areas),
+                               array_text("(n,) float64", docs::ViewFactors_areas).c_str())
+        .def_property_readonly("row_offsets", array(&ViewFactors::row_offsets),
+                               array_text("(n + 1,) int64", docs::ViewFactors_row_offsets).c_str())
+        .def_property_readonly("columns", array(&ViewFactors::columns),
+                               array_text("(nnz,) int32", docs::ViewFactors_columns).c_str())
+        .def_property_readonly("values", array(&ViewFactors::values),
+                               array_text("(nnz,) float32", docs::ViewFactors_values).c_str())
+        .def_property_readonly("errors", array(&ViewFactors::errors),
+                               array_text("(nnz,) float32", docs::ViewFactors_errors).c_str())
+        .def_property_readonly("sky", array(&ViewFactors::sky),
+                               array_text("(n,) float32", docs::ViewFactors_sky).c_str())
+        .def_property_readonly("sky_errors", array(&ViewFactors::sky_errors),
+                               array_text("(n,) float32", docs::ViewFactors_sky).c_str())
+        .def_property_readonly("ground", array(&ViewFactors::ground),
+                               array_text("(n,) float32", docs::ViewFactors_sky).c_str())
+        .def_property_readonly("ground_errors", array(&ViewFactors::ground_errors),
+                               array_text("(n,) float32", docs::ViewFactors_sky).c_str())
+        .def_property_readonly("blocked", array(&ViewFactors::blocked),
+                               array_text("(n,) float32", docs::ViewFactors_blocked).c_str())
+        .def_property_readonly("blocked_errors", array(&ViewFactors::blocked_errors),
+                               array_text("(n,) float32", docs::ViewFactors_blocked).c_str())
         .def_readonly("rays_per_group", &ViewFactors::rays_per_group, "Number of rays of each group.")
         .def(
             "consistency", [](const SharedFactors& f) { return consistency(*f); }, Documented(docs::consistency))
+        .def_property_readonly(
+            "matrix", [](const SharedFactors& f) { return sparse(f, f->values); },
+            "The factors as a sparse matrix of SciPy (n, n), which shares `values` and `columns`.")
+        .def_property_readonly(
+            "error_matrix", [](const SharedFactors& f) { return sparse(f, f->errors); },
+            "Standard errors of the non-zero factors as a sparse matrix of SciPy (n, n).")
+        .def(
+            "dense", [](const ViewFactors& f) { return dense(f, f.values, 0); },
+            Documented("Returns the factors as an array (n, n), float64."))
+        .def(
+            "dense_errors", [](const ViewFactors& f) { return dense(f, f.errors, f.smallest_error()); },
+            Documented("Returns the standard errors as an array (n, n), float64. Those of absent factors are the "
+                       "resolution, 1 / rays_per_group."))
+        .def("closure", &closures,
+             Documented("Returns the sum of each row with sky, ground and blocked, (n,) float64: 1, "
+                        "unless the group has no uncovered area."))
+        .def("save", &save_npz, py::arg("path"),
+             Documented("Writes the arrays to a .npz file, named as here, which numpy.load reads.",
+                        {{"path", "File to write."}}))
         .def(
             "reconciled",
             [](const SharedFactors& f, bool closure, bool reciprocity, int threads, const py::object& progress) {

@@ -15,11 +15,12 @@ ends them.
 """
 
 from interflect._core import (
-    AdvanceReport, BlockDifference, CieSky, Consistency, Daylight, Deviation, DirectionalLight, Elements, Environment, EnvironmentMap, Finding,
+    AdvanceReport, BlockDifference, CieSky, Consistency, Daylight, Deviation, DirectionalLight, Elements, Environment,
+    EnvironmentMap, Finding,
     FindingPlace, GlareRating, GlareSource, IlluminanceSummary, ImageDifference, LightGroup, Luminaire, Material,
     MeasuredLight, MeasuringGrid, Measurement, PathTracing, PerezSky, PhotometricWeb, PlacedLuminaire, PlanarArea,
     PointLight, PowerBalance, Progress, Reconciliation, Scene, SkyDome, SkyModel, Solution, SpotLight, Sun, Texture, UniformSky, View,
-    WeightedView, area_grid, automatic_exposure, cie_standard_sky, compare, cut_at_contacts, export_scene, find_floor,
+    ViewFactors, WeightedView, area_grid, automatic_exposure, cie_standard_sky, compare, cut_at_contacts, export_scene, find_floor,
     find_surface, find_top, grid_spacing, groups_by_name, line_grid, load_photometric_web, none, overview, read_image,
     read_radiance_view, validate, write_image,
 )
@@ -28,7 +29,7 @@ from interflect._errors import Error, InputError, Stopped, TooManyPatches, Warni
 from interflect._pictures import export, probe, rate_glare, render, tonemap, trace
 from interflect._scenes import load
 from interflect._solving import Solver, open_solution, solve
-from interflect._view_factors import ViewFactors, view_factors
+from interflect._view_factors import view_factors
 
 __all__ = [
     "AdvanceReport", "BlockDifference", "CieSky", "Consistency", "Daylight", "Deviation", "DirectionalLight", "Elements", "Environment",

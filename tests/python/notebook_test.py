@@ -13,7 +13,7 @@ CELLS = [
 import interflect as ifl
 scene = ifl.load("maze:2")
 view = scene.views[0]
-solution = ifl.solve(scene, view=view, rays=2e5)
+solution = ifl.solve(scene, view=view, rays=2e5, progress=True)
 """,
     "solution",
     "[view, ifl.Material('white', reflectance=0.8)]",
