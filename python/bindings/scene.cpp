@@ -113,23 +113,38 @@ void bind_scene_parts(py::module_& m) {
 
 void bind_scene(py::module_& m) {
     py::class_<Scene, SharedScene>(m, "Scene", docs::Scene)
-        .def(py::init(&scene_from_arrays), py::arg("vertices"), py::arg("faces"), py::arg("materials"), py::kw_only(),
+        .def(py::init([](const py::object& vertices, const py::object& faces, const py::object& materials,
+                         const py::object& face_materials, const py::object& two_sided, const py::object& objects,
+                         const py::object& face_objects, const py::object& normals,
+                         const py::object& texture_coordinates, const py::object& lightmap_coordinates,
+                         const py::object& textures, const py::object& luminaires, const py::object& views,
+                         const py::object& light_groups, std::string name) {
+                 return scene_from_arrays(vertices, faces, face_materials, two_sided, objects, face_objects, normals,
+                                          texture_coordinates, lightmap_coordinates,
+                                          {materials, luminaires, views, light_groups, textures}, std::move(name));
+             }),
+             py::arg("vertices"), py::arg("faces"), py::arg("materials"), py::kw_only(),
              py::arg("face_materials") = py::none(), py::arg("two_sided") = false, py::arg("objects") = py::none(),
              py::arg("face_objects") = py::none(), py::arg("normals") = py::none(),
              py::arg("texture_coordinates") = py::none(), py::arg("lightmap_coordinates") = py::none(),
-             py::arg("textures") = std::vector<std::shared_ptr<Texture>>(),
-             py::arg("luminaires") = std::vector<Luminaire>(), py::arg("views") = std::vector<View>(),
-             py::arg("light_groups") = std::vector<LightGroup>(), py::arg("name") = "arrays", scene_from_arrays_text())
-        .def("replace", &replaced, py::kw_only(), py::arg("materials") = py::none(), py::arg("luminaires") = py::none(),
-             py::arg("views") = py::none(), py::arg("light_groups") = py::none(), py::arg("textures") = py::none(),
-             Documented("Copies the scene, with other materials, luminaires, views, light groups or textures. The copy "
-                        "shares no memory with the scene.",
-                        {{"materials", "Sequence of Material; None: unchanged, as for the others."},
-                         {"luminaires", "Sequence of Luminaire."},
-                         {"views", "Sequence of View."},
-                         {"light_groups", "Sequence of LightGroup."},
-                         {"textures", "Sequence of Texture."}})
-                 .raises("InputError: that lists every fault of the result."))
+             py::arg("textures") = py::tuple(), py::arg("luminaires") = py::tuple(), py::arg("views") = py::tuple(),
+             py::arg("light_groups") = py::tuple(), py::arg("name") = "arrays", scene_from_arrays_text())
+        .def(
+            "replace",
+            [](const SharedScene& s, const py::object& materials, const py::object& luminaires, const py::object& views,
+               const py::object& light_groups, const py::object& textures) {
+                return replaced(s, {materials, luminaires, views, light_groups, textures});
+            },
+            py::kw_only(), py::arg("materials") = py::none(), py::arg("luminaires") = py::none(),
+            py::arg("views") = py::none(), py::arg("light_groups") = py::none(), py::arg("textures") = py::none(),
+            Documented("Copies the scene, with other materials, luminaires, views, light groups or textures. The copy "
+                       "shares no memory with the scene.",
+                       {{"materials", "Sequence of Material; None: unchanged, as for the others."},
+                        {"luminaires", "Sequence of Luminaire."},
+                        {"views", "Sequence of View."},
+                        {"light_groups", "Sequence of LightGroup."},
+                        {"textures", "Sequence of Texture."}})
+                .raises("InputError: that lists every fault of the result."))
         .def_readonly("name", &Scene::name, docs::Scene_name)
         .def_readonly("origin", &Scene::origin, docs::Scene_origin)
         .def_property_readonly(
@@ -190,6 +205,8 @@ void bind_scene(py::module_& m) {
         .def_property_readonly(
             "warnings", [](const SharedScene& s) { return sentences(s->warnings); },
             "Unsupported features of the file, one sentence each.")
+        .def("__copy__", [](const SharedScene& s) { return s; })  // it does not change
+        .def("__deepcopy__", [](const SharedScene& s, const py::dict&) { return s; })
         .def("__repr__", [](const SharedScene& s) { return describe(*s); });
     m.attr("none") = none;
     m.def(

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "bindings.h"
+#include "interflect/base/pending_file.h"
 #include "long_work.h"
 #include "settings.h"
 
@@ -95,7 +96,12 @@ SharedLight dimmed_light(const Light& light, const py::object& group, const std:
 }
 
 void save(const Light& light, const std::filesystem::path& path) {
-    long_work(py::none(), 0, [&](const Monitor&) { return write_solution(path, *light.scene, *light.solution), true; });
+    long_work(py::none(), 0, [&](const Monitor&) {
+        detail::PendingFile file(path);
+        write_solution(file.temporary_path(), *light.scene, *light.solution);
+        file.commit();
+        return true;
+    });
 }
 
 SharedLight open_light(const std::filesystem::path& path) {
@@ -116,7 +122,7 @@ double error_of(const Light& light) {
 std::string describe_light(const Light& light) {
     const auto& iterations = light.solution->iterations;
     return fmt::format("<Solution of '{}': {} leaves, {} rays, error {:.3g}>", light.scene->name,
-                       iterations.empty() ? 0 : iterations.back().leaves,
+                       iterations.empty() ? light.scene->patches.size() : iterations.back().leaves,
                        iterations.empty() ? 0 : iterations.back().rays, error_of(light));
 }
 
@@ -234,6 +240,8 @@ void bind_solution(py::module_& m) {
         .def("save", &save, py::arg("path"), Documented(docs::write_solution))
         .def_static("open", &open_light, py::arg("path"), Documented(docs::read_solution))
         .def("__len__", [](const Light& light) { return light.mesh().size(); })
+        .def("__copy__", [](const SharedLight& light) { return light; })  // it does not change
+        .def("__deepcopy__", [](const SharedLight& light, const py::dict&) { return light; })
         .def("__repr__", &describe_light);
 }
 

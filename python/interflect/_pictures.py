@@ -70,6 +70,8 @@ def render(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, he
         InputError: for a view that defines no picture and an option out of range.
     """
     source = _lit(lit, shading)
+    if not 0 <= crease_angle <= 180:
+        raise InputError(f"crease_angle: expected 0 to 180 degrees, found {crease_angle}")
     if shading not in ("smooth", "flat"):
         traced = trace(source, view, width=width, height=height, shading=shading, samples=samples, quantity=quantity,
                        seed=seed, threads=threads, progress=progress, **options)

@@ -1,5 +1,6 @@
 """Scenes from arrays and files: contents, views without copies, and every fault in one exception."""
 
+import copy
 import unittest
 from pathlib import Path
 
@@ -59,6 +60,17 @@ class FromArrays(unittest.TestCase):
         np.testing.assert_array_equal(scene.textures[0].texels, texels)
         self.assertEqual(scene.materials[0].reflectance_texture, 0)
         self.assertTrue(np.shares_memory(scene.textures[0].texels, scene.textures[0].texels))
+
+    def test_one_part_is_a_sequence(self):
+        lamp = ifl.Luminaire("lamp", ifl.PointLight((1, 1, 1), 100))
+        self.assertEqual(room(luminaires=lamp, views=VIEW).luminaires, [lamp])
+        with self.assertRaisesRegex(TypeError, "luminaires: expected a sequence of Luminaire, found"):
+            room(luminaires=[VIEW])
+
+    def test_copies_are_the_scene(self):
+        scene = room()
+        self.assertIs(copy.copy(scene), scene)
+        self.assertIs(copy.deepcopy([scene])[0], scene)
 
     def test_replace_makes_another_scene(self):
         scene = room()

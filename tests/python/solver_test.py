@@ -51,6 +51,12 @@ class Light(unittest.TestCase):
             np.testing.assert_array_equal(read.irradiance, solver.solution.irradiance)
             self.assertEqual(read.options["method"], "ihsrr")
 
+    def test_files_that_cannot_be_written_are_named(self):
+        solution = ifl.solve(room(), rays=1000)
+        for call in (lambda: solution.save("/nowhere/light.h5"), lambda: ifl.Solver(room()).save("/nowhere/run.h5")):
+            with self.assertRaisesRegex(ifl.Error, "/nowhere"):
+                call()
+
     def test_groups_are_dimmed(self):
         scene = room(light_groups=[ifl.LightGroup("lamp", "light")])
         solution = ifl.solve(scene, rays=RAYS)

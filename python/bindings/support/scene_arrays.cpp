@@ -45,7 +45,7 @@ class Arguments {
 
   private:
     static std::string kind_of(const py::array& array) {
-        return array ? std::string(py::str(array.dtype())) : std::string("something else");
+        return array ? std::string(py::str(array.dtype())) : std::string("no array (rows of different lengths?)");
     }
 
     template <class Array>
@@ -165,19 +165,32 @@ void set_attribute(std::vector<T>& attribute, const py::object& value, const cha
         for (int c = 0; c < columns; ++c) attribute[static_cast<std::size_t>(i)][c] = static_cast<float>(numbers(i, c));
 }
 
-std::vector<Material> materials_of(const py::object& value) {
-    if (py::isinstance<Material>(value)) return {py::cast<Material>(value)};
+/// A sequence of `T`, or one; None: nothing. @throws TypeError naming the argument.
+template <class T>
+std::optional<std::vector<T>> sequence_of(const py::object& value, const char* name, const char* type) {
+    if (value.is_none()) return std::nullopt;
     try {
-        return py::cast<std::vector<Material>>(value);
+        if (py::isinstance<py::sequence>(value)) return py::cast<std::vector<T>>(value);
+        return std::vector<T>{py::cast<T>(value)};
     } catch (const py::cast_error&) {
-        throw py::type_error("materials: expected a Material or a sequence of them, found " +
-                             std::string(py::repr(value)));
+        throw py::type_error(
+            fmt::format("{}: expected a sequence of {}, found {}", name, type, std::string(py::repr(value))));
     }
 }
 
-void set_textures(Scene& scene, const Textures& textures) {
-    scene.textures.clear();
-    for (const std::shared_ptr<Texture>& texture : textures) scene.textures.push_back(*texture);
+/// Replaces the parts that are not None.
+void set_parts(Scene& scene, const Parts& parts) {
+    if (auto materials = sequence_of<Material>(parts.materials, "materials", "Material"))
+        scene.materials = std::move(*materials);
+    if (auto luminaires = sequence_of<Luminaire>(parts.luminaires, "luminaires", "Luminaire"))
+        scene.luminaires = std::move(*luminaires);
+    if (auto views = sequence_of<View>(parts.views, "views", "View")) scene.views = std::move(*views);
+    if (auto groups = sequence_of<LightGroup>(parts.light_groups, "light_groups", "LightGroup"))
+        scene.light_groups = std::move(*groups);
+    if (const auto textures = sequence_of<std::shared_ptr<Texture>>(parts.textures, "textures", "Texture")) {
+        scene.textures.clear();
+        for (const std::shared_ptr<Texture>& texture : *textures) scene.textures.push_back(*texture);
+    }
 }
 
 }  // namespace
@@ -214,21 +227,14 @@ Documented scene_from_arrays_text() {
 }
 
 std::shared_ptr<Scene> scene_from_arrays(const py::object& vertices, const py::object& faces,
-                                         const py::object& materials, const py::object& face_materials,
-                                         const py::object& two_sided, const py::object& objects,
-                                         const py::object& face_objects, const py::object& normals,
-                                         const py::object& texture_coordinates, const py::object& lightmap_coordinates,
-                                         const Textures& textures, std::vector<Luminaire> luminaires,
-                                         std::vector<View> views, std::vector<LightGroup> light_groups,
-                                         std::string name) {
+                                         const py::object& face_materials, const py::object& two_sided,
+                                         const py::object& objects, const py::object& face_objects,
+                                         const py::object& normals, const py::object& texture_coordinates,
+                                         const py::object& lightmap_coordinates, const Parts& parts, std::string name) {
     auto scene = std::make_shared<Scene>();
     scene->name = std::move(name);
-    scene->materials = materials_of(materials);
-    scene->objects = objects.is_none() ? std::vector<std::string>{""} : py::cast<std::vector<std::string>>(objects);
-    scene->luminaires = std::move(luminaires);
-    scene->views = std::move(views);
-    scene->light_groups = std::move(light_groups);
-    set_textures(*scene, textures);
+    scene->objects = sequence_of<std::string>(objects, "objects", "names").value_or(std::vector<std::string>{""});
+    set_parts(*scene, parts);
 
     Arguments arguments;
     const Doubles points = arguments.numbers(vertices, "vertices", -1, 3);
@@ -252,18 +258,9 @@ std::shared_ptr<Scene> scene_from_arrays(const py::object& vertices, const py::o
     return scene;
 }
 
-std::shared_ptr<Scene> replaced(const std::shared_ptr<Scene>& scene,
-                                const std::optional<std::vector<Material>>& materials,
-                                const std::optional<std::vector<Luminaire>>& luminaires,
-                                const std::optional<std::vector<View>>& views,
-                                const std::optional<std::vector<LightGroup>>& light_groups,
-                                const std::optional<Textures>& textures) {
+std::shared_ptr<Scene> replaced(const std::shared_ptr<Scene>& scene, const Parts& parts) {
     auto copy = std::make_shared<Scene>(*scene);
-    if (materials) copy->materials = *materials;
-    if (luminaires) copy->luminaires = *luminaires;
-    if (views) copy->views = *views;
-    if (light_groups) copy->light_groups = *light_groups;
-    if (textures) set_textures(*copy, *textures);
+    set_parts(*copy, parts);
     require_no_faults(scene_faults(*copy), "cannot make the scene", *copy);
     return copy;
 }

@@ -42,6 +42,14 @@ Json setting(const std::string& name, const py::handle& value, const Json& usual
     return nullptr;
 }
 
+/// ", rays, time, ...".
+std::string names_of(const Json& settings) {
+    std::string names;
+    for (const auto& [name, value] : settings.items())
+        if (name != "views") names += ", " + name;
+    return names;
+}
+
 WeightedView weighted_view(const Scene& scene, const py::handle& view) {
     if (py::isinstance<WeightedView>(view)) return py::cast<WeightedView>(view);
     return {view_of(scene, py::reinterpret_borrow<py::object>(view))};
@@ -109,7 +117,9 @@ SolveOptions solve_options(const Scene& scene, const py::object& method, const p
         } else if (name == "max_elements") {
             options.refinement.max_elements = static_cast<std::size_t>(whole_number(value, name));
         } else {
-            if (!json.contains(name) || name == "views") throw py::type_error("there is no setting '" + name + "'");
+            if (!json.contains(name) || name == "views")
+                throw py::type_error("there is no setting '" + name + "'; there are seed, max_elements, preset" +
+                                     names_of(json));
             json[name] = setting(name, value, json[name]);
         }
     }

@@ -69,7 +69,8 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
     });
     const Rgb &t = m.transmittance, &s = m.specular_reflectance;
-    const bool are_added = m.transmittance_texture == none;  // otherwise check_products() checks the texels
+    // Otherwise check_products() checks the texels, or the reflectance is at fault.
+    const bool are_added = m.transmittance_texture == none && is_reflectance(r);
     faults.check(is_share(t) && is_share(s) && (!are_added || largest_channel(Rgb(r + t + s)) <= 1), [&] {
         return fmt::format(
             "material '{}': transmittance ({}, {}, {}), specular reflectance ({}, {}, {}): expected 0 to 1, and no "
