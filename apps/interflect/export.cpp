@@ -1,4 +1,5 @@
 #include "interflect/export.h"
+#include "interflect/base/machine_memory.h"
 
 #include <spdlog/spdlog.h>
 
@@ -12,7 +13,6 @@
 #include "apps/interflect/distinct_files.h"
 #include "apps/interflect/light_group_options.h"
 #include "apps/interflect/long_work.h"
-#include "apps/interflect/machine_memory.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/read_light.h"

@@ -9,8 +9,8 @@
 #include <new>
 #include <stdexcept>
 
-#include "apps/interflect/machine_memory.h"
 #include "interflect/base/escapes.h"
+#include "interflect/base/machine_memory.h"
 
 namespace interflect::command {
 
@@ -29,7 +29,7 @@ std::string explanation(const std::exception& error) {
         "there is not enough memory: the limits of this process (its machine, ulimit -v, control groups) leave {} MiB. "
         "Less is needed by a smaller picture (--size), a coarser lightmap (--texels-per-metre), fewer elements "
         "(--memory, --mesh-size) and a scene of fewer faces (--curve-divisions, --max-patches)",
-        usable_memory() >> 20);
+        detail::usable_memory() >> 20);
 }
 
 void set_last_checkpoint(const std::filesystem::path& file) {

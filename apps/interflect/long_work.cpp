@@ -5,10 +5,10 @@
 #include <system_error>
 #include <utility>
 
-#include "apps/interflect/machine_memory.h"
 #include "apps/interflect/progress.h"
 #include "interflect/base/address_space.h"
 #include "interflect/base/escapes.h"
+#include "interflect/base/machine_memory.h"
 
 namespace interflect::command {
 

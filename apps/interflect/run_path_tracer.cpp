@@ -8,11 +8,11 @@
 #include <optional>
 
 #include "apps/interflect/long_work.h"
-#include "apps/interflect/machine_memory.h"
 #include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
+#include "interflect/base/machine_memory.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/core.h"
 #include "interflect/image.h"

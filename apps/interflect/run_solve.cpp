@@ -12,10 +12,10 @@
 
 #include "apps/interflect/crew.h"
 #include "apps/interflect/leaks.h"
-#include "apps/interflect/machine_memory.h"
 #include "apps/interflect/percent.h"
 #include "apps/interflect/progress.h"
 #include "apps/interflect/signals.h"
+#include "interflect/base/machine_memory.h"
 #include "interflect/checks/memory_need.h"
 #include "interflect/core.h"
 #include "interflect/solution.h"
@@ -95,10 +95,7 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
                                      options.refinement.max_elements, scene.patches.size(), scene.name));
     const std::size_t there_is = usable_memory();
     const std::size_t bytes = memory > 0 ? std::min(memory, there_is) : there_is;
-    MemoryNeed need = memory_need(scene, ray_caster);
-    if (options.keep_direct)
-        need.per_element +=
-            MemoryNeed::per_element_of_direct_light * std::max<std::size_t>(1, source_groups(scene).size());
+    const MemoryNeed need = memory_need(scene, ray_caster, options);
     require_memory(need.with(scene.patches.size()), scene.name);
     if (options.method.bytes_per_ray > 0) {
         constexpr std::size_t share = 2;  // the other half is for elements

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "apps/interflect/long_work.h"
-#include "apps/interflect/machine_memory.h"
 #include "apps/interflect/refused_options.h"
+#include "interflect/base/machine_memory.h"
 #include "interflect/core.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/geometry/split.h"

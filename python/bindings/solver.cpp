@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <atomic>
 #include <optional>
 
 #include "bindings.h"
 #include "fields.h"
+#include "interflect/base/machine_memory.h"
+#include "interflect/checks/memory_need.h"
 #include "interflect/geometry/split.h"
 #include "interflect/prepare.h"
 #include "interflect/solver.h"
@@ -91,14 +94,34 @@ Scene prepared(const Scene& scene, bool contact_cuts, const std::optional<float>
                                  ReadOptions().max_patches);
 }
 
+/// Ends refinement before the memory of the machine does, as the command does.
+SolveOptions within_memory(const Scene& scene, const RayCaster& ray_caster, SolveOptions options) {
+    const detail::MemoryNeed need = detail::memory_need(scene, ray_caster, options);
+    const std::size_t bytes = detail::usable_memory();
+    options.refinement.max_elements =
+        std::min(options.refinement.max_elements, detail::elements_within(need, bytes, scene));
+    if (options.method.bytes_per_ray > 0) {
+        constexpr std::size_t share = 2;  // the other half is for elements
+        const auto most = static_cast<std::int64_t>(bytes / share / options.method.bytes_per_ray);
+        if (options.limits.rays == Limits().rays) options.limits.rays = most;
+        if (options.limits.rays > most)
+            throw InputError("rays: " + std::string(options.method.name) + " keeps every ray, expected at most " +
+                             std::to_string(most) + ", for which there is memory");
+    }
+    return options;
+}
+
 std::unique_ptr<PythonSolver> make_solver(const std::shared_ptr<Scene>& scene, const py::object& method,
                                           const py::object& views, int threads, bool contact_cuts,
                                           const std::optional<float>& mesh_size, const py::dict& settings) {
     const SolveOptions options = solve_options(*scene, method, views, settings);
     require_no_faults(scene_faults(*scene), "cannot solve", *scene);
     return long_work(py::none(), threads, [&](const Monitor&) {
-        auto ready = std::make_shared<const Scene>(prepared(*scene, contact_cuts, mesh_size, options.method.refines));
-        return std::make_unique<PythonSolver>(Solver(std::move(ready), options), threads);
+        const auto ready =
+            std::make_shared<const Scene>(prepared(*scene, contact_cuts, mesh_size, options.method.refines));
+        const auto ray_caster = std::make_shared<const RayCaster>(*ready);
+        const SolveOptions limited = within_memory(*ready, *ray_caster, options);
+        return std::make_unique<PythonSolver>(Solver(ready, limited, ray_caster), threads);
     });
 }
 

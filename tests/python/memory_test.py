@@ -1,7 +1,10 @@
 """Memory: constant over many solvers, and large arrays are not copied."""
 
 import gc
+import os
 import resource
+import subprocess
+import sys
 import unittest
 
 import numpy as np
@@ -61,6 +64,17 @@ class Memory(unittest.TestCase):
         views = [(solution.irradiance, solution.vertices, solution.area, solution.elements.irradiance) for _ in range(100)]
         self.assertLess(resident() - before, 2 * MIB)
         self.assertEqual(len(views), 100)
+
+    def test_of_the_machine_limits_refinement(self):
+        """An address space of 4 GB has room for fewer elements than the default limit."""
+        code = "import interflect as ifl; from scenes import room; print(ifl.Solver(room()).options['max_elements'])"
+        path = os.pathsep.join([os.path.dirname(__file__), os.environ["PYTHONPATH"]])
+        limit = 4 << 30
+        printed = subprocess.run([sys.executable, "-B", "-c", code], env={**os.environ, "PYTHONPATH": path}, check=True,
+                                 text=True, capture_output=True,
+                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit))).stdout
+        self.assertLess(int(printed), limit // 100)
+        self.assertGreater(int(printed), 1_000_000)
 
 
 if __name__ == "__main__":

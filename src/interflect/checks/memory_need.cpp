@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 
@@ -23,6 +25,14 @@ MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
     need.patches = scene.patches.size() * sizeof(PatchGeometry);
     need.rest = program;
     need.per_element += source_groups(scene).size() * MemoryNeed::per_element_and_group;
+    return need;
+}
+
+MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options) {
+    MemoryNeed need = memory_need(scene, ray_caster);
+    if (options.keep_direct)
+        need.per_element +=
+            MemoryNeed::per_element_of_direct_light * std::max<std::size_t>(1, source_groups(scene).size());
     return need;
 }
 

@@ -4,6 +4,7 @@
 
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
+#include "interflect/solve_options.h"
 
 namespace interflect::detail {
 
@@ -29,6 +30,8 @@ struct MemoryNeed {
 
 /// Excludes links of method hr, 24 bytes each.
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
+/// Includes SolveOptions::keep_direct.
+MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options);
 
 /// @throws InputError with the required memory if the patches do not fit.
 std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Scene& scene);

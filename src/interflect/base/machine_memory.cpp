@@ -1,4 +1,4 @@
-#include "apps/interflect/machine_memory.h"
+#include "interflect/base/machine_memory.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -12,9 +12,7 @@
 
 #include "interflect/base/address_space.h"
 
-namespace interflect::command {
-
-using namespace detail;
+namespace interflect::detail {
 
 namespace {
 
@@ -76,4 +74,4 @@ void require_free_memory(std::size_t bytes, std::string_view what, std::string_v
     require_memory(memory_in_use() + bytes, what, remedy);
 }
 
-}  // namespace interflect::command
+}  // namespace interflect::detail

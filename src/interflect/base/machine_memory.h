@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace interflect::command {
+namespace interflect::detail {
 
 /// Returns the memory of the machine or its control groups, whichever is smaller [bytes].
 std::size_t machine_memory();
@@ -31,4 +31,4 @@ void require_memory(std::size_t bytes, std::string_view what, std::string_view r
 /// The same for bytes in addition to memory_in_use().
 void require_free_memory(std::size_t bytes, std::string_view what, std::string_view remedy = {});
 
-}  // namespace interflect::command
+}  // namespace interflect::detail
