@@ -19,8 +19,8 @@ bool belongs(const Scene& scene, std::uint32_t patch, FaceSides sides) {
 template <class GroupOf>
 std::vector<FaceGroup> collect(const Scene& scene, FaceSides sides, const std::vector<std::string>& names,
                                const GroupOf& group_of) {
-    std::vector<FaceGroup> groups;
-    for (const std::string& name : names) groups.push_back({name, {}});
+    std::vector<FaceGroup> groups(names.size());
+    for (std::size_t g = 0; g < names.size(); ++g) groups[g].name = names[g];
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
         if (const std::size_t g = group_of(scene.patches[p]); g < groups.size() && belongs(scene, p, sides))
             groups[g].patches.push_back(p);
