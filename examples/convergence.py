@@ -3,7 +3,7 @@
     python3 examples/convergence.py
 
 A variant combines three choices:
-    ci, si  Combined iterations: rays carry power and importance. Separate iterations: each ray carries one of them.
+    ci, si  Combined iterations: rays carry power and importance. Separate iterations: each ray carries power or importance.
     hi      Elements keep their own importance. Otherwise all elements of a patch share its importance.
     dr      Deferred refinement: the mesh stays coarse during the warm-up.
 """

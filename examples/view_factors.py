@@ -44,7 +44,7 @@ def parallel_squares(distance: float) -> tuple[ifl.Scene, float]:
 
 
 def perpendicular_squares(height: float) -> tuple[ifl.Scene, float]:
-    """A unit square and a rectangle of this height on one of its edges, C-14."""
+    """A unit square and a rectangle of this height that share an edge, C-14."""
     h, w = height, 1.0
     a, b, c = 1 + w * w, 1 + h * h, 1 + w * w + h * h
     d = w * w + h * h

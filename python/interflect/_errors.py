@@ -41,4 +41,4 @@ class Stopped(Error):
 
 
 class Warning(UserWarning):  # noqa: A001 - interflect.Warning beside interflect.Error
-    """Valid input that is not supported, or probably not what was meant."""
+    """Unsupported input, or probable mistakes."""

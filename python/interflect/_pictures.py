@@ -52,7 +52,7 @@ def render(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, he
 
     Args:
         lit: Solution; for path tracing and instant radiosity also a Scene or the path of one.
-        view: View, or the name of one of the scene; default: the first view of the solution, of the scene, or an overview.
+        view: View, or its name in the scene; default: the first view of the solution, of the scene, or an overview.
         width: [pixels]
         height: [pixels]
         shading: "hybrid": direct light per pixel, indirect light interpolated. "gather": final gathering. "smooth", "flat":

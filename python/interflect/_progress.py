@@ -27,7 +27,7 @@ def reporting(progress: ProgressArgument, what: str) -> Iterator[Report | None]:
 
     Args:
         progress: The function itself; True for a bar of tqdm; False for none; None for a bar in notebooks only.
-        what: Name of the work.
+        what: Label of the bar.
     """
     if callable(progress):
         yield progress

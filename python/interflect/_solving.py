@@ -154,7 +154,7 @@ def solve(scene: SceneArgument, *, view: ViewArgument | None = None, views: View
 
     Raises:
         InputError, TypeError: as Solver.
-        KeyboardInterrupt: at Ctrl-C. A Solver keeps what it has; its `solution` is then usable.
+        KeyboardInterrupt: at Ctrl-C. A Solver keeps its finished iterations; its `solution` is then usable.
     """
     if view is not None and views is not None:
         raise TypeError("solve: expected view or views, found both")

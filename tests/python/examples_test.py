@@ -169,7 +169,7 @@ class ViewFactors(ExampleTest):
         for name, published in (("parallel", 0.19982), ("perpendicular", 0.20004), ("coaxial", 0.38197)):
             (shape,) = (shape for title, shape in shapes.SHAPES.items() if title.startswith(name))
             self.assertAlmostEqual(shape(1)[1], published, places=5)
-        # A right factor deviates by more than 4 standard errors once in 15,800 cases, one of 15 once in 1,000 runs.
+        # A correct factor deviates by more than 4 standard errors once in 15,800 cases; in 15 factors, once in 1,000 runs.
         self.assertEqual(len(table), 15)
         self.assertLess(table["deviation"].abs().max(), 4)
         self.assertLess((table["standard error"] / table["exact"]).max(), 0.02)

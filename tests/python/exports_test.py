@@ -1,4 +1,4 @@
-"""Exports, display pictures and measurements of the module equal those of the command."""
+"""The module and the command give equal exports, display pictures and measurements."""
 
 import unittest
 from contextlib import chdir
