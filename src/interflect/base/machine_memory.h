@@ -24,7 +24,7 @@ std::size_t free_memory();
 /// Refuses work before it allocates memory.
 /// @param bytes   Peak of the whole process.
 /// @param what    Name of the work: "a picture of 640 x 360 pixels".
-/// @param remedy  Advice, such as "a smaller --size needs less"; may be empty.
+/// @param remedy  Advice, such as "a smaller picture needs less"; may be empty.
 /// @throws std::runtime_error with these three if `bytes` exceeds usable_memory().
 void require_memory(std::size_t bytes, std::string_view what, std::string_view remedy = {});
 
