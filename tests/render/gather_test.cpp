@@ -206,7 +206,7 @@ PictureLayers noisy_wall(int side) {
     return layers;
 }
 
-/// Noise falls to a fifth; textures and the border of the shadow remain.
+/// Noise falls to less than a third; textures and the border of the shadow remain.
 TEST(Denoise, RemovesNoiseAlone) {
     constexpr int side = 64;
     const PictureLayers layers = noisy_wall(side);
@@ -220,30 +220,65 @@ TEST(Denoise, RemovesNoiseAlone) {
             after += std::pow(static_cast<double>(picture.at(x, y).x) / (albedo * level) - 1, 2);
         }
     EXPECT_NEAR(std::sqrt(before) / side, 0.3 / std::sqrt(3), 0.01);
-    EXPECT_LT(std::sqrt(after), std::sqrt(before) / 5);
+    EXPECT_LT(std::sqrt(after), std::sqrt(before) / 3.3);
 }
 
-/// One batch in twenty has twenty times the light of the others. The mean stays, which would not hold if the weights of
-/// pixels depended on their own values.
-TEST(Denoise, KeepsTheMeanOfSkewedNoise) {
-    constexpr int side = 192, batches = 4;  // per half
+/// Direct light of a wall whose halves have a share of bright batches, `brightness` times the others'.
+PictureLayers wall_with_bright_batches(int side, float share, double dark, double bright) {
+    constexpr int batches = 4;  // per half
     PictureLayers layers = wall(side);
     for (std::size_t i = 0; i < layers.albedo.pixels.size(); ++i)
         for (std::size_t h = 0; h < 2; ++h) {
             double mean = 0, mean_square = 0;
             for (std::size_t b = 0; b < batches; ++b) {
                 const auto word = random_words(2, (2 * i + h) * batches + b)[0];
-                const double light = unit_float(word) < 0.05f ? 20 : 1;
+                const double light = unit_float(word) < share ? bright : dark;
                 mean += light / batches;
                 mean_square += light * light / batches;
             }
             layers.halves[h].direct.pixels[i] = Rgb(static_cast<float>(mean));
             layers.halves[h].direct_variance[i] = static_cast<float>((mean_square - mean * mean) / (batches - 1));
         }
-    const double mean = (mean_of(layers.halves[0].direct) + mean_of(layers.halves[1].direct)) / 2;
-    EXPECT_NEAR(mean_of(denoise(layers)) / mean, 1, 0.005);
+    return layers;
+}
+
+/// The filter moves light and never changes its sum: for skewed noise, for rare light (most pixels are black and have
+/// no variance), without variance, and if the weights depend on the values. Seen to fail (-9 to -34% in rare light)
+/// when each pixel is a weighted mean of its neighbours.
+TEST(Denoise, KeepsTheSumOfAnyLight) {
+    constexpr int side = 96;
+    const auto expect_same_sum = [](const PictureLayers& layers, const char* what) {
+        const double mean = (mean_of(layers.halves[0].direct) + mean_of(layers.halves[1].direct)) / 2;
+        EXPECT_NEAR(mean_of(denoise(layers)) / mean, 1, 1e-5) << what;
+    };
+    expect_same_sum(wall_with_bright_batches(side, 0.05f, 1, 20), "skewed");
+    expect_same_sum(wall_with_bright_batches(side, 0.002f, 0, 1000), "rare");
+    PictureLayers layers = wall_with_bright_batches(side, 0.05f, 0, 20);
+    for (SampledLight& half : layers.halves) std::fill(half.direct_variance.begin(), half.direct_variance.end(), 0.0f);
+    expect_same_sum(layers, "no variance");
+    layers = wall_with_bright_batches(side, 0.05f, 1, 20);
     layers.halves[1] = layers.halves[0];
-    EXPECT_GT(std::abs(mean_of(denoise(layers)) / mean_of(layers.halves[0].direct) - 1), 0.02);
+    expect_same_sum(layers, "equal halves");
+    // A rough surface, on which the tangent planes of two pixels differ
+    for (std::size_t i = 0; i < layers.normal.pixels.size(); ++i) {
+        const auto words = random_words(5, i);
+        layers.normal.pixels[i] = Rgb(V3f(0.5f * unit_float(words[0]), 0.5f * unit_float(words[1]), 1).normalized());
+    }
+    expect_same_sum(layers, "rough");
+}
+
+/// Rare light spreads: its noise falls.
+TEST(Denoise, SpreadsRareLight) {
+    constexpr int side = 96;
+    const PictureLayers layers = wall_with_bright_batches(side, 0.01f, 0, 100);
+    const Image picture = denoise(layers);
+    double before = 0, after = 0;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const float noisy = (layers.halves[0].direct.pixels[i].x + layers.halves[1].direct.pixels[i].x) / 2;
+        before += std::pow(static_cast<double>(noisy) - 1, 2);
+        after += std::pow(static_cast<double>(picture.pixels[i].x) - 1, 2);
+    }
+    EXPECT_LT(std::sqrt(after), std::sqrt(before) / 2);
 }
 
 /// Pixels without a hit show the sky, which does not spread to adjacent surfaces.

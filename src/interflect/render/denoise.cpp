@@ -16,13 +16,9 @@ using namespace detail;
 
 namespace {
 
-constexpr int window_radius = 8, patch_radius = 1, variance_radius = 1, mean_radius = 3;  // [pixels]
+constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2, mean_radius = 4;  // [pixels]
 /// k^2 of Rousselle et al. 2012.
 constexpr float noise_share = 0.45f * 0.45f;
-/// Actual over estimated variance of hybrid shading, whose batches stratify each other: 0.33 to 0.72 in six scenes.
-constexpr float stratified_variance = 0.4f;
-/// Share of the noise that reduces the returned differences. With 1, blocks of 9 pixels lose more detail than noise.
-constexpr float returned_noise = 0.35f;
 constexpr float min_albedo = 0.01f;
 constexpr float normal_scale = 0.1f;  // about 18 degrees
 constexpr float plane_scale = 1.5f;   // relative to the pixel spacing
@@ -92,18 +88,21 @@ class Surfaces {
         }
     }
 
-    /// Returns the weight of pixel k for pixel i, `steps` apart: 1 in its tangent plane with equal normals, 0 without a
-    /// surface.
+    /// Returns the weight of the pair of pixels i and k, `steps` apart: 1 if each lies in the tangent plane of the
+    /// other and the normals are equal, 0 without a surface.
     float weight(std::size_t i, std::size_t k, float steps) const {
-        float turn2 = 0, height_above = 0;
+        float turn2 = 0, above_i = 0, above_k = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-            const float turn = normal_[c][i] - normal_[c][k];
+            const float turn = normal_[c][i] - normal_[c][k], step = position_[c][k] - position_[c][i];
             turn2 += turn * turn;
-            height_above += (position_[c][k] - position_[c][i]) * normal_[c][i];
+            above_i += step * normal_[c][i];
+            above_k += step * normal_[c][k];
         }
-        const float footprint = footprint_[i] * steps;
-        return is_hit_[k] * exp_minus(turn2 / normal_scale) *
-               exp_minus(height_above * height_above / (footprint * footprint + 1e-12f));
+        constexpr float tiny = 1e-12f;
+        const float of_i = footprint_[i] * steps, of_k = footprint_[k] * steps;
+        const float height2 =
+            std::max(above_i * above_i / (of_i * of_i + tiny), above_k * above_k / (of_k * of_k + tiny));
+        return is_hit_[i] * is_hit_[k] * exp_minus(turn2 / normal_scale) * exp_minus(height2);
     }
 
     /// weight(i + n, k + n, steps) for all n below weights.size().
@@ -134,20 +133,24 @@ void visit_surface(const Surfaces& surfaces, int x, int y, int radius, const Vis
         }
 }
 
+/// Calls visit(i, x, y) for all pixels.
+void for_pixels(const Surfaces& surfaces, const auto& visit) {
+    parallel_for_ranges(static_cast<std::size_t>(surfaces.height), 8, [&](std::size_t begin, std::size_t end) {
+        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+            for (int x = 0; x < surfaces.width; ++x) visit(pixel_at(x, y, surfaces.width), x, y);
+    });
+}
+
 /// Averages over neighbours on the same surface. The variance is large at edges of objects, and must not spread.
 std::vector<float> surface_mean(const Surfaces& surfaces, const std::vector<float>& values) {
-    const int width = surfaces.width, height = surfaces.height;
     std::vector<float> means(values.size());
-    parallel_for_ranges(static_cast<std::size_t>(height), 8, [&](std::size_t begin, std::size_t end) {
-        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-            for (int x = 0; x < width; ++x) {
-                float sum = 0, weight = 0;
-                visit_surface(surfaces, x, y, variance_radius, [&](std::size_t k, float w) {
-                    sum += w * values[k];
-                    weight += w;
-                });
-                means[pixel_at(x, y, width)] = weight > 0 ? sum / weight : 0;
-            }
+    for_pixels(surfaces, [&](std::size_t i, int x, int y) {
+        float sum = 0, weight = 0;
+        visit_surface(surfaces, x, y, variance_radius, [&](std::size_t k, float w) {
+            sum += w * values[k];
+            weight += w;
+        });
+        means[i] = weight > 0 ? sum / weight : 0;
     });
     return means;
 }
@@ -155,15 +158,17 @@ std::vector<float> surface_mean(const Surfaces& surfaces, const std::vector<floa
 Fields make_fields(const PictureLayers& layers, const Surfaces& surfaces, const SampledLight& light) {
     Fields fields{make_field(light.direct, light.direct_variance, layers.albedo),
                   make_field(light.indirect, light.indirect_variance, layers.albedo)};
-    for (std::size_t kind = 0; kind < noisy_kinds(layers); ++kind) {
-        std::vector<float>& variance = fields[kind].variance;
-        variance = surface_mean(surfaces, variance);
-        if (layers.is_indirect_interpolated)
-            for (float& v : variance) v *= stratified_variance;
-    }
+    for (std::size_t kind = 0; kind < noisy_kinds(layers); ++kind)
+        fields[kind].variance = surface_mean(surfaces, fields[kind].variance);
     return fields;
 }
 
+/// Sum of the weights of each pixel's pairs, [half][kind of light].
+using WeightSums = std::array<std::array<std::vector<float>, 2>, 2>;
+
+/// Rows of a picture. Light moves between the pixels i and k of a pair by w_ik / max(S_i, S_k) times the difference of
+/// their values, where w is symmetric and S_i is the sum of w_ik over k. Each pixel gives what another gets, so the sum
+/// over all pixels is kept exactly, whatever the weights depend on.
 class Band {
   public:
     Band(const PictureLayers& layers, const Surfaces& surfaces, const std::array<Fields, 2>& halves, int first_row,
@@ -176,39 +181,52 @@ class Band {
           first_(first_row),
           end_(end_row),
           difference_(pixel_at(0, end_row - first_row + 2 * patch_radius, width_ + 2)),
-          shape_(at(0, end_row - first_row)) {
-        for (auto& of_half : sums_)
-            for (Sums& sums : of_half)
-                for (auto& channel : sums) channel.assign(shape_.size(), 0.0f);
+          shape_(at(0, end_row - first_row)) {}
+
+    /// @param sums  Receives the sums of these rows.
+    void sum_weights(WeightSums& sums) {
+        visit_pairs([&](std::size_t h, std::size_t kind, int x, int y, std::size_t k, std::span<const float> weight) {
+            static_cast<void>(k);
+            float* sum = &sums[h][kind][at(x, y)];
+            for (std::size_t n = 0; n < weight.size(); ++n) sum[n] += weight[n];
+        });
     }
 
     /// @param irradiance  Receives the result, over pi.
-    void filter(Image& irradiance) {
+    void filter(const WeightSums& sums, Image& irradiance) {
+        visit_pairs([&](std::size_t h, std::size_t kind, int x, int y, std::size_t k, std::span<const float> weight) {
+            const std::size_t i = at(x, y);
+            const Field& field = halves_[h][kind];
+            std::array<float, per_chunk> share;
+            for (std::size_t n = 0; n < weight.size(); ++n)
+                share[n] = 0.5f * weight[n] / std::max(sums[h][kind][i + n], sums[h][kind][k + n]);
+            for (std::size_t n = 0; n < weight.size(); ++n)
+                if (weight[n] > 0)
+                    for (int c = 0; c < 3; ++c) {
+                        const auto& value = field.value[static_cast<std::size_t>(c)];
+                        irradiance.pixels[i + n][c] += share[n] * (value[k + n] - value[i + n]);
+                    }
+        });
+    }
+
+  private:
+    static constexpr int per_chunk = 64;
+
+    /// Calls visit(half, kind, x, y, k, weights) for the pairs of pixels (x, y), (x + 1, y), ... and k, k + 1, ...; the
+    /// weights of a half come from the light of the other.
+    void visit_pairs(const auto& visit) {
         for (int dy = -window_radius; dy <= window_radius; ++dy)
             for (int dx = -window_radius; dx <= window_radius; ++dx) {
                 compare_shapes(dx, dy);
                 for (std::size_t h = 0; h < 2; ++h)
                     for (std::size_t kind = 0; kind < noisy_kinds(layers_); ++kind) {
                         compare_light(halves_[1 - h][kind], dx, dy);
-                        add_neighbours(halves_[h][kind], sums_[h][kind], dx, dy);
-                    }
-            }
-        for (int y = first_; y < end_; ++y)
-            for (int x = 0; x < width_; ++x) {
-                const std::size_t i = at(x, y), k = i - at(0, first_);
-                if (!(layers_.depth[i] > 0)) continue;
-                for (const auto& of_half : sums_)
-                    for (std::size_t kind = 0; kind < noisy_kinds(layers_); ++kind) {
-                        const Sums& s = of_half[kind];
-                        irradiance.pixels[i] += Rgb(s[0][k], s[1][k], s[2][k]) / (2 * s[3][k]);
+                        visit_rows(dx, dy, [&](int x, int y, std::size_t k, std::span<const float> weight) {
+                            visit(h, kind, x, y, k, weight);
+                        });
                     }
             }
     }
-
-  private:
-    using Sums = std::array<std::vector<float>, 4>;
-
-    static constexpr int per_chunk = 64;
 
     std::size_t at(int x, int y) const { return pixel_at(x, y, width_); }
     /// Index in difference_, which has another column at each end of its rows; row 0 is first_ - patch_radius.
@@ -241,24 +259,26 @@ class Band {
                 const auto c = static_cast<std::size_t>(x);
                 const float d = field.grey[i + c] - field.grey[k + c];
                 const float here = field.variance[i + c], there = field.variance[k + c];
-                row[x] = (d * d - (here + std::min(here, there))) / (noise_share * (here + there) + tiny);
+                row[x] = (d * d - (here + there)) / (noise_share * (here + there) + tiny);
             }
-            row[-1] = row[0], row[width_] = row[width_ - 1];
         }
     }
 
-    void add_neighbours(const Field& field, Sums& sums, int dx, int dy) const {
+    void visit_rows(int dx, int dy, const auto& visit) const {
         const auto [begin, end] = columns(dx);
+        std::array<float, per_chunk> weight{};  // cannot overlap the vectors, so a compiler can use vector code
         for (int y = first_; y < end_; ++y)
             if (has_row(y + dy))
-                for (int x = begin; x < end; x += per_chunk)
-                    add_row(field, sums, x, y, at(x + dx, y + dy), std::min(per_chunk, end - x));
+                for (int x = begin; x < end; x += per_chunk) {
+                    const int count = std::min(per_chunk, end - x);
+                    weigh_row(x, y, count, weight);
+                    visit(x, y, at(x + dx, y + dy), std::span(weight).first(static_cast<std::size_t>(count)));
+                }
     }
 
-    /// Adds pixels k, k + 1, ... to (x, y), (x + 1, y), ...
-    void add_row(const Field& field, Sums& sums, int x, int y, std::size_t k, int count) const {
-        const std::size_t out = at(x, y - first_);
-        std::array<float, per_chunk> weight{};  // cannot overlap the vectors, so a compiler can use vector code
+    /// Weights of the pairs of (x, y), (x + 1, y), ...
+    void weigh_row(int x, int y, int count, std::array<float, per_chunk>& weight) const {
+        const std::size_t first = at(x, y - first_);
         const float* above = &difference_[padded(x, y - first_)];
         const float *level = above + width_ + 2, *below = level + width_ + 2;
         for (int n = 0; n < count; ++n) {
@@ -266,11 +286,7 @@ class Band {
             for (const float* row : {above, level, below}) d += row[n - 1] + row[n] + row[n + 1];
             weight[static_cast<std::size_t>(n)] = exp_minus(std::max(0.0f, d / 9));
         }
-        const auto size = static_cast<std::size_t>(count);
-        for (std::size_t n = 0; n < size; ++n) weight[n] *= shape_[out + n];
-        for (std::size_t channel = 0; channel < 3; ++channel)
-            for (std::size_t n = 0; n < size; ++n) sums[channel][out + n] += weight[n] * field.value[channel][k + n];
-        for (std::size_t n = 0; n < size; ++n) sums[3][out + n] += weight[n];
+        for (std::size_t n = 0; n < static_cast<std::size_t>(count); ++n) weight[n] *= shape_[first + n];
     }
 
     const PictureLayers& layers_;
@@ -278,71 +294,66 @@ class Band {
     const std::array<Fields, 2>& halves_;
     int width_, height_, first_, end_;
     std::vector<float> difference_, shape_;
-    std::array<std::array<Sums, 2>, 2> sums_;  // [half][kind of light]
 };
 
-/// Light before filtering: mean of both halves.
-struct NoisyLight {
-    Image irradiance;             // over pi
-    std::vector<float> variance;  // of its mean channel
-};
-
-NoisyLight noisy_light(const PictureLayers& layers, const std::array<Fields, 2>& halves) {
-    NoisyLight light{Image(layers.albedo.width, layers.albedo.height),
-                     std::vector<float>(layers.albedo.pixels.size(), 0.0f)};
-    for (std::size_t i = 0; i < light.variance.size(); ++i)
+/// Light before filtering: mean of both halves, over pi.
+Image noisy_irradiance(const PictureLayers& layers, const std::array<Fields, 2>& halves) {
+    Image irradiance(layers.albedo.width, layers.albedo.height);
+    for (std::size_t i = 0; i < irradiance.pixels.size(); ++i)
         for (const Fields& half : halves)
             for (std::size_t kind = 0; kind < noisy_kinds(layers); ++kind) {
                 const auto& value = half[kind].value;
-                light.irradiance.pixels[i] += Rgb(value[0][i], value[1][i], value[2][i]) / 2;
-                light.variance[i] += half[kind].variance[i] / 4;
+                irradiance.pixels[i] += Rgb(value[0][i], value[1][i], value[2][i]) / 2;
             }
-    return light;
+    return irradiance;
 }
 
-/// Mean of unfiltered minus filtered light around (x, y), reduced by a share of its noise (James-Stein).
-Rgb removed_around(const Surfaces& surfaces, const NoisyLight& noisy, const Image& filtered, int x, int y) {
-    Rgb removed(0);
-    float weight = 0, noise = 0;
-    visit_surface(surfaces, x, y, mean_radius, [&](std::size_t k, float w) {
-        removed += w * (noisy.irradiance.pixels[k] - filtered.pixels[k]);
-        noise += returned_noise * w * w * noisy.variance[k];
-        weight += w;
+/// Adds the difference between noisy and filtered light, averaged over 9 x 9 pixels on the same surface, because the
+/// filter blurs variations below the noise, such as a faint shadow. As in Band, pairs exchange light.
+void return_means(const Surfaces& surfaces, const Image& noisy, Image& filtered) {
+    Image difference = noisy;
+    for (std::size_t i = 0; i < difference.pixels.size(); ++i) difference.pixels[i] -= filtered.pixels[i];
+    std::vector<float> sum(difference.pixels.size());
+    for_pixels(surfaces, [&](std::size_t i, int x, int y) {
+        visit_surface(surfaces, x, y, mean_radius, [&](std::size_t, float w) { sum[i] += w; });
     });
-    const float mean = channel_sum(removed) / 3, square = mean * mean;
-    return square > noise ? removed * ((1 - noise / square) / weight) : Rgb(0);
-}
-
-/// Adds removed_around(), because the filter blurs variations below the noise.
-Rgb result_at(const PictureLayers& layers, const Surfaces& surfaces, const NoisyLight& noisy, const Image& filtered,
-              int x, int y) {
-    const std::size_t i = pixel_at(x, y, filtered.width);
-    Rgb light = layers.emitted.pixels[i];
-    if (layers.is_indirect_interpolated) light += layers.reflected.indirect.pixels[i];
-    if (!(layers.depth[i] > 0)) return light;
-    const Rgb irradiance = filtered.pixels[i] + removed_around(surfaces, noisy, filtered, x, y);
-    const Rgb albedo = floored(layers.albedo.pixels[i]);
-    for (int c = 0; c < 3; ++c) light[c] += std::max(0.0f, irradiance[c]) * albedo[c];
-    return light;
+    for_pixels(surfaces, [&](std::size_t i, int x, int y) {
+        Rgb mean = difference.pixels[i];
+        visit_surface(surfaces, x, y, mean_radius, [&](std::size_t k, float w) {
+            if (w > 0) mean += (w / std::max(sum[i], sum[k])) * (difference.pixels[k] - difference.pixels[i]);
+        });
+        filtered.pixels[i] += mean;
+    });
 }
 
 }  // namespace
 
 Image denoise(const PictureLayers& layers) {
-    const int width = layers.albedo.width, height = layers.albedo.height;
+    const auto height = static_cast<std::size_t>(layers.albedo.height);
     const Surfaces surfaces(layers);
     const std::array<Fields, 2> halves{make_fields(layers, surfaces, layers.halves[0]),
                                        make_fields(layers, surfaces, layers.halves[1])};
-    Image filtered(width, height), picture(width, height);
-    constexpr std::size_t rows = 16;
-    parallel_for_ranges(static_cast<std::size_t>(height), rows, [&](std::size_t begin, std::size_t end) {
-        Band(layers, surfaces, halves, static_cast<int>(begin), static_cast<int>(end)).filter(filtered);
-    });
-    const NoisyLight noisy = noisy_light(layers, halves);
-    parallel_for_ranges(static_cast<std::size_t>(height), 1, [&](std::size_t row, std::size_t) {
-        const auto y = static_cast<int>(row);
-        for (int x = 0; x < width; ++x) picture.at(x, y) = result_at(layers, surfaces, noisy, filtered, x, y);
-    });
+    const auto visit_bands = [&](const auto& visit) {
+        constexpr std::size_t rows = 16;
+        parallel_for_ranges(height, rows, [&](std::size_t begin, std::size_t end) {
+            Band band(layers, surfaces, halves, static_cast<int>(begin), static_cast<int>(end));
+            visit(band);
+        });
+    };
+    WeightSums sums;
+    for (auto& of_half : sums)
+        for (std::vector<float>& of_kind : of_half) of_kind.assign(layers.depth.size(), 0.0f);
+    visit_bands([&](Band& band) { band.sum_weights(sums); });
+    const Image noisy = noisy_irradiance(layers, halves);
+    Image irradiance = noisy;
+    visit_bands([&](Band& band) { band.filter(sums, irradiance); });
+    return_means(surfaces, noisy, irradiance);
+
+    Image picture = layers.emitted;
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        if (layers.is_indirect_interpolated) picture.pixels[i] += layers.reflected.indirect.pixels[i];
+        if (layers.depth[i] > 0) picture.pixels[i] += irradiance.pixels[i] * floored(layers.albedo.pixels[i]);
+    }
     return picture;
 }
 
