@@ -57,14 +57,6 @@ struct Rendering {
 Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                  const RenderOptions& options = {}, const Monitor& monitor = {});
 
-/// Sampling of emitting patches. All three have the same expected value; the two single strategies serve for
-/// comparison.
-enum class EmitterSampling {
-    combined,    ///< Both, by multiple importance sampling with the balance heuristic (Veach and Guibas 1995).
-    lights,      ///< Next event estimation alone: patches chosen by LightTree, points uniform on them.
-    directions,  ///< Cosine-distributed directions alone, with chance hits of emitting patches.
-};
-
 /// Quantity shown on visible surfaces.
 enum class PathQuantity {
     radiance,    ///< L = (M + rho H) / pi [cd/m^2 or W/(m^2 sr)].
@@ -84,7 +76,6 @@ struct PathOptions {
     double time = std::numeric_limits<double>::infinity();
     PathQuantity quantity = PathQuantity::radiance;
     bool mirrors = true;  ///< Whether the camera sees mirrors (Material::specular_reflectance).
-    EmitterSampling emitter_sampling = EmitterSampling::combined;
     int light_walks = 16'384;  ///< For render_instant(): walks from the light sources for a batch of paths, >= 1.
     std::uint64_t seed = 1;
 };

@@ -12,8 +12,8 @@
 #include "interflect/base/random.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
+#include "interflect/render/gauges/gauge_light.h"
 #include "interflect/render/lights/unoccluded_light.h"
-#include "interflect/render/paths/traced_scene.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
@@ -184,7 +184,7 @@ TEST(Hybrid, FindsTheIndirectLightOfABrightSpot) {
     const std::size_t middle_of_ceiling = 5 * 16 * 16 + 8 * 16 + 8;
     irradiance[middle_of_ceiling] = Rgb(200);
     const KnownIrradiance known{forest, irradiance, true};
-    const TracedScene traced(scene, ray_caster, &known);
+    const TracedScene traced(scene, ray_caster);
     std::vector<Gauge> gauges;
     std::vector<double> exact;
     for (std::uint64_t i = 0; i < 100; ++i) {
@@ -204,7 +204,7 @@ TEST(Hybrid, FindsTheIndirectLightOfABrightSpot) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         PathOptions options{.samples = 16, .quantity = PathQuantity::irradiance};
         options.seed = seed;
-        const std::vector<GaugeLight> found = hybrid_irradiance(traced, gauges, options, {});
+        const std::vector<GaugeLight> found = hybrid_irradiance(traced, known, gauges, options, {});
         for (std::size_t i = 0; i < found.size(); ++i) {
             const double relative = static_cast<double>(found[i].irradiance().x) / exact[i];
             EXPECT_NEAR(relative, 1, 0.1);
@@ -225,7 +225,7 @@ TEST(Hybrid, HasEqualNoiseInARoomWithSunlitGroundOutside) {
     const RayCaster ray_caster(scene);
     const ElementForest forest(scene, scene.patches.size());
     const KnownIrradiance known{forest, irradiance, true};
-    const TracedScene traced(scene, ray_caster, &known);
+    const TracedScene traced(scene, ray_caster);
     constexpr float texel = 0.005f;
     const auto texel_at = [](float x, float y, std::uint32_t patch) {
         return Gauge{.position = {x, y, 0.01f}, .patch = patch, .side_u = {texel, 0, 0}, .side_v = {0, texel, 0}};
@@ -240,7 +240,7 @@ TEST(Hybrid, HasEqualNoiseInARoomWithSunlitGroundOutside) {
         for (std::uint64_t seed = 0; seed < 2; ++seed) {
             PathOptions options{.samples = 16, .quantity = PathQuantity::irradiance};
             options.seed = seed;
-            found[seed] = hybrid_irradiance(traced, gauges, options, {});
+            found[seed] = hybrid_irradiance(traced, known, gauges, options, {});
         }
         double squares = 0;
         for (std::size_t i = 0; i < inside.size(); ++i)

@@ -2,7 +2,7 @@
 //
 // Seen to fail: hidden patches keep their power; patches without test rays keep their power; one lost ray removes a
 // patch; the limit is twice the mean over all surfaces.
-#include "interflect/render/paths/seen_light.h"
+#include "interflect/render/records/seen_light.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "interflect/base/random.h"
 #include "interflect/ray_caster.h"
-#include "interflect/render/paths/traced_scene.h"
+#include "interflect/render/gauges/gauge_light.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -27,10 +27,8 @@ void with_known_light(const Scene& scene, const std::vector<Rgb>& irradiance, co
     const RayCaster ray_caster(scene);
     const ElementForest forest(scene, scene.patches.size());
     const KnownIrradiance known{forest, irradiance};
-    const TracedScene traced(scene, ray_caster, &known);
-    const PathStart start;
-    const PathOptions options;
-    visit(traced.known_light(traced.paths(start, options, 1), points));
+    const TracedScene traced(scene, ray_caster);
+    visit(known_light(traced, known, points, 1));
 }
 
 /// A room with a small sunlit spot on its floor and two walls of medium brightness. Outside, their backs are in the

@@ -2,7 +2,7 @@
 //
 // Seen to fail: the density of guided rays ignores their number; escaped rays have full weight beside guided rays;
 // densities lack the number of cells; no guide.
-#include "interflect/render/paths/sky_guide.h"
+#include "interflect/render/records/sky_guide.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "interflect/base/random.h"
 #include "interflect/ray_caster.h"
-#include "interflect/render/paths/traced_scene.h"
+#include "interflect/render/gauges/gauge_light.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 
@@ -71,7 +71,7 @@ std::vector<double> errors_below(const KnownSky& sky, bool has_glass, std::uint6
     const ElementForest forest(scene, scene.patches.size());
     const std::vector<Rgb> dark(forest.size(), Rgb(0));
     const KnownIrradiance known{forest, dark, true};
-    const TracedScene traced(scene, ray_caster, &known);
+    const TracedScene traced(scene, ray_caster);
     std::vector<Gauge> gauges;
     for (std::uint64_t i = 0; i < 1000; ++i) {
         const auto words = random_words(seed, i);
@@ -81,7 +81,7 @@ std::vector<double> errors_below(const KnownSky& sky, bool has_glass, std::uint6
     }
     PathOptions options;
     options.samples = samples, options.seed = seed, options.quantity = PathQuantity::irradiance;
-    const std::vector<GaugeLight> found = hybrid_irradiance(traced, gauges, options, {});
+    const std::vector<GaugeLight> found = hybrid_irradiance(traced, known, gauges, options, {});
     std::vector<double> exact;
     double mean = 0;
     for (const Gauge& gauge : gauges) {
@@ -136,10 +136,7 @@ TEST(UniformSky, IsUnbiasedForAnyNumberOfSamples) {
     add_rectangle(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add_material(scene, Rgb(0), Rgb(0)));
     scene.luminaires = {{"sky", 0, UniformSky{Rgb(100)}}};
     const RayCaster ray_caster(scene);
-    const ElementForest forest(scene, scene.patches.size());
-    const std::vector<Rgb> dark(forest.size(), Rgb(0));
-    const KnownIrradiance known{forest, dark, true};
-    const TracedScene traced(scene, ray_caster, &known);
+    const TracedScene traced(scene, ray_caster);
     std::vector<Gauge> gauges(20'000, {.normal = {0, 0, 1}, .patch = 0});
     for (const int count : {2, 6, 10, 16}) {
         PathOptions options;

@@ -39,14 +39,10 @@ std::vector<double> means(const Scene& scene, const View& view, PathOptions opti
     return result;
 }
 
-class PathTracedTextures : public testing::TestWithParam<EmitterSampling> {};
-INSTANTIATE_TEST_SUITE_P(Sampling, PathTracedTextures,
-                         testing::Values(EmitterSampling::combined, EmitterSampling::directions));
-
-TEST_P(PathTracedTextures, FurnaceIsAsBrightEverywhere) {
+TEST(PathTracedTextures, FurnaceIsAsBrightEverywhere) {
     const Scene scene = textured_furnace(Rgb(2, 2, 2));
     const View view{"corner", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2.8f), V3f(0, 0, 1), 80};
-    const PathOptions options{.width = 6, .height = 4, .samples = 64, .emitter_sampling = GetParam()};
+    const PathOptions options{.width = 6, .height = 4, .samples = 64};
     const std::vector<double> seen = means(scene, view, options, 24);
     EXPECT_GT(t_test(seen, 2 / pi), false_alarm);
     EXPECT_LT(t_test(seen, 2.02 / pi), false_alarm);
@@ -101,22 +97,17 @@ TEST(PathTracedRamp, TexelsAreWhereTheyBelong) {
             EXPECT_NEAR(pi * static_cast<double>(picture.image.at(column, row).x), ramp_at(column, row, side), 0.05);
 }
 
-/// A lamp with a bright and a dark half, close to the floor, so the half of a sampled point matters.
-TEST(PathTracedLamp, HasOneAnswerHoweverItIsSampled) {
-    const Scene scene = half_dark_floor(Halves::emit);
+/// A lamp with a bright and a dark half, close to the floor, so the half of a sampled point matters: as two lamps without
+/// texture, but for 0.3% by the interpolation between the two texels. Noise 0.05%.
+TEST(PathTracedLamp, IsAsTwoLamps) {
     const View view{"ceiling", V3f(3, 1, 0.5f), V3f(3.5f, 1, 2), V3f(1, 0, 0), 40};
-    PathOptions options{.width = 8, .height = 8, .samples = 256, .emitter_sampling = EmitterSampling::directions};
-    const std::vector<double> expected = means(scene, view, options, 32);
-    const double mean = std::accumulate(expected.begin(), expected.end(), 0.0) / 32;
-    double squares = 0;
-    for (const double x : expected) squares += (x - mean) * (x - mean);
-    const double error = std::sqrt(squares / 31 / 32);
-    for (const EmitterSampling sampling : {EmitterSampling::lights, EmitterSampling::combined}) {
-        options.emitter_sampling = sampling;
+    const PathOptions options{.width = 8, .height = 8, .samples = 256};
+    const auto mean_of_runs = [&](const Scene& scene) {
         const std::vector<double> seen = means(scene, view, options, 32);
-        EXPECT_GT(t_test(seen, mean, error), false_alarm);
-        EXPECT_LT(t_test(seen, 1.03 * mean, error), false_alarm);
-    }
+        return std::accumulate(seen.begin(), seen.end(), 0.0) / 32;
+    };
+    EXPECT_NEAR(mean_of_runs(half_dark_floor(Halves::emit)),
+                0.997 * mean_of_runs(half_dark_floor_of_two_patches(Halves::emit)), 0.01);
 }
 
 /// Computes the root mean square difference in blocks of 8 x 8 pixels, relative to the mean.

@@ -6,7 +6,7 @@
 
 #include "interflect/core.h"
 #include "interflect/measure.h"
-#include "interflect/render/paths/traced_scene.h"
+#include "interflect/render/gauges/gauge_light.h"
 #include "interflect/render/pictures/path_picture.h"
 #include "interflect/render/sharing/light_order.h"
 
@@ -19,7 +19,7 @@ void help_with_light(const Scene& scene, const Solution* solution, const RayCast
     std::optional<TracedScene> traced;  // of gauges, with interpolated irradiance
     const auto scene_of_gauges = [&]() -> const TracedScene& {
         known.value().is_interpolated = true;
-        if (!traced) traced.emplace(scene, ray_caster, &*known);
+        if (!traced) traced.emplace(scene, ray_caster);
         return *traced;
     };
     for (;;) {
@@ -36,7 +36,7 @@ void help_with_light(const Scene& scene, const Solution* solution, const RayCast
                     trace_instant_picture(scene, ray_caster, received.start, order.options, monitor);
                     break;
                 case LightOrder::Kind::gauges:
-                    hybrid_irradiance(scene_of_gauges(), received.gauges, order.options, monitor);
+                    hybrid_irradiance(scene_of_gauges(), *known, received.gauges, order.options, monitor);
                     break;
                 case LightOrder::Kind::direct_gauges:
                     direct_irradiance(scene_of_gauges(), received.gauges, order.options, monitor);

@@ -10,7 +10,7 @@
 
 #include "interflect/core.h"
 #include "interflect/geometry/tangent_frame.h"
-#include "interflect/render/paths/gauge.h"
+#include "interflect/render/gauges/gauge.h"
 #include "interflect/render/pictures/path_picture.h"
 
 namespace interflect {

@@ -65,7 +65,7 @@ BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeO
       known_{*solution.forest, solution.irradiance, true} {
     if (options.shading == BakeShading::smooth) return;
     ray_caster_.emplace(scene);
-    if (options.shading == BakeShading::hybrid || sampling.is_tested) traced_.emplace(scene, *ray_caster_, &known_);
+    if (options.shading == BakeShading::hybrid || sampling.is_tested) traced_.emplace(scene, *ray_caster_);
 }
 
 std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids,
@@ -74,7 +74,7 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std:
         const std::vector<Gauge> places = gauges(points, spacing);
         const PathOptions path = path_options();
         give_order(monitor.ranks, {.kind = LightOrder::Kind::gauges, .options = path}, {{}, 0, places});
-        const std::vector<GaugeLight> light = hybrid_irradiance(*traced_, places, path, monitor);
+        const std::vector<GaugeLight> light = hybrid_irradiance(*traced_, known_, places, path, monitor);
         std::vector<Rgb> values;
         values.reserve(light.size());
         for (const GaugeLight& l : light) values.push_back(l.irradiance());

@@ -72,37 +72,76 @@ std::vector<LightTree::Light> lights_with_a_place(const Scene& scene) {
     return lights;
 }
 
+bool has_extent(const Luminaire& luminaire) {
+    if (const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind)) return !measured->web->opening.is_point();
+    const auto* sun = std::get_if<DirectionalLight>(&luminaire.kind);
+    return sun && sun->diameter > 0;
+}
+
+/// Chooses one of several candidates in proportion to their irradiance.
+class Reservoir {
+  public:
+    /// @param uniform  In (0, 1).
+    explicit Reservoir(double uniform) : uniform_(uniform) {}
+
+    /// @param light  Divided by the probability of the candidate, multiplied by the cosine.
+    void consider(const Illumination& light) {
+        const double irradiance = channel_sum(light.irradiance);
+        if (!(irradiance > 0)) return;
+        sum_ += irradiance;
+        const double share = irradiance / sum_;
+        const bool replaces = uniform_ < share;
+        uniform_ = replaces ? uniform_ / share : (uniform_ - share) / (1 - share);  // uniform again
+        if (replaces) chosen_ = light;
+    }
+    Illumination chosen() const {
+        Illumination light = chosen_;
+        if (sum_ > 0) light.irradiance *= static_cast<float>(sum_ / channel_sum(light.irradiance));
+        return light;
+    }
+
+  private:
+    Illumination chosen_;
+    double sum_ = 0, uniform_;
+};
+
+/// @param factor  Of the irradiance.
+Illumination received(const Luminaire& luminaire, const V3f& x, const V3f& n, const LightSample& sample, float factor) {
+    Illumination light = illumination(luminaire, x, sample.u, sample.v);
+    light.irradiance *= std::max(0.0f, n.dot(light.towards)) * factor;
+    return light;
+}
+
 }  // namespace
 
 LuminaireChoice::LuminaireChoice(const Scene& scene)
     : scene_(scene), tree_(lights_with_a_place(scene), scene.luminaires.size()) {
-    for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i)
-        if (std::holds_alternative<DirectionalLight>(scene.luminaires[i].kind)) parallel_.push_back(i);
+    for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i) {
+        if (is_sky(scene.luminaires[i])) continue;
+        const bool is_sun = std::holds_alternative<DirectionalLight>(scene.luminaires[i].kind);
+        if (is_sun) parallel_.push_back(i);
+        Group& group = is_sun ? suns_ : lamps_;
+        ++group.count;
+        group.has_extent = group.has_extent || has_extent(scene.luminaires[i]);
+    }
 }
 
-Illumination LuminaireChoice::choose(const V3f& x, const V3f& n, const LightSample& sample) const {
-    Illumination chosen;
-    double all = 0, uniform = sample.light;
-    // The rescaled number is uniform again.
-    const auto consider = [&](std::uint32_t luminaire, float chance) {
-        Illumination light = illumination(scene_.luminaires[luminaire], x, sample.u, sample.v);
-        light.irradiance *= std::max(0.0f, n.dot(light.towards)) / chance;
-        const double brings = channel_sum(light.irradiance);
-        if (!(brings > 0)) return;
-        all += brings;
-        const double share = brings / all;
-        const bool replaces = uniform < share;
-        uniform = replaces ? uniform / share : (uniform - share) / (1 - share);
-        if (replaces) chosen = light;
-    };
+Illumination LuminaireChoice::choose_lamp(const V3f& x, const V3f& n, const LightSample& sample) const {
+    Reservoir reservoir(sample.choice);
     for (int i = 0; i < candidate_count && tree_.light_count() > 0; ++i) {
         const LightTree::Choice choice =
             tree_.choose(x, n, (static_cast<double>(i) + double{sample.candidates}) / candidate_count);
-        if (choice.index != none) consider(choice.index, choice.probability * candidate_count);
+        if (choice.index == none) continue;
+        reservoir.consider(
+            received(scene_.luminaires[choice.index], x, n, sample, 1 / (choice.probability * candidate_count)));
     }
-    for (const std::uint32_t luminaire : parallel_) consider(luminaire, 1);
-    if (all > 0) chosen.irradiance *= static_cast<float>(all / channel_sum(chosen.irradiance));
-    return chosen;
+    return reservoir.chosen();
+}
+
+Illumination LuminaireChoice::choose_sun(const V3f& x, const V3f& n, const LightSample& sample) const {
+    Reservoir reservoir(sample.choice);
+    for (const std::uint32_t i : parallel_) reservoir.consider(received(scene_.luminaires[i], x, n, sample, 1));
+    return reservoir.chosen();
 }
 
 }  // namespace interflect::detail

@@ -22,44 +22,25 @@ V3f cosine_direction(const V3f& n, float a, float b) {
     return frame.s * (radius * std::cos(turn)) + frame.t * (radius * std::sin(turn)) + n * height;
 }
 
-VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
-    const std::uint64_t key = mix(batch_key, vertex);
-    const auto words = random_words(key, index);
+VertexSample vertex_sample(std::uint64_t key, std::uint32_t vertex, std::uint32_t index) {
+    const std::uint64_t of_vertex = mix(key, vertex);
+    const auto words = random_words(of_vertex, index);
     if (vertex > stratified_vertices) return {unit_float(words[2]), unit_float(words[3]), unit_float(words[1])};
-    const auto point = shuffled_point(mix(key, 2), index);
+    const auto point = shuffled_point(mix(of_vertex, 2), index);
     return {point[0], point[1], unit_float(words[1])};
 }
 
-LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
-    const std::uint64_t key = mix(mix(batch_key, vertex), 1);
-    const auto words = random_words(key, index);
+LightSample light_sample(std::uint64_t key, std::uint32_t vertex, LightStream stream, std::uint32_t index) {
+    constexpr std::uint64_t first_stream = 16;  // after the keys of vertex_sample()
+    const std::uint64_t of_stream = mix(mix(key, vertex), first_stream + static_cast<std::uint64_t>(stream));
+    const auto words = random_words(of_stream, index);
     if (vertex > stratified_vertices)
         return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2]), unit_float(words[3])};
-    const auto point = shuffled_point(key, index);
+    // The first two dimensions are stratified best: they choose the point or direction.
+    const auto point = shuffled_point(of_stream, index);
     // Points have 23 bits, too few for millions of lamps: jitter.
     const double within_cell = (words[0] + 0.5) * 0x1p-32 - 0.5;
-    return {point[0] + within_cell * 0x1p-23, point[1], point[2], point[3]};
-}
-
-PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
-    const std::uint64_t key = mix(mix(batch_key, vertex), 3);
-    const auto words = random_words(key, index);
-    if (vertex > stratified_vertices) return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2])};
-    const auto point = shuffled_point(key, index);
-    return {point[0] + ((words[0] + 0.5) * 0x1p-32 - 0.5) * 0x1p-23, point[1], point[2]};
-}
-
-SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index) {
-    const std::uint64_t key = mix(mix(batch_key, vertex), 4);
-    const auto words = random_words(key, index);
-    if (vertex > stratified_vertices) return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2])};
-    const auto point = shuffled_point(key, index);
-    return {double{point[2]}, point[0], point[1]};
-}
-
-float density_per_solid_angle(const PatchGeometry& patch, float probability, const V3f& direction, float distance2) {
-    const float cosine = -patch.normal().dot(direction);
-    return cosine > 0 ? probability * distance2 / (patch.area() * cosine) : 0;
+    return {point[2] + within_cell * 0x1p-23, point[0], point[1], point[3]};
 }
 
 }  // namespace interflect::detail

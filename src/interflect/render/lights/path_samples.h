@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "interflect/core.h"
-#include "interflect/geometry/patch_geometry.h"
 
 namespace interflect::detail {
 
@@ -15,33 +14,21 @@ struct VertexSample {
     float roulette;
 };
 
+/// Numbers in (0, 1) that choose a light source or bright element and a point or direction there.
 struct LightSample {
-    double light;
+    double choice;
     float u, v;
-    float candidates;  // selects candidate luminaires, among which `light` selects
+    float candidates;  // of LuminaireChoice
 };
 
-struct PlaceSample {
-    double patch;
-    float u, v;
-};
-
-struct SkySample {
-    double sky;
-    float u, v;
-};
+/// Independent sequences at a vertex.
+enum class LightStream : std::uint32_t { patches = 1, lamps, suns, skies, guided_skies, reflections, unoccluded };
 
 /// Returns Sobol' points at a path's first vertices, then pseudo-random numbers.
-/// @param vertex  1 is the first vertex after the camera. @param index  Of the path in its batch.
-VertexSample vertex_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
-/// @param index  Of the shadow ray in its batch at this vertex, also below.
-LightSample light_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
-PlaceSample place_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
-SkySample sky_sample(std::uint64_t batch_key, std::uint32_t vertex, std::uint32_t index);
-
-/// Returns the density of a point on a patch that is sampled with `probability` [1/sr].
-/// @param distance2  Squared distance [m^2].
-float density_per_solid_angle(const PatchGeometry& patch, float probability, const V3f& direction, float distance2);
+/// @param vertex  1 is the first vertex after the camera. @param index  Of the path in its sequence.
+VertexSample vertex_sample(std::uint64_t key, std::uint32_t vertex, std::uint32_t index);
+/// @param index  Of the shadow ray in its sequence at this vertex.
+LightSample light_sample(std::uint64_t key, std::uint32_t vertex, LightStream stream, std::uint32_t index);
 
 /// Balance heuristic.
 inline float balance(float p, float q) { return p / (p + q); }

@@ -22,6 +22,33 @@ float edge_integral(const V3f& a, const V3f& b, const V3f& n) {
     return sine > 0 ? std::atan2(sine, a.dot(b)) * (n.dot(normal) / sine) : 0;
 }
 
+/// Points per axis; 1: the middle is exact.
+int strata(const Luminaire& luminaire, const V3f& n) {
+    constexpr int of_extended = 4;
+    if (const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind))
+        return measured->web->opening.is_point() ? 1 : of_extended;
+    const auto* sun = std::get_if<DirectionalLight>(&luminaire.kind);
+    if (!sun || sun->diameter == 0) return 1;
+    const float height = -n.dot(sun->direction.normalized());
+    return std::abs(height) > sun->disc_sine() ? 1 : of_extended;
+}
+
+Rgb by_luminaire(const Luminaire& luminaire, const V3f& x, const V3f& n, float u, float v) {
+    const int across = strata(luminaire, n);
+    // A disc above the horizon is equal to its centre, which u and v do not sample.
+    const auto* sun = std::get_if<DirectionalLight>(&luminaire.kind);
+    if (sun && across == 1) return sun->irradiance * std::max(0.0f, -n.dot(sun->direction.normalized()));
+    Rgb irradiance(0);
+    for (int row = 0; row < across; ++row)
+        for (int column = 0; column < across; ++column) {
+            const float s = (static_cast<float>(column) + u) / static_cast<float>(across),
+                        t = (static_cast<float>(row) + v) / static_cast<float>(across);
+            const Illumination light = illumination(luminaire, x, s, t);
+            irradiance += light.irradiance * std::max(0.0f, n.dot(light.towards));
+        }
+    return irradiance / static_cast<float>(across * across);
+}
+
 }  // namespace
 
 float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f& n) {
@@ -41,47 +68,42 @@ float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f&
 
 UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry)
     : scene_(scene), geometry_(geometry) {
-    bool is_uniform = true;
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Material& material = scene.materials[scene.patches[i].material];
         if (!(channel_sum(material.exitance) > 0)) continue;
         patches_.push_back(i);
-        is_uniform = is_uniform && material.exitance_texture == none;
+        has_texture_ = has_texture_ || material.exitance_texture != none;
     }
-    for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i)
-        if (!is_sky(scene.luminaires[i])) luminaires_.push_back(i);
-    has_patches_ = is_uniform && patches_.size() <= max_sources;
-    has_luminaires_ = luminaires_.size() <= max_sources;
+    for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i) {
+        if (is_sky(scene.luminaires[i])) continue;
+        const bool is_sun = std::holds_alternative<DirectionalLight>(scene.luminaires[i].kind);
+        (is_sun ? suns_ : lamps_).push_back(i);
+    }
 }
 
-Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n, std::uint32_t own) const {
+bool UnoccludedLight::has(SourceKind kind) const {
+    if (kind == SourceKind::patches) return !has_texture_ && patches_.size() <= max_sources;
+    return (kind == SourceKind::lamps ? lamps_ : suns_).size() <= max_sources;
+}
+
+Rgb UnoccludedLight::at(SourceKind kind, const V3f& x, const V3f& n, float u, float v) const {
+    if (kind == SourceKind::patches) return by_patches(x, n);
+    Rgb irradiance(0);
+    for (const std::uint32_t i : kind == SourceKind::lamps ? lamps_ : suns_)
+        irradiance += by_luminaire(scene_.luminaires[i], x, n, u, v);
+    return irradiance;
+}
+
+Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n) const {
     Rgb irradiance(0);
     for (const std::uint32_t i : patches_) {
         const Patch& patch = scene_.patches[i];
         std::array<V3f, 4> vertices;
         const auto count = static_cast<std::size_t>(patch.vertex_count());
         for (std::size_t k = 0; k < count; ++k) vertices[k] = scene_.vertices[patch.vertices[k]];
-        if (i == own || geometry_[i].normal().dot(x - vertices[0]) <= 0) continue;
+        if (geometry_[i].normal().dot(x - vertices[0]) <= 0) continue;
         irradiance += scene_.materials[patch.material].exitance *
                       (polygon_irradiance(std::span(vertices).first(count), x, n) / std::numbers::pi_v<float>);
-    }
-    return irradiance;
-}
-
-Rgb UnoccludedLight::by_luminaires(const V3f& x, const V3f& n) const {
-    Rgb irradiance(0);
-    for (const std::uint32_t i : luminaires_) {
-        const Luminaire& luminaire = scene_.luminaires[i];
-        const bool is_extended = std::holds_alternative<MeasuredLight>(luminaire.kind);
-        const int across = is_extended ? 4 : 1;
-        const float share = 1 / static_cast<float>(across * across);
-        for (int k = 0; k < across * across; ++k) {
-            const int column = k % across, row = k / across;
-            const float u = (static_cast<float>(column) + 0.5f) / static_cast<float>(across),
-                        v = (static_cast<float>(row) + 0.5f) / static_cast<float>(across);
-            const Illumination light = illumination(luminaire, x, u, v);
-            irradiance += light.irradiance * (std::max(0.0f, n.dot(light.towards)) * share);
-        }
     }
     return irradiance;
 }

@@ -1,37 +1,40 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/render/lights/light_sources.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
 
-/// Exact irradiance without occluders; shadow rays then estimate only its visible share. Immutable, thread-safe. Cost:
-/// linear in the sources, hence only for few.
+/// Irradiance without occluders: the mean of LightSources::sample(). Immutable, thread-safe. Cost: linear in the
+/// sources, hence only for few.
 class UnoccludedLight {
   public:
     /// Arguments must outlive this.
     UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry);
 
-    /// Whether all emitting patches (luminaires but skies) are few and have a closed form.
-    bool has_patches() const { return has_patches_; }
-    bool has_luminaires() const { return has_luminaires_; }
+    /// Whether the sources of a kind are few. Emitting patches must be without texture.
+    bool has(SourceKind kind) const;
 
-    /// Returns the irradiance [as H] at x on a surface with normal n, by Lambert's formula for polygons.
-    /// @param own  The patch below x, which does not count; may be `none`.
-    Rgb by_patches(const V3f& x, const V3f& n, std::uint32_t own) const;
-    /// Measured luminaires: the mean over 16 points of the opening.
-    Rgb by_luminaires(const V3f& x, const V3f& n) const;
+    /// Returns the irradiance at x on a surface with normal n [as H]: exact for emitting patches (Lambert's formula for
+    /// polygons), points and suns above the horizon. For other luminaires it is an unbiased estimate from 16 stratified
+    /// points.
+    /// @param u, v  In (0, 1), uniform: place the strata.
+    Rgb at(SourceKind kind, const V3f& x, const V3f& n, float u, float v) const;
 
   private:
+    Rgb by_patches(const V3f& x, const V3f& n) const;
+
     const Scene& scene_;
     std::span<const PatchGeometry> geometry_;
-    std::vector<std::uint32_t> patches_, luminaires_;
-    bool has_patches_ = false, has_luminaires_ = false;
+    std::vector<std::uint32_t> patches_, lamps_, suns_;
+    bool has_texture_ = false;
 };
 
 /// Returns the irradiance at x on a surface with normal n by the part above it of a convex polygon of unit radiance, in

@@ -8,66 +8,61 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <tuple>
 #include <vector>
 
 #include "interflect/base/common_stop.h"
 #include "interflect/base/monitor_section.h"
 #include "interflect/base/stop_request.h"
 #include "interflect/core.h"
-#include "interflect/geometry/patch_geometry.h"
-#include "interflect/render/paths/indirect_field.h"
+#include "interflect/render/lights/virtual_lights.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/pictures/pixel_statistics.h"
 #include "interflect/render/sharing/light_order.h"
 #include "interflect/render/sharing/shared_batches.h"
-#include "interflect/render/smooth/smooth_normals.h"
-#include "interflect/render/smooth/smooth_surfaces.h"
 
 namespace interflect::detail {
 
 namespace {
 
-/// Minimum batches per pixel: 7 degrees of freedom for its standard error.
-constexpr int min_batches = 8;
-/// Hybrid shading and pictures with a time limit begin with fewer, one for each half of the samples. In hybrid shading
-/// without a target, only pixels of a larger relative error get all.
-constexpr std::uint32_t starting_batches = 2;
-/// Minimum of hybrid shading, whose batches look up indirect and unoccluded light; maximum within a time limit.
-constexpr std::size_t small_batch = 2;
-
+/// Minimum number of independent parts of a pixel's samples: 7 degrees of freedom for its standard error.
+constexpr int min_parts = 8;
+/// Larger batches stratify little better; more batches improve the error estimate.
+constexpr int largest_half_batch = 32;
 bool is_limited(const PathOptions& options) { return std::isfinite(options.time); }
 
+/// Draws in rounds. The first gives every pixel a few samples, from which the needs of its neighbours are estimated;
+/// the others multiply these needs by a factor that is common to the picture. So the number of samples of a pixel does
+/// not depend on their values, and its mean is unbiased (up to the influence of a pixel on the error of the picture).
 class PathPicture {
   public:
     /// @param time_left  As PathOptions::time.
-    PathPicture(const PathScene& scene, SharedBatches& batches, const PathOptions& options, const Monitor& monitor,
-                const StopRequest& time_left)
-        : s_(scene),
-          options_(options),
+    PathPicture(const PathPlan& plan, SharedBatches& batches, const Monitor& monitor, const StopRequest& time_left)
+        : plan_(plan),
+          options_(plan.options),
           monitor_(monitor),
           time_left_(time_left),
           shared_(batches),
-          pixels_(static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height)) {}
+          pixels_(static_cast<std::size_t>(options_.width) * static_cast<std::size_t>(options_.height)) {}
 
     void trace() {
-        const auto batches_of = [&](int samples) {
-            const auto batch = static_cast<int>(s_.batch_size);
-            return static_cast<std::uint32_t>((samples + batch - 1) / batch);
-        };
-        const bool has_target = options_.until > 0, is_hybrid = s_.indirect_field != nullptr;
-        const double target = has_target || !is_hybrid ? options_.until : hybrid_target;
-        const bool starts_small = is_hybrid || is_limited(options_);
-        const std::uint32_t usual =
-            starts_small ? std::max(batches_of(options_.samples), starting_batches) : batches_of(options_.samples);
-        const std::uint32_t least = starts_small ? starting_batches : usual;
-        const std::uint32_t most = has_target ? batches_of(std::max(options_.max_samples, options_.samples)) : usual;
-        std::vector<std::uint32_t> wanted(pixels_.size(), least);
+        const bool is_adaptive = plan_.hybrid || options_.until > 0 || is_limited(options_);
+        const std::uint32_t least_parts = error_source() == ErrorSource::batches ? 2 : 1;
+        const std::uint32_t usual = std::max(samples_of_half(options_.samples), least_parts * batch_size());
+        const std::uint32_t allowed = samples_of_half(std::max(options_.max_samples, options_.samples));
+        const std::uint32_t most = options_.until > 0 ? allowed / batch_size() * batch_size() : usual;
+        const std::uint32_t least =
+            plan_.hybrid || is_limited(options_) ? std::min(usual, least_parts * first_samples()) : usual;
         foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
-        trace_round(wanted);
+        trace_round(std::vector<std::uint32_t>(pixels_.size(), least));
         has_all_pixels_ = true;
-        if (target <= 0 && !is_limited(options_)) return;
-        while (!is_over() && want_more(wanted, target, most)) trace_round(wanted);
+        if (!is_adaptive || most <= least) return;
+        const std::vector<double> needed = needed_by_pixels();
+        for (double factor = 1; !is_over(); factor *= 2) {
+            const bool more = trace_round(wanted(needed, factor, most));
+            const bool has_target = options_.until > 0;
+            if (!more || (has_target && error_of_picture() <= options_.until)) break;
+            if (!has_target && !is_limited(options_)) break;
+        }
         if (!stopped()) report(1);
     }
 
@@ -77,66 +72,81 @@ class PathPicture {
         result.standard_error = Image(options_.width, options_.height);
         result.batches.reserve(pixels_.size());
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            result.batches.push_back(pixels_[i].batches);
+            result.batches.push_back(pixels_[i].samples_of_half() / batch_size() * 2);
             const RgbD e = pixels_[i].squared_error();
-            result.image.pixels[i] = Rgb(pixels_[i].mean);
+            result.image.pixels[i] = Rgb(pixels_[i].mean());
             result.standard_error.pixels[i] = Rgb(RgbD(std::sqrt(e.x), std::sqrt(e.y), std::sqrt(e.z)));
         }
         result.layers = layers();
-        result.relative_error = relative_error(pixels_);
+        result.relative_error = error_of_picture();
         result.rays = counts_.rays;
         result.shadow_rays = counts_.shadow_rays;
         result.escaped_rays = counts_.escaped_rays;
-        result.paths = batches_done_ * static_cast<std::int64_t>(s_.batch_size);
+        result.paths = 2 * samples_done_;
         result.non_finite_pixels = count_non_finite(result.image);
         result.interrupted = stopped();
         return result;
     }
 
   private:
-    SampledLight light_of(const auto& parts) const {
+    ErrorSource error_source() const {
+        return plan_.hybrid           ? ErrorSource::halves
+               : plan_.virtual_lights ? ErrorSource::batches
+                                      : ErrorSource::half_batches;
+    }
+    double error_of_picture() const { return relative_error(pixels_, options_); }
+    static std::uint32_t samples_of_half(int samples) { return static_cast<std::uint32_t>((samples + 1) / 2); }
+
+    /// Samples of each half that every pixel gets before the numbers follow the noise.
+    std::uint32_t first_samples() const { return is_limited(options_) ? 2 : 4; }
+
+    /// Samples of each half in a batch, a power of two. In hybrid shading, batches continue two sequences, and any
+    /// number will do.
+    std::uint32_t batch_size() const {
+        if (plan_.hybrid) return std::min(samples_of_half(options_.samples), first_samples());
+        const int parts = error_source() == ErrorSource::batches ? 2 * min_parts : min_parts;
+        const auto size =
+            std::bit_floor(static_cast<unsigned>(std::clamp(options_.samples / parts, 1, largest_half_batch)));
+        return is_limited(options_) ? std::min(size, first_samples()) : size;
+    }
+
+    /// @param part  Returns the mean light, or that of a half.
+    SampledLight light_of(const auto& part, double variances) const {
         SampledLight light{Image(options_.width, options_.height), Image(options_.width, options_.height),
                            std::vector<float>(pixels_.size()), std::vector<float>(pixels_.size())};
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            const auto& [direct, indirect] = parts(pixels_[i]);
-            light.direct.pixels[i] = Rgb(direct.mean);
-            light.indirect.pixels[i] = Rgb(indirect.mean);
-            light.direct_variance[i] = static_cast<float>(direct.squared_error());
-            light.indirect_variance[i] = static_cast<float>(indirect.squared_error());
+            const PathLight mean = part(pixels_[i]);
+            light.direct.pixels[i] = Rgb(mean.direct);
+            light.indirect.pixels[i] = Rgb(mean.indirect);
+            const auto variance = [&](const RgbD& squared_error) {
+                return static_cast<float>(variances * mean_channel(squared_error));
+            };
+            light.direct_variance[i] = variance(pixels_[i].direct_squared_error());
+            light.indirect_variance[i] = variance(pixels_[i].indirect_squared_error());
         }
         return light;
     }
 
     PictureLayers layers() const {
         PictureLayers layers;
-        layers.pixel_angle = s_.start->pixel_angle;
-        layers.pixel_size = s_.start->pixel_size;
-        layers.is_indirect_interpolated = s_.indirect_field != nullptr;
-        layers.reflected = light_of([](const PixelStatistics& p) { return std::tie(p.direct, p.indirect); });
-        for (std::size_t h = 0; h < layers.halves.size(); ++h) {
-            SampledLight& half = layers.halves[h];
-            half = light_of([h](const PixelStatistics& p) {
-                return p.batches > h ? std::tie(p.direct_halves[h], p.indirect_halves[h])
-                                     : std::tie(p.direct, p.indirect);
-            });
-            for (std::size_t i = 0; i < pixels_.size(); ++i) {
-                if (pixels_[i].direct_halves[h].batches > 1) continue;
-                half.direct_variance[i] = 2 * layers.reflected.direct_variance[i];
-                half.indirect_variance[i] = 2 * layers.reflected.indirect_variance[i];
-            }
-        }
+        layers.pixel_angle = plan_.start.pixel_angle;
+        layers.pixel_size = plan_.start.pixel_size;
+        layers.is_indirect_interpolated = plan_.hybrid != nullptr;
+        layers.reflected = light_of([](const PixelStatistics& p) { return p.light(); }, 1);
+        for (std::size_t h = 0; h < layers.halves.size(); ++h)
+            layers.halves[h] = light_of([h](const PixelStatistics& p) { return p.half(h); }, 2);
         for (Image* image : {&layers.emitted, &layers.albedo, &layers.normal, &layers.position})
             *image = Image(options_.width, options_.height);
         layers.depth.resize(pixels_.size());
         layers.level.resize(pixels_.size());
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            const PixelStatistics& p = pixels_[i];
-            layers.emitted.pixels[i] = Rgb(p.emitted);
-            layers.albedo.pixels[i] = Rgb(p.first.albedo);
-            layers.normal.pixels[i] = Rgb(V3f(p.first.normal));
-            layers.position.pixels[i] = Rgb(V3f(p.first.position));
-            layers.depth[i] = static_cast<float>(p.first.distance);
-            layers.level[i] = static_cast<float>(p.first.level);
+            const FirstHit first = pixels_[i].first();
+            layers.emitted.pixels[i] = Rgb(pixels_[i].light().emitted);
+            layers.albedo.pixels[i] = Rgb(first.albedo);
+            layers.normal.pixels[i] = Rgb(V3f(first.normal));
+            layers.position.pixels[i] = Rgb(V3f(first.position));
+            layers.depth[i] = static_cast<float>(first.distance);
+            layers.level[i] = static_cast<float>(first.level);
         }
         return layers;
     }
@@ -144,87 +154,103 @@ class PathPicture {
     bool stopped() const { return monitor_.stop && *monitor_.stop; }
     bool is_over() const { return stopped() || (has_all_pixels_ && time_left_.is_out_of_time()); }
 
-    bool want_more(std::vector<std::uint32_t>& wanted, double target, std::uint32_t most) {
-        const std::vector<double> needed =
-            target > 0 ? needed_batches(pixels_, options_, target) : std::vector<double>(pixels_.size(), most);
-        bool more = false;
-        foreseen_ = 0;
-        for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            const std::uint32_t present = pixels_[i].batches;
-            const double in_all = std::max<double>(present, std::min<double>(most, std::ceil(needed[i])));
-            wanted[i] = static_cast<std::uint32_t>(std::min(in_all, 2.0 * present));
-            more = more || wanted[i] > present;
-            foreseen_ += in_all;
+    /// Samples of each half by which pixels reach the target. Neighbouring measuring points are strangers: they get
+    /// equal numbers.
+    std::vector<double> needed_by_pixels() const {
+        const bool is_uniform = !plan_.hybrid && !(options_.until > 0);
+        if (is_uniform)
+            return std::vector<double>(pixels_.size(), is_limited(options_) ? 2.0 * pixels_[0].samples_of_half() : 0);
+        const double target = options_.until > 0 ? options_.until : hybrid_target;
+        if (!plan_.start.camera) {
+            const double excess = error_of_picture() / target;
+            return std::vector<double>(pixels_.size(), excess * excess * pixels_[0].samples_of_half());
         }
-        return more;
+        return needed_samples(pixels_, options_, target);
     }
 
-    void trace_round(const std::vector<std::uint32_t>& wanted) {
-        const std::size_t per_chunk = SharedBatches::paths_at_once(monitor_.ranks) / s_.batch_size;
+    /// Rounds to powers of two, which stratify best, and to whole batches.
+    std::vector<std::uint32_t> wanted(const std::vector<double>& needed, double factor, std::uint32_t most) {
+        std::vector<std::uint32_t> wanted(pixels_.size());
+        foreseen_ = 0;
+        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+            const double in_all = std::clamp<double>(factor * needed[i], pixels_[i].samples_of_half(), most);
+            wanted[i] = std::min(most, std::bit_ceil(static_cast<std::uint32_t>(std::ceil(in_all))));
+            foreseen_ += wanted[i];
+        }
+        return wanted;
+    }
+
+    /// Traces until each half of every pixel has these samples. Returns whether there was anything to trace.
+    bool trace_round(const std::vector<std::uint32_t>& wanted) {
         std::vector<std::uint32_t> present(pixels_.size());
-        for (std::size_t i = 0; i < pixels_.size(); ++i) present[i] = pixels_[i].batches;
-        std::vector<BatchOfPaths> chunk;
+        for (std::size_t i = 0; i < pixels_.size(); ++i) present[i] = pixels_[i].samples_of_half();
+        std::vector<PathBatch> chunk;
+        std::size_t paths = 0;
+        bool has_traced = false;
         for (bool more = true; more;) {
             more = false;
             for (std::uint32_t i = 0; i < pixels_.size() && !is_over(); ++i) {
                 if (present[i] >= wanted[i]) continue;
                 if (!more) renew_virtual_lights(chunk);
-                chunk.push_back(batch_of(i, present[i]++));
-                more = true;
-                if (chunk.size() >= per_chunk) trace_chunk(chunk);
+                chunk.push_back(next_batch(i, present[i], wanted[i]));
+                present[i] += chunk.back().size;
+                paths += 2 * std::size_t{chunk.back().size};
+                more = has_traced = true;
+                if (paths >= SharedBatches::paths_at_once(monitor_.ranks)) trace_chunk(chunk), paths = 0;
             }
         }
         trace_chunk(chunk);
+        return has_traced;
     }
 
     /// Each batch of a pixel is lit by another set of virtual lights, so their spread includes the error of the sets.
-    void renew_virtual_lights(std::vector<BatchOfPaths>& chunk) {
-        if (!s_.virtual_lights) return;
+    void renew_virtual_lights(std::vector<PathBatch>& chunk) {
+        if (!plan_.virtual_lights) return;
         trace_chunk(chunk);
         counts_.rays += shared_.renew_virtual_lights();
     }
 
-    /// In hybrid shading, one sequence stratifies the batches of a pixel, so the error is overestimated. Otherwise they
-    /// are independent.
-    BatchOfPaths batch_of(std::uint32_t pixel, std::uint32_t number) const {
-        if (!s_.indirect_field) return {pixel, number};
-        return {pixel, 0, number * static_cast<std::uint32_t>(s_.batch_size)};
+    /// In hybrid shading, the batches of a pixel continue two sequences; otherwise they are independent.
+    PathBatch next_batch(std::uint32_t pixel, std::uint32_t present, std::uint32_t wanted) const {
+        constexpr std::uint32_t largest = 512;  // of each half, in hybrid shading
+        if (plan_.hybrid) return {.pixel = pixel, .first_point = present, .size = std::min(largest, wanted - present)};
+        return {.pixel = pixel, .number = present / batch_size(), .size = batch_size()};
     }
 
-    void trace_chunk(std::vector<BatchOfPaths>& chunk) {
+    void trace_chunk(std::vector<PathBatch>& chunk) {
         if (chunk.empty() || is_over()) return chunk.clear();
         counts_ += shared_.trace(
             chunk, [this] { return is_over(); }, has_all_pixels_);
-        for (const BatchOfPaths& batch : chunk) {
+        for (const PathBatch& batch : chunk) {
             if (!batch.done) continue;
-            pixels_[batch.pixel].add(batch, static_cast<double>(s_.batch_size));
-            ++batches_done_;
+            pixels_[batch.pixel].add(batch, error_source());
+            samples_done_ += batch.size;
         }
         chunk.clear();
-        report(std::min(1.0, static_cast<double>(batches_done_) / foreseen_));
+        report(std::min(1.0, static_cast<double>(samples_done_) / foreseen_));
     }
 
     void report(double fraction) {
         if (!monitor_.on_progress) return;
-        const auto new_batches = static_cast<std::size_t>(batches_done_ - batches_of_error_);
-        if (new_batches * s_.batch_size >= pixels_.size() || fraction == 1) {
-            error_ = relative_error(pixels_);
-            batches_of_error_ = batches_done_;
+        const auto new_samples = static_cast<std::size_t>(samples_done_ - samples_of_error_);
+        if (2 * new_samples >= pixels_.size() || fraction == 1) {
+            error_ = error_of_picture();
+            samples_of_error_ = samples_done_;
         }
         monitor_.on_progress({counts_.rays, fraction, error_});
     }
 
-    const PathScene& s_;
+    const PathPlan& plan_;
     const PathOptions& options_;
     const Monitor& monitor_;
     const StopRequest& time_left_;
     SharedBatches& shared_;
     bool has_all_pixels_ = false;
     std::vector<PixelStatistics> pixels_;
-    double foreseen_ = 0;  // expected total of batches
-    std::int64_t batches_done_ = 0;
-    double error_ = std::numeric_limits<double>::infinity();  // after batches_of_error_ batches
-    std::int64_t batches_of_error_ = 0;
+    double foreseen_ = 0;  // expected total of samples of each half
+    std::int64_t samples_done_ = 0;
+    double error_ = std::numeric_limits<double>::infinity();  // after samples_of_error_
+    std::int64_t samples_of_error_ = 0;
     RayCounts counts_;
 };
 
@@ -240,18 +266,14 @@ void require_valid(const PathOptions& options) {
                                      options.max_samples, options.samples));
 }
 
-}  // namespace
-
-namespace {
-
-PathTracing draw(const PathScene& scene, const PathOptions& options, const Monitor& monitor,
-                 const StopRequest& time_left, VirtualLights* virtual_lights = nullptr) {
-    SharedBatches batches(scene, virtual_lights, monitor.ranks);
+PathTracing draw(const PathPlan& plan, const Monitor& monitor, const StopRequest& time_left,
+                 VirtualLights* virtual_lights = nullptr) {
+    SharedBatches batches(plan, virtual_lights, monitor.ranks);
     if (batches.is_helper()) {
         batches.help(time_left);
         return {};
     }
-    PathPicture picture(scene, batches, options, monitor, time_left);
+    PathPicture picture(plan, batches, monitor, time_left);
     picture.trace();
     batches.end();
     return picture.result();
@@ -268,45 +290,33 @@ PathTracing trace_instant_picture(const Scene& scene, const RayCaster& ray_caste
     give_order(monitor.ranks, {.kind = LightOrder::Kind::instant_picture, .options = options}, start);
     StopRequest time_left;
     time_left.limit_time(StopRequest::Clock::now(), options.time);
-    const TracedScene traced(scene, ray_caster, nullptr);
-    PathScene paths = traced.paths(start, options, TracedScene::batch_size(options.samples, min_batches));
-    VirtualLights lights = traced.virtual_lights(options);
-    paths.virtual_lights = &lights;
-    return draw(paths, options, monitor, time_left, &lights);
+    const TracedScene traced(scene, ray_caster);
+    VirtualLights lights(scene, ray_caster, traced.geometry, traced.panes,
+                         static_cast<std::size_t>(options.light_walks), options.seed);
+    const PathPlan plan{.scene = traced, .start = start, .options = options, .virtual_lights = &lights};
+    return draw(plan, monitor, time_left, &lights);
 }
 
 PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                           const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
     ray_caster.require_made_for(scene);
-    const bool is_hybrid = known && known->is_interpolated;
     give_order(monitor.ranks,
                {.kind = LightOrder::Kind::picture,
                 .options = options,
                 .is_known = known != nullptr,
-                .is_interpolated = is_hybrid},
+                .is_interpolated = known && known->is_interpolated},
                start);
     StopRequest time_left;
     time_left.limit_time(StopRequest::Clock::now(), options.time);
-    const TracedScene traced(scene, ray_caster, known);
-    const std::size_t usual_batch = TracedScene::batch_size(options.samples, min_batches);
-    PathScene path_scene =
-        traced.paths(start, options, is_limited(options) ? std::min(usual_batch, small_batch) : usual_batch);
-    if (!known) return draw(path_scene, options, monitor, time_left);
-    const CommonStop stop(monitor.stop, monitor.ranks);
-    const std::vector<SurfacePoint> points = first_points(path_scene, stop.within_process());
-    const KnownLight light = traced.known_light(path_scene, points);
-    path_scene.known = &light;
-    if (!is_hybrid) return draw(path_scene, options, monitor, time_left);
-    path_scene.batch_size = std::max(path_scene.batch_size, small_batch);
-    constexpr double share_of_records = 0.25;  // of the time; roughly
-    const IndirectField field(path_scene, points, monitor_section(monitor, 0, share_of_records));
-    path_scene.indirect_field = &field;
-    const SkyGuide guide(path_scene, field, stop);
-    path_scene.sky_guide = &guide;
-    const std::int64_t rays = field.rays() + guide.rays();
-    PathTracing result = draw(path_scene, options, monitor_section(monitor, share_of_records, 1, rays), time_left);
-    result.rays += rays;
+    const TracedScene traced(scene, ray_caster);
+    const PathPlan plan{.scene = traced, .start = start, .options = options};
+    if (!known) return draw(plan, monitor, time_left);
+    const double share_of_records = known->is_interpolated ? 0.25 : 0;  // of the time; roughly
+    const RecordedLight recorded(plan, *known, monitor_section(monitor, 0, share_of_records));
+    const PathPlan with_records = recorded.plan();
+    PathTracing result = draw(with_records, monitor_section(monitor, share_of_records, 1, recorded.rays()), time_left);
+    result.rays += recorded.rays();
     return result;
 }
 

@@ -5,8 +5,8 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/render.h"
-#include "interflect/render/paths/path_wavefront.h"
-#include "interflect/render/paths/traced_scene.h"
+#include "interflect/render/paths/path_plan.h"
+#include "interflect/render/records/recorded_light.h"
 
 namespace interflect::detail {
 

@@ -12,57 +12,136 @@ namespace {
 /// On both axes [pixels].
 constexpr int neighbourhood_radius = 3;
 
+std::array<RgbD, 3> parts_of(const PathLight& light) {
+    return {light.emitted + light.direct + light.indirect, light.direct, light.indirect};
+}
+
 double mean_reflected(const std::vector<PixelStatistics>& pixels) {
     double sum = 0;
     for (const PixelStatistics& p : pixels) sum += p.reflected();
     return sum / static_cast<double>(pixels.size());
 }
 
-double error_scale(const PixelStatistics& p, double picture_mean) {
-    return std::max(mean_channel(p.mean), picture_mean);
-}
-
-std::vector<double> mean_along(const std::vector<double>& values, std::size_t lines, std::size_t line_step,
+/// Sums over neighbours in a line.
+std::vector<double> sums_along(const std::vector<double>& values, std::size_t lines, std::size_t line_step,
                                std::size_t length, std::size_t step) {
-    std::vector<double> means(values.size());
+    std::vector<double> sums(values.size());
     for (std::size_t line = 0; line < lines; ++line)
         for (std::size_t i = 0; i < length; ++i) {
             const std::size_t first = i - std::min<std::size_t>(i, neighbourhood_radius);
             const std::size_t end = std::min(length, i + neighbourhood_radius + 1);
-            double sum = 0;
+            double& sum = sums[line * line_step + i * step];
             for (std::size_t k = first; k < end; ++k) sum += values[line * line_step + k * step];
-            means[line * line_step + i * step] = sum / static_cast<double>(end - first);
         }
-    return means;
+    return sums;
+}
+
+std::vector<double> sums_around(std::vector<double> values, const PathOptions& options) {
+    const auto width = static_cast<std::size_t>(options.width), height = static_cast<std::size_t>(options.height);
+    values = sums_along(values, height, width, width, 1);
+    return sums_along(values, width, 1, height, width);
+}
+
+/// Light that the error of each pixel is relative to: the mean of its surroundings, at least that of the picture. The
+/// noisy mean of the pixel itself would hide errors of rare light.
+/// @param includes_pixel  Whether the pixel itself is part of its surroundings.
+std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+                                bool includes_pixel) {
+    std::vector<double> light;
+    light.reserve(pixels.size());
+    for (const PixelStatistics& p : pixels) light.push_back(mean_channel(p.mean()));
+    std::vector<double> scale = sums_around(light, options);
+    const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options);
+    const double least = mean_reflected(pixels);
+    for (std::size_t i = 0; i < scale.size(); ++i) {
+        const double sum = includes_pixel ? scale[i] : scale[i] - light[i];
+        const double pixels_of_sum = includes_pixel ? count[i] : count[i] - 1;
+        scale[i] = std::max(least, pixels_of_sum > 0 ? sum / pixels_of_sum : 0);
+    }
+    return scale;
 }
 
 }  // namespace
 
-double relative_error(const std::vector<PixelStatistics>& pixels) {
-    const auto has_spread = [](const PixelStatistics& p) { return p.batches > 1; };
-    if (!std::all_of(pixels.begin(), pixels.end(), has_spread)) return std::numeric_limits<double>::infinity();
-    const double picture_mean = mean_reflected(pixels);
-    double sum = 0;
-    for (const PixelStatistics& p : pixels) {
-        const double scale = error_scale(p, picture_mean);
-        if (scale > 0) sum += mean_channel(p.squared_error()) / (scale * scale);
+void PixelStatistics::Spread::add(const PathLight& light) {
+    const std::array<RgbD, 3> value = parts_of(light);
+    ++parts;
+    for (std::size_t k = 0; k < value.size(); ++k) {
+        const RgbD difference = value[k] - mean[k];
+        mean[k] += difference / static_cast<double>(parts);
+        squares[k] += difference * (value[k] - mean[k]);
     }
+}
+
+void PixelStatistics::add(const PathBatch& b, ErrorSource source) {
+    samples_ += b.size;
+    first_sum_ += b.first;
+    for (std::size_t h = 0; h < 2; ++h) sums_[h] += b.halves[h];
+    if (source == ErrorSource::halves) {
+        spread_ = {};
+        for (std::size_t h = 0; h < 2; ++h) spread_.add(half(h));
+    } else if (source == ErrorSource::half_batches) {
+        for (const PathLight& sum : b.halves) spread_.add(sum * (1.0 / b.size));
+    } else {
+        PathLight sum = b.halves[0];
+        sum += b.halves[1];
+        spread_.add(sum * (0.5 / b.size));
+    }
+}
+
+PathLight PixelStatistics::light() const {
+    PathLight sum = half(0);
+    sum += half(1);
+    return sum * 0.5;
+}
+
+RgbD PixelStatistics::mean() const { return parts_of(light())[0]; }
+
+FirstHit PixelStatistics::first() const {
+    FirstHit mean = first_sum_;
+    const double samples = std::max(1.0, 2.0 * samples_);
+    mean.albedo /= samples, mean.normal /= samples, mean.position /= samples;
+    mean.distance /= samples, mean.level /= samples;
+    return mean;
+}
+
+RgbD PixelStatistics::sampling_error(std::size_t part) const {
+    if (!has_error()) return RgbD(0);
+    return spread_.squares[part] / ((spread_.parts - 1.0) * spread_.parts);
+}
+
+RgbD PixelStatistics::record_error() const {
+    const PathLight mean = light();
+    const double indirect = mean_channel(mean.indirect);
+    if (!(indirect > 0)) return RgbD(mean.record_error * mean.record_error);
+    const RgbD error = mean.indirect * (mean.record_error / indirect);
+    return error * error;
+}
+
+double relative_error(const std::vector<PixelStatistics>& pixels, const PathOptions& options) {
+    const auto has_error = [](const PixelStatistics& p) { return p.has_error(); };
+    if (!std::all_of(pixels.begin(), pixels.end(), has_error)) return std::numeric_limits<double>::infinity();
+    const std::vector<double> scale = error_scale(pixels, options, true);
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        if (scale[i] > 0) sum += mean_channel(pixels[i].squared_error()) / (scale[i] * scale[i]);
     return std::sqrt(sum / static_cast<double>(pixels.size()));
 }
 
-std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
                                    double target) {
-    const double picture_mean = mean_reflected(pixels);
-    std::vector<double> variance(pixels.size());
+    const std::vector<double> scale = error_scale(pixels, options, false);
+    std::vector<double> variance(pixels.size());  // of one sample of each half
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        variance[i] = mean_channel(pixels[i].sampling_error()) * pixels[i].samples_of_half();
+    const std::vector<double> sums = sums_around(variance, options);
+    const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options);
+    std::vector<double> needed(pixels.size(), 0);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const double scale = error_scale(pixels[i], picture_mean);
-        variance[i] = scale > 0 ? mean_channel(pixels[i].variance()) / (scale * scale) : 0;
+        const double around = count[i] > 1 ? std::max(0.0, sums[i] - variance[i]) / (count[i] - 1) : variance[i];
+        if (scale[i] > 0) needed[i] = around / (scale[i] * scale[i] * target * target);
     }
-    const auto width = static_cast<std::size_t>(options.width), height = static_cast<std::size_t>(options.height);
-    variance = mean_along(variance, height, width, width, 1);
-    variance = mean_along(variance, width, 1, height, width);
-    for (double& v : variance) v /= target * target;
-    return variance;
+    return needed;
 }
 
 }  // namespace interflect::detail

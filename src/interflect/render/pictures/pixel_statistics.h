@@ -6,49 +6,65 @@
 
 #include "interflect/core.h"
 #include "interflect/render.h"
-#include "interflect/render/paths/part_statistics.h"
-#include "interflect/render/paths/path_wavefront.h"
+#include "interflect/render/paths/path_batch.h"
+#include "interflect/render/records/part_statistics.h"
 
 namespace interflect::detail {
 
-struct PixelStatistics {
-    RgbD mean{0, 0, 0}, squares{0, 0, 0};
-    RgbD emitted{0, 0, 0};
-    PartStatistics direct, indirect;
-    std::array<PartStatistics, 2> direct_halves, indirect_halves;  // of even and odd batches
-    FirstHit first;
-    std::uint32_t batches = 0;
+/// Relative standard error in hybrid shading above which a pixel or texel gets more samples.
+inline constexpr double hybrid_target = 0.06;
 
-    void add(const BatchOfPaths& b, double batch_size) {
-        const RgbD from_emitters = b.emitted / batch_size, once = b.direct / batch_size,
-                   more_often = b.indirect / batch_size, value = from_emitters + once + more_often;
-        direct.add(once);
-        indirect.add(more_often);
-        direct_halves[batches % 2].add(once);
-        indirect_halves[batches % 2].add(more_often);
-        const double count = ++batches;
-        const RgbD difference = value - mean;
-        mean += difference / count;
-        squares += difference * (value - mean);
-        emitted += (from_emitters - emitted) / count;
-        first.albedo += (b.first.albedo / batch_size - first.albedo) / count;
-        first.normal += (b.first.normal / batch_size - first.normal) / count;
-        first.position += (b.first.position / batch_size - first.position) / count;
-        first.distance += (b.first.distance / batch_size - first.distance) / count;
-        first.level += (b.first.level / batch_size - first.level) / count;
-    }
-    double reflected() const { return mean_channel(direct.mean + indirect.mean); }
-    /// Variance of one batch.
-    RgbD variance() const { return batches > 1 ? squares / (batches - 1.0) : RgbD(0, 0, 0); }
-    RgbD squared_error() const { return batches > 1 ? variance() / static_cast<double>(batches) : RgbD(0, 0, 0); }
+/// Independent parts of a pixel's samples, whose spread gives its standard error.
+enum class ErrorSource {
+    batches,       ///< The halves of a batch share virtual lights.
+    half_batches,  ///< Each is a sequence of its own.
+    halves,        ///< Two halves, which all batches continue.
+};
+
+/// Means over the samples of a pixel or gauge.
+class PixelStatistics {
+  public:
+    /// @param source  Equal for all batches.
+    void add(const PathBatch& batch, ErrorSource source);
+
+    std::uint32_t samples_of_half() const { return samples_; }
+    bool has_error() const { return spread_.parts > 1; }
+    PathLight half(std::size_t h) const { return sums_[h] * (samples_ > 0 ? 1.0 / samples_ : 0.0); }
+    PathLight light() const;
+    RgbD mean() const;
+    FirstHit first() const;
+    double reflected() const { return mean_channel(light().direct + light().indirect); }
+
+    /// Squared standard errors per channel; they include the error of records.
+    RgbD squared_error() const { return sampling_error(0) + record_error(); }
+    RgbD direct_squared_error() const { return sampling_error(1); }
+    RgbD indirect_squared_error() const { return sampling_error(2) + record_error(); }
+    /// Of all light, without the error of records, which more samples do not reduce.
+    /// @param part  0: all light, 1: direct, 2: indirect.
+    RgbD sampling_error(std::size_t part = 0) const;
+
+  private:
+    /// Of independent parts (Welford 1962).
+    struct Spread {
+        std::array<RgbD, 3> mean{RgbD(0), RgbD(0), RgbD(0)}, squares{RgbD(0), RgbD(0), RgbD(0)};
+        std::uint32_t parts = 0;
+        void add(const PathLight& light);
+    };
+    RgbD record_error() const;
+
+    std::array<PathLight, 2> sums_{};  // over the samples
+    std::uint32_t samples_ = 0;        // of each half
+    FirstHit first_sum_;
+    Spread spread_;
 };
 
 /// Returns PathTracing::relative_error.
-double relative_error(const std::vector<PixelStatistics>& pixels);
+double relative_error(const std::vector<PixelStatistics>& pixels, const PathOptions& options);
 
-/// Returns the total per pixel.
+/// Returns the number of samples of each half by which each pixel reaches the target, from the errors of its
+/// neighbours: a pixel's own samples would bias it.
 /// @param target  Of the relative standard error.
-std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
                                    double target);
 
 }  // namespace interflect::detail

@@ -3,6 +3,8 @@
 #include <span>
 #include <type_traits>
 
+#include "interflect/render/sharing/broadcast.h"
+
 namespace interflect::detail {
 
 namespace {
@@ -16,11 +18,6 @@ struct Header {
 };
 static_assert(std::is_standard_layout_v<Header> && std::is_standard_layout_v<Camera> &&
               std::is_standard_layout_v<Gauge>);
-
-template <class T>
-void broadcast(Ranks& ranks, std::span<T> values) {
-    ranks.broadcast(std::as_writable_bytes(values));
-}
 
 }  // namespace
 

@@ -8,7 +8,8 @@
 #include "interflect/base/stop_request.h"
 #include "interflect/ranks.h"
 #include "interflect/render/lights/virtual_lights.h"
-#include "interflect/render/paths/path_wavefront.h"
+#include "interflect/render/paths/path_batch.h"
+#include "interflect/render/paths/path_plan.h"
 
 namespace interflect::detail {
 
@@ -17,9 +18,9 @@ namespace interflect::detail {
 /// picture. A tile has the same batches for any number of ranks.
 class SharedBatches {
   public:
-    /// @param virtual_lights  Of `scene`; may be null. @param ranks  Null: this process alone.
-    SharedBatches(const PathScene& scene, VirtualLights* virtual_lights, Ranks* ranks)
-        : scene_(scene), virtual_lights_(virtual_lights), ranks_(ranks) {}
+    /// @param virtual_lights  Of `plan`; may be null. @param ranks  Null: this process alone.
+    SharedBatches(const PathPlan& plan, VirtualLights* virtual_lights, Ranks* ranks)
+        : plan_(plan), virtual_lights_(virtual_lights), ranks_(ranks) {}
 
     /// Paths of one trace(), enough to occupy all processes.
     static std::size_t paths_at_once(const Ranks* ranks);
@@ -27,10 +28,10 @@ class SharedBatches {
 
     // Rank 0:
 
-    /// Sets BatchOfPaths::done.
+    /// Sets PathBatch::done.
     /// @param is_over     Omits the remaining tiles of this process; called once per tile.
     /// @param is_limited  The other ranks omit tiles after PathOptions::time.
-    RayCounts trace(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over, bool is_limited);
+    RayCounts trace(std::span<PathBatch> batches, const std::function<bool()>& is_over, bool is_limited);
     /// Later batches are lit by another set of virtual lights. Returns its number of rays; 0 without virtual lights.
     std::int64_t renew_virtual_lights();
     /// Ends help() and waits until all ranks are there: a picture without the light of one is not usable.
@@ -43,16 +44,16 @@ class SharedBatches {
 
   private:
     struct Key {
-        std::uint32_t pixel, batch, first_point;
+        std::uint32_t pixel, number, first_point, size;
     };
     struct Chunk {
         std::size_t batches = 0;         // 0: the end
         std::uint32_t light_set = none;  // of virtual lights
         bool is_limited = false;
     };
-    RayCounts trace_own(std::span<BatchOfPaths> batches, const std::function<bool()>& is_over);
+    RayCounts trace_own(std::span<PathBatch> batches, const std::function<bool()>& is_over);
 
-    const PathScene& scene_;
+    const PathPlan& plan_;
     VirtualLights* virtual_lights_;
     Ranks* ranks_;
     std::uint32_t light_set_ = none;

@@ -9,14 +9,18 @@ namespace interflect::detail {
 /// Weighted least-squares fit of a linear function to values around the origin of a plane.
 class LocalFit {
   public:
-    void add(float w, float s, float t, const Rgb& value) {
+    /// @param variance  Of the mean channel of the value.
+    void add(float w, float s, float t, const Rgb& value, float variance = 0) {
         for (int c = 0; c < 3; ++c) {
             least_[c] = weight_ > 0 ? std::min(least_[c], value[c]) : value[c];
             most_[c] = weight_ > 0 ? std::max(most_[c], value[c]) : value[c];
         }
-        weight_ += w, s_ += w * s, t_ += w * t;
-        ss_ += w * s * s, st_ += w * s * t, tt_ += w * t * t;
-        sum_ += w * value, sum_s_ += w * s * value, sum_t_ += w * t * value;
+        const float ws = w * s, wt = w * t;
+        weight_ += w, s_ += ws, t_ += wt;
+        ss_ += ws * s, st_ += ws * t, tt_ += wt * t;
+        sum_ += w * value, sum_s_ += ws * value, sum_t_ += wt * value;
+        variance_ += w * w * variance, variance_s_ += w * ws * variance, variance_t_ += w * wt * variance;
+        variance_ss_ += ws * ws * variance, variance_st_ += ws * wt * variance, variance_tt_ += wt * wt * variance;
     }
     float weight() const { return weight_; }
 
@@ -42,11 +46,19 @@ class LocalFit {
         for (int c = 0; c < 3; ++c) fitted[c] = std::clamp(fitted[c], least_[c], most_[c]);
         return fitted;
     }
+    /// Returns the variance of the mean channel of value(), for independent values.
+    float variance() const {
+        const Coefficients k = coefficients();
+        return k.constant * k.constant * variance_ + k.by_s * k.by_s * variance_ss_ + k.by_t * k.by_t * variance_tt_ +
+               2 * (k.constant * (k.by_s * variance_s_ + k.by_t * variance_t_) + k.by_s * k.by_t * variance_st_);
+    }
 
   private:
     float weight_ = 0, s_ = 0, t_ = 0, ss_ = 0, st_ = 0, tt_ = 0;  // weighted sums
     Rgb sum_{0, 0, 0}, sum_s_{0, 0, 0}, sum_t_{0, 0, 0};
     Rgb least_{0, 0, 0}, most_{0, 0, 0};
+    // Sums of w^2 times the variances.
+    float variance_ = 0, variance_s_ = 0, variance_t_ = 0, variance_ss_ = 0, variance_st_ = 0, variance_tt_ = 0;
 };
 
 }  // namespace interflect::detail

@@ -9,34 +9,30 @@
 #include "interflect/base/common_stop.h"
 #include "interflect/core.h"
 #include "interflect/geometry/box_tree.h"
-#include "interflect/render/paths/part_statistics.h"
+#include "interflect/render/paths/path_plan.h"
+#include "interflect/render/records/part_statistics.h"
+#include "interflect/render/records/surface_points.h"
 #include "interflect/render/smooth/local_fit.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
 
-struct PathScene;
-
-/// Needs indirect light.
-struct SurfacePoint {
-    V3f position;  ///< Start of its rays, relative to the scene's origin [m].
-    V3f normal;    ///< For shading, unit length.
-    std::uint32_t patch = none;
-    float spacing = 0;  ///< Distance to the nearest such points: size of a pixel or texel [m].
-};
-
 /// Indirect irradiance, interpolated between sparse records (irradiance caching, Ward et al. 1988), which average the
-/// noise of a solution. Their reach is a share of the harmonic mean length of their rays, at least a few spacings, and
-/// ends at contacts. Values are local linear fits. Immutable, thread-safe.
+/// noise of a solution. Their reach is a share of the harmonic mean length of their rays that hit a surface, and ends
+/// at contacts. Values are local linear fits. Immutable, thread-safe.
+///
+/// Biased by interpolation. Each record is compared with the fit of its neighbours: where they differ by more than a
+/// tenth of all irradiance and their noise, both reach half as far. The remaining difference is part of Light::error.
 class IndirectField {
   public:
     /// Makes records until all points are covered.
-    /// @param scene  With a known solution; its batches are ignored.
+    /// @param plan  With known light; its records gather as it does.
     /// If stopped, ends with fewer records: within milliseconds, with several ranks within seconds. Collective.
-    IndirectField(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor);
+    IndirectField(const PathPlan& plan, std::span<const SurfacePoint> points, const Monitor& monitor);
 
     struct Light {
-        Rgb irradiance;        ///< [as H]
+        Rgb irradiance;  ///< [as H]
+        float error;     ///< Of the mean channel: standard error of the records and error of interpolation [as H].
         std::uint32_t record;  ///< The nearest.
     };
     /// Returns nullopt without a record in reach.
@@ -63,13 +59,16 @@ class IndirectField {
     struct Record {
         V3f position, normal;
         std::uint32_t patch = none;
+        float spacing = 0;          // of the points [m]
         float reach = 0;            // on its own patch, which no contact crosses [m]
         float reach_elsewhere = 0;  // at most the distance to the nearest contact [m]
-        float reach_in_spacings = 0;
         float irradiance = 0;       // luminance of all irradiance there, for relative errors [as H]
-        float inverse_length = 0;   // sum of 1 / length over the first rays of its paths [1/m]
         PartStatistics gathered{};  // irradiance by groups of paths [as H]
+        double difference = 0;      // between the halves of the groups: sum of mean channels [as H]
+        float group_variance = 0;   // of the mean channel of a group, pooled over near records
+        float squared_bias = 0;     // of interpolation near the record, mean channel
 
+        float variance() const { return group_variance / static_cast<float>(gathered.batches); }
         /// Squared distance relative to the reach; 1 or more beyond it.
         float relative_distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const;
     };
@@ -78,20 +77,30 @@ class IndirectField {
         LocalFit values;
         std::uint32_t nearest = none;  // record
     };
-    Fit fit_at(const V3f& x, const V3f& n, std::uint32_t patch) const;
-    void cover(const PathScene& scene, std::span<const SurfacePoint> points, const Monitor& monitor,
+    /// @param omitted  Record, or none.
+    Fit fit_at(const V3f& x, const V3f& n, std::uint32_t patch, std::uint32_t omitted = none) const;
+    void cover(const PathPlan& plan, std::span<const SurfacePoint> points, const Monitor& monitor,
                const CommonStop& stop);
     std::vector<SurfacePoint> uncovered_among(std::span<const SurfacePoint> points, Ranks* ranks) const;
     /// Returns whether a stop was due.
-    bool gather(const PathScene& scene, std::span<const std::uint32_t> chosen, std::size_t groups,
-                const CommonStop& stop);
-    bool add_records(const PathScene& scene, std::span<const SurfacePoint> points, const CommonStop& stop);
-    void refine_noisy_records(const PathScene& scene, const CommonStop& stop);
+    bool gather(const PathPlan& plan, std::span<const std::uint32_t> chosen, std::size_t groups, const CommonStop& stop,
+                std::vector<float>* lengths = nullptr);
+    bool add_records(const PathPlan& plan, std::span<const SurfacePoint> points, const CommonStop& stop);
+    void arrange_tree();
+    void pool_variances();
+    /// Difference between record i and the fit of its neighbours, mean channel; nullopt without enough of them.
+    struct Residual {
+        double square, variance;
+    };
+    std::optional<Residual> residual(std::uint32_t i) const;
+    /// Halves the reach of new records, and of their neighbours, where interpolation fails.
+    void shorten_reaches(std::size_t first_new);
+    void estimate_bias();
+    void refine_noisy_records(const PathPlan& plan, const CommonStop& stop);
     /// Over records, below.
     float mean_irradiance() const;
     /// Geometric mean, of lit records.
     float log_mean_irradiance() const;
-    float pooled_variance(const Record& record) const;
     /// At most max_distance.
     float distance_to_contact(const V3f& x, float max_distance) const;
 

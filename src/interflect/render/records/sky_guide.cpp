@@ -1,4 +1,4 @@
-#include "interflect/render/paths/sky_guide.h"
+#include "interflect/render/records/sky_guide.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 #include "interflect/base/random.h"
 #include "interflect/base/shared_ranges.h"
 #include "interflect/geometry/tangent_frame.h"
-#include "interflect/render/paths/path_wavefront.h"
 
 namespace interflect::detail {
 
@@ -76,8 +75,9 @@ std::vector<std::uint32_t> groups_near(const IndirectField& field, std::span<con
 
 }  // namespace
 
-SkyGuide::SkyGuide(const PathScene& scene, const IndirectField& field, const CommonStop& stop) {
-    if (!scene.skies.can_sample() && !(channel_sum(scene.skies.uniform_radiance()) > 0)) return;
+SkyGuide::SkyGuide(const TracedScene& scene, const IndirectField& field, std::uint64_t seed, const CommonStop& stop) {
+    const Skies& skies = scene.sources.skies();
+    if (!skies.can_sample() && !(channel_sum(skies.uniform_radiance()) > 0)) return;
     groups_ = groups_of(field);
     const std::size_t count = groups_.empty() ? 0 : *std::max_element(groups_.begin(), groups_.end()) + std::size_t{1};
     std::vector<std::vector<SurfacePoint>> places(count);
@@ -88,7 +88,7 @@ SkyGuide::SkyGuide(const PathScene& scene, const IndirectField& field, const Com
     std::vector<std::int64_t> rays(count);
     parallel_for_own_ranges(stop.ranks(), count, place_groups_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end && !is_stopped(); ++g) {
-            const Search searched = search(scene, places[g], mix(mix(scene.options.seed, g), 1));
+            const Search searched = search(scene, places[g], mix(mix(seed, g), 1));
             light[g] = searched.light();
             rays[g] = searched.traced;
         }
@@ -107,7 +107,7 @@ SkyGuide::SkyGuide(const PathScene& scene, const IndirectField& field, const Com
     });
 }
 
-SkyGuide::Search SkyGuide::search(const PathScene& scene, std::span<const SurfacePoint> places, std::uint64_t key) {
+SkyGuide::Search SkyGuide::search(const TracedScene& scene, std::span<const SurfacePoint> places, std::uint64_t key) {
     constexpr std::ptrdiff_t few_cells = 32;
     Search search{scene, places, key};
     search.by_chance();
@@ -144,7 +144,7 @@ void SkyGuide::Search::trace(std::span<const std::uint8_t, cells> cells_of_rays)
     }
     scene.ray_caster.trace(sent, hits);
     const auto add = [&](std::size_t i, const Rgb& transmittance) {
-        const float light = luminance(transmittance * scene.skies.radiance(sent[i].direction));
+        const float light = luminance(transmittance * scene.sources.skies().radiance(sent[i].direction));
         squares[cells_of_rays[i]] += light * light;
     };
     for (std::size_t i = 0; i < cells; ++i)

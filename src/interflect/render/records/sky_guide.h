@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/render/paths/indirect_field.h"
+#include "interflect/render/records/indirect_field.h"
 
 namespace interflect::detail {
-
-struct PathScene;
 
 /// Directions towards the visible sky around the records of an IndirectField, for sampling: chance rarely finds a small
 /// window (path guiding, Vorba et al. 2014). Records in reach of the same record share a density over cells of equal
@@ -21,7 +19,7 @@ class SkyGuide {
   public:
     /// Empty without skies. If stopped, ends with fewer densities: within milliseconds; with several ranks it runs to
     /// its end. Collective.
-    SkyGuide(const PathScene& scene, const IndirectField& field, const CommonStop& stop);
+    SkyGuide(const TracedScene& scene, const IndirectField& field, std::uint64_t seed, const CommonStop& stop);
 
     /// Whether some ray from around a record has reached the sky.
     bool sees_sky(std::uint32_t record) const {
@@ -42,7 +40,7 @@ class SkyGuide {
 
     /// Rays that some places have sent to the sky.
     struct Search {
-        const PathScene& scene;
+        const TracedScene& scene;
         std::span<const SurfacePoint> places;
         std::uint64_t key;
         Cells rays{}, squares{};  // number of rays, and sum of squared luminances that they found
@@ -54,7 +52,7 @@ class SkyGuide {
         /// Root mean square of the light in each cell: densities in proportion to it have the least variance.
         Cells light() const;
     };
-    static Search search(const PathScene& scene, std::span<const SurfacePoint> places, std::uint64_t key);
+    static Search search(const TracedScene& scene, std::span<const SurfacePoint> places, std::uint64_t key);
     /// Extends a density to neighbouring cells.
     static Cumulative density_of(const Cells& light);
     static std::size_t cell_at(const Cumulative& density, double x);

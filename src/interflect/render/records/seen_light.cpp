@@ -1,4 +1,4 @@
-#include "interflect/render/paths/seen_light.h"
+#include "interflect/render/records/seen_light.h"
 
 #include <algorithm>
 #include <numbers>
@@ -8,7 +8,6 @@
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 #include "interflect/render/lights/path_samples.h"
-#include "interflect/render/paths/path_wavefront.h"
 
 namespace interflect::detail {
 
@@ -21,7 +20,7 @@ constexpr float bright_over_mean = 2;
 constexpr std::size_t min_rays = 256, max_rays = 1 << 16;  // of a round
 constexpr std::size_t rays_per_task = 1 << 10;
 
-std::uint64_t key_of(const PathScene& scene) { return mix(scene.options.seed, 0x5ee11); }
+std::uint64_t key_of(std::uint64_t seed) { return mix(seed, 0x5ee11); }
 
 /// About one per point, a small part of the rays of its records.
 std::size_t rays_for(std::span<const SurfacePoint> points) { return std::clamp(points.size(), min_rays, max_rays); }
@@ -31,7 +30,7 @@ const SurfacePoint& random_one(std::span<const SurfacePoint> points, std::uint32
 }
 
 /// Calls visit(ray, hit, transmittance) for all hits of surfaces, also behind panes.
-void trace(const PathScene& scene, std::span<const Ray> rays, const auto& visit) {
+void trace(const TracedScene& scene, std::span<const Ray> rays, const auto& visit) {
     std::vector<Hit> hits(rays.size());
     scene.ray_caster.trace(rays, hits);
     for (std::size_t i = 0; i < rays.size(); ++i)
@@ -44,12 +43,13 @@ void trace(const PathScene& scene, std::span<const Ray> rays, const auto& visit)
 }
 
 /// Returns the mean of reflected radiosity over cosine-distributed directions, sum of channels.
-float mean_radiosity(const KnownLight& light, const PathScene& scene, std::span<const SurfacePoint> points) {
+float mean_radiosity(const KnownLight& light, const TracedScene& scene, std::span<const SurfacePoint> points,
+                     std::uint64_t key) {
     const std::size_t count = rays_for(points);
     const auto sum = parallel_sum(count, rays_per_task, 0.0, [&](std::size_t begin, std::size_t end) {
         std::vector<Ray> rays;
         for (std::size_t i = begin; i < end; ++i) {
-            const auto words = random_words(key_of(scene), i);
+            const auto words = random_words(key, i);
             const SurfacePoint& p = random_one(points, words[0]);
             rays.push_back({p.position, cosine_direction(p.normal, unit_float(words[1]), unit_float(words[2]))});
         }
@@ -66,7 +66,7 @@ float mean_radiosity(const KnownLight& light, const PathScene& scene, std::span<
 
 /// Returns the share of rays to each patch that met it. A patch that got fewer rays than its power suggests faces away
 /// from the points: the missing rays count as hidden.
-std::vector<float> seen_shares(const KnownLight& light, const PathScene& scene, std::span<const SurfacePoint> points,
+std::vector<float> seen_shares(const KnownLight& light, const TracedScene& scene, std::span<const SurfacePoint> points,
                                std::uint64_t key) {
     struct Sent {
         std::uint32_t patch = none;
@@ -107,11 +107,13 @@ std::vector<float> seen_shares(const KnownLight& light, const PathScene& scene, 
 
 }  // namespace
 
-void sample_seen_light(KnownLight& light, const PathScene& scene, std::span<const SurfacePoint> points) {
+void sample_seen_light(KnownLight& light, const TracedScene& scene, std::span<const SurfacePoint> points,
+                       std::uint64_t seed) {
     if (points.empty()) return;
-    light.sample_brighter_than(bright_over_mean * mean_radiosity(light, scene, points));
+    const std::uint64_t key = key_of(seed);
+    light.sample_brighter_than(bright_over_mean * mean_radiosity(light, scene, points, key));
     // Without the hidden patches of the first round, the second sends enough rays to the others.
-    for (const std::uint64_t round : {0, 1}) light.weigh(seen_shares(light, scene, points, mix(key_of(scene), round)));
+    for (const std::uint64_t round : {0, 1}) light.weigh(seen_shares(light, scene, points, mix(key, round)));
 }
 
 }  // namespace interflect::detail

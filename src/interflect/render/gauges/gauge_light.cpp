@@ -1,0 +1,147 @@
+#include "interflect/render/gauges/gauge_light.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "interflect/base/common_stop.h"
+#include "interflect/base/monitor_section.h"
+#include "interflect/base/shared_ranges.h"
+#include "interflect/render/paths/path_integrator.h"
+#include "interflect/render/pictures/pixel_statistics.h"
+
+namespace interflect::detail {
+
+namespace {
+
+constexpr std::size_t gauges_per_tile = 256;
+constexpr std::size_t tiles_per_report = 256;  // of each rank
+/// Part of the samples that every gauge gets.
+constexpr std::uint32_t first_share = 4;
+
+/// Gauges of one tile.
+class GaugeTile {
+  public:
+    GaugeTile(const PathPlan& plan, std::size_t first, std::size_t count)
+        : plan_(plan), first_(first), pixels_(count) {}
+
+    /// Returns the number of rays.
+    std::int64_t trace() {
+        const auto samples = static_cast<std::uint32_t>(plan_.options.samples);
+        const std::uint32_t all = std::max(1u, samples / 2), some = std::max(1u, all / first_share);
+        trace_more(std::vector<std::uint32_t>(pixels_.size(), some));
+        std::vector<std::uint32_t> wanted(pixels_.size(), some);
+        for (std::size_t i = 0; i < pixels_.size(); ++i)
+            if (are_neighbours_noisy(i)) wanted[i] = all;
+        trace_more(wanted);
+        return rays_;
+    }
+    GaugeLight light(std::size_t i) const {
+        const PixelStatistics& p = pixels_[i];
+        const auto error = static_cast<float>(mean_channel(p.direct_squared_error()));
+        GaugeLight light{{Rgb(p.light().direct), error}, {}, Rgb(p.light().indirect), 0};
+        for (std::size_t h = 0; h < 2; ++h) light.halves[h] = {Rgb(p.half(h).direct), 2 * error};
+        light.indirect_error = static_cast<float>(p.light().record_error);
+        return light;
+    }
+
+  private:
+    /// @param wanted  Samples of each half, in all.
+    void trace_more(const std::vector<std::uint32_t>& wanted) {
+        std::vector<PathBatch> batches;
+        for (std::size_t i = 0; i < pixels_.size(); ++i)
+            if (const std::uint32_t present = pixels_[i].samples_of_half(); wanted[i] > present)
+                batches.push_back({.pixel = static_cast<std::uint32_t>(first_ + i),
+                                   .first_point = present,
+                                   .size = wanted[i] - present});
+        PathIntegrator integrator(plan_);
+        integrator.trace(batches);
+        rays_ += integrator.counts().rays;
+        for (const PathBatch& b : batches) pixels_[b.pixel - first_].add(b, ErrorSource::halves);
+    }
+
+    /// Neighbours in the list are usually neighbours in space. Gauge i itself would bias its own result.
+    bool are_neighbours_noisy(std::size_t i) const {
+        constexpr std::size_t reach = 4;
+        const double target = plan_.options.until > 0 ? plan_.options.until : hybrid_target;
+        double error = 0, light = 0;
+        for (std::size_t k = i - std::min(i, reach); k < std::min(pixels_.size(), i + reach + 1); ++k) {
+            if (k == i) continue;
+            error += mean_channel(pixels_[k].direct_squared_error());
+            light += pixels_[k].reflected();
+        }
+        const double count =
+            static_cast<double>(std::min(pixels_.size(), i + reach + 1) - (i - std::min(i, reach)) - 1);
+        return count == 0 || error * count > target * target * light * light;
+    }
+
+    const PathPlan& plan_;
+    std::size_t first_;
+    std::vector<PixelStatistics> pixels_;
+    std::int64_t rays_ = 0;
+};
+
+std::vector<GaugeLight> trace_all_gauges(const PathPlan& plan, const Monitor& monitor) {
+    const std::size_t gauges = plan.start.gauges.size();
+    std::vector<GaugeLight> irradiance;
+    const CommonStop stop(monitor.stop, monitor.ranks);
+    const std::size_t at_once =
+        gauges_per_tile * tiles_per_report * (monitor.ranks ? static_cast<std::size_t>(monitor.ranks->count()) : 1);
+    std::int64_t rays = 0;
+    for (std::size_t first = 0; first < gauges; first += at_once) {
+        const std::size_t count = std::min(at_once, gauges - first);
+        std::vector<GaugeLight> light(count);
+        std::vector<std::int64_t> rays_of_tile((count + gauges_per_tile - 1) / gauges_per_tile);
+        parallel_for_own_ranges(monitor.ranks, count, gauges_per_tile, [&](std::size_t begin, std::size_t end) {
+            if (stop.within_process().is_due()) return;
+            GaugeTile tile(plan, first + begin, end - begin);
+            rays_of_tile[begin / gauges_per_tile] = tile.trace();
+            for (std::size_t i = begin; i < end; ++i) light[i] = tile.light(i - begin);
+        });
+        if (stop.is_due())
+            throw Stopped(fmt::format("stopped when {} of {} texels or vertices had light", first, gauges));
+        collect_ranges(monitor.ranks, std::span(light), gauges_per_tile, Destination::first_rank);
+        collect_ranges(monitor.ranks, std::span(rays_of_tile), 1, Destination::first_rank);
+        if (monitor.ranks && monitor.ranks->rank() != 0) continue;
+        irradiance.insert(irradiance.end(), light.begin(), light.end());
+        for (const std::int64_t of_tile : rays_of_tile) rays += of_tile;
+        if (monitor.on_progress)
+            monitor.on_progress({rays, static_cast<double>(first + count) / static_cast<double>(gauges)});
+    }
+    return irradiance;
+}
+
+PathStart start_at(std::span<const Gauge> gauges) {
+    PathStart start;
+    start.gauges = gauges;
+    return start;
+}
+
+}  // namespace
+
+std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, const KnownIrradiance& known,
+                                          std::span<const Gauge> gauges, const PathOptions& options,
+                                          const Monitor& monitor) {
+    const PathStart start = start_at(gauges);
+    const PathPlan plan{.scene = scene, .start = start, .options = options};
+    constexpr double share_of_records = 0.6;  // of the time; roughly
+    const RecordedLight recorded(plan, known, monitor_section(monitor, 0, share_of_records));
+    const PathPlan hybrid = recorded.plan();
+    return trace_all_gauges(hybrid, monitor_section(monitor, share_of_records, 1, recorded.rays()));
+}
+
+std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
+                                                 const PathOptions& options, const Monitor& monitor) {
+    const PathStart start = start_at(gauges);
+    const HybridLight direct_only;
+    const PathPlan plan{
+        .scene = scene, .start = start, .options = options, .first_rays = first_shadow_rays, .hybrid = &direct_only};
+    std::vector<SampledIrradiance> direct;
+    for (const GaugeLight& light : trace_all_gauges(plan, monitor)) direct.push_back(light.direct);
+    return direct;
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "interflect/core.h"
+#include "interflect/render.h"
+#include "interflect/render/gauges/gauge.h"
+#include "interflect/render/paths/traced_scene.h"
+#include "interflect/render/records/recorded_light.h"
+
+namespace interflect::detail {
+
+struct SampledIrradiance {
+    Rgb irradiance;           ///< [as H]
+    float squared_error = 0;  ///< Estimated, of the mean of the channels.
+};
+struct GaugeLight {
+    SampledIrradiance direct;
+    std::array<SampledIrradiance, 2> halves;  ///< `direct` from independent halves of the samples.
+    Rgb indirect;                             ///< Interpolated [as H].
+    float indirect_error = 0;                 ///< IndirectField::Light::error.
+
+    Rgb irradiance() const { return direct.irradiance + indirect; }
+};
+
+/// Irradiance of gauges by hybrid shading, with options.samples paths for each. A quarter suffices where the direct
+/// light of the neighbours in the list has an estimated relative error below options.until or, without it,
+/// hybrid_target. Direct light is unbiased: the number of samples of a gauge does not depend on these samples.
+/// @param known  Interpolated.
+/// @return       Per gauge, in rank 0 only; the same bits for any number of threads and ranks. Collective.
+/// @throws Stopped, in all ranks.
+std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, const KnownIrradiance& known,
+                                          std::span<const Gauge> gauges, const PathOptions& options,
+                                          const Monitor& monitor);
+/// The direct part.
+std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
+                                                 const PathOptions& options, const Monitor& monitor);
+
+}  // namespace interflect::detail

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "interflect/geometry/patch_geometry.h"
+#include "interflect/luminaires/skies.h"
+#include "interflect/render/lights/light_tree.h"
+#include "interflect/render/lights/luminaire_choice.h"
+#include "interflect/render/lights/path_samples.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Kinds of light sources. Each has shadow rays of its own, so a bright source that is hidden takes none from the
+/// others.
+enum class SourceKind {
+    patches,  ///< Emitting patches.
+    lamps,    ///< Luminaires with a position.
+    suns,     ///< Directional lights.
+};
+inline constexpr std::array source_kinds{SourceKind::patches, SourceKind::lamps, SourceKind::suns};
+
+/// One sample of a light source, seen from a point x on a surface with normal n.
+struct SourceSample {
+    V3f direction{0, 0, 1};
+    std::uint32_t patch = none;  ///< The shadow ray has to hit it; none: it has to be free up to `distance`.
+    float distance = 0;          ///< [m]
+    Rgb irradiance{0, 0, 0};     ///< Unoccluded, divided by the density; its mean is that of all sources [as H].
+    float density = 0;           ///< Of the direction [1/sr]; 0 if directions never find the source.
+};
+
+/// Samples light sources by estimated unoccluded irradiance. Immutable, thread-safe.
+class LightSources {
+  public:
+    /// Arguments must outlive this.
+    LightSources(const Scene& scene, std::span<const PatchGeometry> geometry);
+
+    /// Number of shadow rays that differ from each other, at most `most`; 0 without such sources.
+    std::uint32_t useful_rays(SourceKind kind, std::uint32_t most) const;
+    /// Skies excluded. The irradiance is 0 if no source can light x.
+    SourceSample sample(SourceKind kind, const V3f& x, const V3f& n, const LightSample& numbers) const;
+    /// Density of sample() towards an emitting patch that was hit [1/sr]. @param distance2  [m^2]
+    float density(std::uint32_t patch, const V3f& x, const V3f& n, const V3f& direction, float distance2) const;
+    const Skies& skies() const { return skies_; }
+
+  private:
+    SourceSample sample_patch(const V3f& x, const V3f& n, const LightSample& numbers) const;
+
+    const Scene& scene_;
+    std::span<const PatchGeometry> geometry_;
+    LightTree patches_;
+    LuminaireChoice luminaires_;
+    Skies skies_;
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+
+#include "interflect/core.h"
+#include "interflect/geometry/patch_geometry.h"
+
+namespace interflect::detail {
+
+/// Point of an emitting patch, as a direction from x.
+struct PatchPoint {
+    Parameters at;
+    V3f direction;
+    float distance2 = 0;  ///< [m^2]
+    float density = 0;    ///< Of the direction [1/sr].
+};
+
+/// Samples the lit side of a patch: uniformly in the solid angle seen from x if the patch is near, else uniformly in
+/// its area. Near lamps, the integrand over the area grows without bound.
+/// @param u, v  In (0, 1).
+/// @return      nullopt if x is behind the patch or the point coincides with x.
+std::optional<PatchPoint> sample_patch(const PatchGeometry& patch, const V3f& x, float u, float v);
+
+/// Density of sample_patch() [1/sr] for a direction that meets the lit side. @param distance2  [m^2]
+float patch_density(const PatchGeometry& patch, const V3f& x, const V3f& direction, float distance2);
+
+}  // namespace interflect::detail

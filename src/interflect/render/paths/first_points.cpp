@@ -1,0 +1,90 @@
+#include "interflect/render/paths/first_points.h"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "interflect/render/records/indirect_field.h"
+#include "interflect/render/records/part_statistics.h"
+#include "interflect/render/records/sky_guide.h"
+
+namespace interflect::detail {
+
+namespace {
+
+/// Contributions of shadow rays from similar points of the other half.
+struct OtherHalf {
+    Rgb sampled{0, 0, 0}, visible{0, 0, 0};
+
+    /// Visible share; 1 without a sample.
+    Rgb coefficient() const {
+        Rgb c(1);
+        for (int k = 0; k < 3; ++k)
+            if (sampled[k] > 0) c[k] = std::min(1.0f, visible[k] / sampled[k]);
+        return c;
+    }
+};
+
+}  // namespace
+
+const FirstPoints::Group& FirstPoints::group_of(const Path& path) {
+    constexpr float same_cosine = 0.999f;
+    std::size_t i = groups_.size();
+    for (; i > 0 && groups_[i - 1].half == path.half; --i)
+        if (groups_[i - 1].patch == path.patch && groups_[i - 1].normal.dot(path.normal) >= same_cosine)
+            return groups_[i - 1];
+    Group& group = groups_.emplace_back(Group{path.half, path.patch, path.normal});
+    const IndirectField* const field = plan_.hybrid->field;
+    if (!field) {
+        group.lookup.is_found = true;
+        return group;
+    }
+    const auto found = field->at(path.lookup, path.normal, path.patch);
+    if (!found) return group;
+    group.lookup.is_found = true;
+    group.irradiance = found->irradiance;
+    group.error = found->error;
+    const SkyGuide* const guide = plan_.hybrid->guide;
+    if (guide && guide->sees_sky(found->record)) group.lookup.guide = found->record;
+    return group;
+}
+
+FirstPoints::Lookup FirstPoints::add_indirect(const Path& path, PathLight& light) {
+    const Group& group = group_of(path);
+    const Rgb per_irradiance = path.throughput / std::numbers::pi_v<float>;
+    light.indirect += RgbD(per_irradiance * group.irradiance);
+    const double share = mean_channel(RgbD(per_irradiance));
+    light.record_error += share * static_cast<double>(group.error);
+    return group.lookup;
+}
+
+std::uint32_t FirstPoints::add(const Path& path, const LightSample& numbers) {
+    Point& point = points_.emplace_back(Point{path.half, path.normal, path.throughput});
+    for (const SourceKind kind : source_kinds)
+        if (plan_.scene.sources.useful_rays(kind, 1) > 0 && plan_.scene.unoccluded.has(kind))
+            point.sources[static_cast<std::size_t>(kind)].unoccluded =
+                plan_.scene.unoccluded.at(kind, path.position, path.normal, numbers.u, numbers.v);
+    return static_cast<std::uint32_t>(points_.size() - 1);
+}
+
+void FirstPoints::add_direct(std::span<PathLight> halves) const {
+    constexpr float similar_cosine = 0.9f;
+    for (std::size_t first = 0, last = 0; first < points_.size(); first = last) {
+        const std::uint32_t batch = points_[first].half / 2;
+        while (last < points_.size() && points_[last].half / 2 == batch) ++last;
+        const auto points = std::span(points_).subspan(first, last - first);
+        for (const Point& point : points)
+            for (std::size_t k = 0; k < point.sources.size(); ++k) {
+                const Source& source = point.sources[k];
+                OtherHalf other;
+                for (const Point& p : points)
+                    if (p.half != point.half && p.normal.dot(point.normal) >= similar_cosine)
+                        other.sampled += p.sources[k].sampled, other.visible += p.sources[k].visible;
+                const Rgb c = other.coefficient();
+                const Rgb irradiance = c * source.unoccluded + (source.visible - c * source.sampled);
+                halves[point.half].direct += RgbD(point.throughput / std::numbers::pi_v<float> * irradiance);
+            }
+    }
+}
+
+}  // namespace interflect::detail

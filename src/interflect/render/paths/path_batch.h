@@ -1,0 +1,63 @@
+#pragma once
+
+#include <ImathVec.h>
+
+#include <array>
+#include <cstdint>
+
+#include "interflect/core.h"
+
+namespace interflect::detail {
+
+/// First hit of a camera ray, or a sum; 0 if the ray escapes.
+struct FirstHit {
+    RgbD albedo{0, 0, 0};
+    Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
+    double distance = 0;        ///< From the camera, through panes and by mirrors [m].
+    double level = 0;           ///< Of the element, with a known solution.
+    double inverse_length = 0;  ///< 1 / length of the first ray from a gauge, 0 if it escapes [1/m].
+    double hits = 0;            ///< Number of these rays that hit a surface.
+
+    FirstHit& operator+=(const FirstHit& o) {
+        albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance, level += o.level;
+        inverse_length += o.inverse_length, hits += o.hits;
+        return *this;
+    }
+};
+
+/// Sums over paths, by the number of reflections between emitter and camera.
+struct PathLight {
+    RgbD emitted{0, 0, 0};    ///< None.
+    RgbD direct{0, 0, 0};     ///< One.
+    RgbD indirect{0, 0, 0};   ///< More.
+    double record_error = 0;  ///< Standard error of recorded light, mean channel; common to all paths.
+
+    PathLight& operator+=(const PathLight& o) {
+        emitted += o.emitted, direct += o.direct, indirect += o.indirect, record_error += o.record_error;
+        return *this;
+    }
+    PathLight operator*(double factor) const {
+        return {emitted * factor, direct * factor, indirect * factor, record_error * factor};
+    }
+};
+
+/// Paths of a pixel or gauge: two independent halves of equal size.
+struct PathBatch {
+    std::uint32_t pixel = 0;
+    std::uint32_t number = 0;       ///< Batches of different numbers are independent.
+    std::uint32_t first_point = 0;  ///< In the sequence of each half.
+    std::uint32_t size = 1;         ///< Paths of each half.
+    bool done = false;
+    std::array<PathLight, 2> halves{};
+    FirstHit first{};  ///< Sum over all paths.
+};
+
+struct RayCounts {
+    std::int64_t rays = 0, shadow_rays = 0, escaped_rays = 0;
+    RayCounts& operator+=(const RayCounts& o) {
+        rays += o.rays, shadow_rays += o.shadow_rays, escaped_rays += o.escaped_rays;
+        return *this;
+    }
+};
+
+}  // namespace interflect::detail

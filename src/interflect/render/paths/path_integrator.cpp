@@ -1,0 +1,333 @@
+#include "interflect/render/paths/path_integrator.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numbers>
+
+#include "interflect/base/points.h"
+#include "interflect/base/random.h"
+#include "interflect/geometry/texture_mapping.h"
+#include "interflect/render/lights/known_light.h"
+#include "interflect/render/records/sky_guide.h"
+
+namespace interflect::detail {
+
+namespace {
+
+constexpr float pi = std::numbers::pi_v<float>;
+
+/// In hybrid shading, one path of each group of this size also samples light sources by its direction, best near them.
+constexpr std::uint32_t paths_per_direction = 4;
+/// Lower values reduce variance but lengthen paths; 0.25 to 1 are equally efficient.
+constexpr float roulette_threshold = 0.5f;
+
+/// Uniform in the gauge's parallelogram, moved to its patch and off it.
+V3f start_on(const TracedScene& s, const Gauge& gauge, const V3f& normal, float u, float v) {
+    if (gauge.patch == none) return gauge.position + normal * gauge.offset;
+    const PatchGeometry& geometry = s.geometry[gauge.patch];
+    const V3f x = gauge.position + (u - 0.5f) * gauge.side_u + (v - 0.5f) * gauge.side_v;
+    return s.lifted(gauge.patch, geometry.point(geometry.inset(geometry.parameters_of(x), gauge.inset))) +
+           normal * gauge.offset;
+}
+
+}  // namespace
+
+void PathIntegrator::trace(std::span<PathBatch> batches) {
+    light_.resize(2 * batches.size());
+    for (const PathBatch& b : batches)
+        for (const std::uint64_t half : {0, 1})
+            keys_.push_back(mix(mix(plan_.options.seed, b.pixel), 2 * std::uint64_t{b.number} + half));
+
+    // Find the first points: seen by the camera, or on the gauges
+    if (plan_.start.camera) {
+        start_at_camera(batches);
+        arrive_at_surfaces();
+    } else {
+        start_at_gauges(batches);
+    }
+    while (!paths_.paths.empty()) {
+        // Send shadow rays to light sources and to bright elements or virtual lights
+        light_vertices();
+        // Choose directions; Russian roulette ends some paths
+        leave_surfaces();
+        ++vertex_;
+        // Find the next surfaces; add the light that they emit; end paths at known light
+        arrive_at_surfaces();
+    }
+    // Combine shadow rays and unoccluded light of first points in hybrid shading
+    first_points_.add_direct(light_);
+    store(batches);
+}
+
+void PathIntegrator::start_at_camera(std::span<const PathBatch> batches) {
+    const auto width = static_cast<std::uint32_t>(plan_.options.width);
+    thread_local PointBlock points;
+    Path path;
+    for (std::uint32_t h = 0; h < keys_.size(); ++h) {
+        const PathBatch& batch = batches[h / 2];
+        fill_points(PointSet::sobol, keys_[h], batch.first_point, batch.size, points);
+        const auto left = static_cast<float>(batch.pixel % width), top = static_cast<float>(batch.pixel / width);
+        path.half = h;
+        for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
+            path.point = batch.first_point + i;
+            paths_.add(path, plan_.start.camera->ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
+        }
+    }
+    first_hits_.resize(path.sample);
+}
+
+void PathIntegrator::start_at_gauges(std::span<const PathBatch> batches) {
+    thread_local PointBlock points;
+    Path path;
+    for (std::uint32_t h = 0; h < keys_.size(); ++h) {
+        const PathBatch& batch = batches[h / 2];
+        const Gauge& gauge = plan_.start.gauges[batch.pixel];
+        fill_points(PointSet::sobol, keys_[h], batch.first_point, batch.size, points);
+        path.half = h;
+        path.patch = gauge.patch;
+        path.lookup = start_on(plan_.scene, gauge, gauge.normal, 0.5f, 0.5f);
+        for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
+            path.point = batch.first_point + i;
+            path.normal = gauge.normal_at(points.coordinate[0][i]);
+            path.position = start_on(plan_.scene, gauge, path.normal, points.coordinate[1][i], points.coordinate[2][i]);
+            paths_.add(path, {path.position, path.normal});
+        }
+    }
+    first_hits_.resize(path.sample);
+}
+
+void PathIntegrator::arrive_at_surfaces() {
+    const bool is_first = vertex_ == 1;
+    const bool splits =
+        (!plan_.scene.panes.empty() || plan_.scene.has_mirrors) && !(is_first && plan_.shows_irradiance());
+    find_surfaces(plan_.scene, splits, is_first && plan_.options.mirrors, paths_, counts_);
+    std::size_t alive = 0;
+    for (std::size_t i = 0; i < paths_.paths.size(); ++i) {
+        Path path = paths_.paths[i];
+        if (arrive(paths_.hits[i], paths_.rays[i], path)) paths_.paths[alive++] = path;
+    }
+    paths_.paths.resize(alive);
+    paths_.rays.resize(alive);
+}
+
+bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
+    const TracedScene& s = plan_.scene;
+    const bool is_white = vertex_ == 1 && plan_.shows_irradiance();
+    if (hit.patch == none) {
+        ++counts_.escaped_rays;
+        if (!is_white) add_sky(path, ray.direction);
+        return false;
+    }
+    const V3f x = ray.origin + hit.distance * ray.direction;
+    const float distance = path.travelled + hit.distance;
+    const Material& material = s.material(hit.patch);
+    Rgb exitance = material.exitance, reflectance = material.reflectance;
+    if (material.is_textured()) {
+        const Patch& patch = s.scene.patches[hit.patch];
+        const Parameters p = s.geometry[hit.patch].parameters_of(x);
+        exitance = exitance_at(s.scene, patch, p);
+        reflectance = reflectance_at(s.scene, patch, p);
+    }
+    if (is_white) exitance = Rgb(0), reflectance = Rgb(1);
+    FirstHit& first = first_hits_[path.sample];
+    // Later paths, behind panes or in mirrors, overwrite it.
+    if (vertex_ == 1 && path.sets_first_hit)
+        first = {RgbD(reflectance), Imath::V3d(s.geometry[hit.patch].normal()), Imath::V3d(x), distance,
+                 plan_.known ? static_cast<double>(plan_.known->level(hit.patch, x)) : 0};
+    if (vertex_ == 2 && !plan_.start.camera) first.inverse_length = 1 / static_cast<double>(distance), first.hits = 1;
+
+    if (channel_sum(exitance) > 0) add_emission(hit, ray.direction, distance, path, exitance);
+    if (path.sampling.is_last || end_at_known_light(hit, x, ray.direction, distance, path)) return false;
+    if (plan_.virtual_lights && vertex_ > 1) path.throughput *= share_beyond_bound(hit, ray.direction, distance, path);
+    path.throughput *= reflectance;
+    path.patch = hit.patch;
+    path.position = path.lookup = s.lifted(hit.patch, x);
+    path.normal = vertex_ == 1 ? s.shading_normal(hit.patch, x) : s.geometry[hit.patch].normal();
+    return largest_channel(path.throughput) > 0;
+}
+
+void PathIntegrator::light_vertices() {
+    for (Path& path : paths_.paths) {
+        path.sampling = {};
+        if (vertex_ == 1) path.sampling.rays = plan_.first_rays;
+        if (vertex_ == 1 && plan_.hybrid) {
+            light_first_point(path);
+            if (path.sampling.is_last) continue;
+        } else {
+            sample_sources(path);
+        }
+        if (plan_.known) connect_to_known_light(path);
+        if (plan_.virtual_lights) connect_to_virtual_lights(path);
+    }
+    add_light_of_shadow_rays();
+}
+
+void PathIntegrator::light_first_point(Path& path) {
+    const LightSources& sources = plan_.scene.sources;
+    const UnoccludedLight& unoccluded = plan_.scene.unoccluded;
+    // Look up recorded indirect light; the path goes on where no record may be used
+    const FirstPoints::Lookup lookup = first_points_.add_indirect(path, light_[path.half]);
+    if (!lookup.is_found) return sample_sources(path);
+    // Sample directions if they find light that shadow rays find badly
+    const bool has_sky = sources.skies().can_sample() || channel_sum(sources.skies().uniform_radiance()) > 0;
+    SourceSampling& sampling = path.sampling;
+    sampling.is_last = true;
+    sampling.guide = lookup.guide;
+    sampling.has_patches = !unoccluded.has(SourceKind::patches);
+    sampling.directions = sampling.has_patches || has_sky ? 1.0f / paths_per_direction : 0;
+    // Compute unoccluded light; shadow rays estimate the occlusion
+    const std::uint64_t key = keys_[path.half];
+    const std::uint32_t point =
+        first_points_.add(path, light_sample(key, vertex_, LightStream::unoccluded, path.point));
+    for (const SourceKind kind : source_kinds) {
+        const std::uint32_t rays = sources.useful_rays(kind, sampling.rays);
+        const std::uint32_t first_point = unoccluded.has(kind) ? point : none;
+        for (std::uint32_t k = 0; k < rays; ++k)
+            connect_to_source(path, kind, path.point * rays + k, rays, first_point);
+    }
+    for (std::uint32_t k = 0; k < sampling.rays; ++k) connect_to_sky(path, path.point * sampling.rays + k);
+}
+
+void PathIntegrator::sample_sources(Path& path) {
+    if (vertex_ == 1 && !plan_.has_direct) return;
+    for (const SourceKind kind : source_kinds) {
+        const std::uint32_t rays = plan_.scene.sources.useful_rays(kind, path.sampling.rays);
+        for (std::uint32_t k = 0; k < rays; ++k) connect_to_source(path, kind, path.point * rays + k, rays, none);
+    }
+    for (std::uint32_t k = 0; k < path.sampling.rays; ++k) connect_to_sky(path, path.point * path.sampling.rays + k);
+}
+
+void PathIntegrator::connect_to_source(const Path& path, SourceKind kind, std::uint32_t index, std::uint32_t rays,
+                                       std::uint32_t first_point) {
+    constexpr std::array streams{LightStream::patches, LightStream::lamps, LightStream::suns};
+    const LightSample numbers = light_sample(keys_[path.half], vertex_, streams[static_cast<std::size_t>(kind)], index);
+    const SourceSample source = plan_.scene.sources.sample(kind, path.position, path.normal, numbers);
+    if (!(channel_sum(source.irradiance) > 0)) return;
+    const Rgb irradiance = source.irradiance / static_cast<float>(rays);
+    shadow_rays_.add({path.position, source.direction}, source.patch, source.distance);
+    if (first_point != none) {
+        first_points_.add_sampled(first_point, kind, irradiance);
+        connections_.push_back({path.half, 1, irradiance, first_point, kind});
+        return;
+    }
+    float weight = 1;
+    if (source.density > 0 && path.sampling.has_patches)
+        weight = balance(static_cast<float>(rays) * source.density, direction_density(path, source.direction));
+    connections_.push_back({path.half, vertex_, path.throughput / pi * irradiance * weight});
+}
+
+void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
+    const Skies& skies = plan_.scene.sources.skies();
+    const std::uint32_t guide = path.sampling.guide;
+    if (!skies.can_sample() && guide == none) return;
+    const bool takes_turns = guide != none && skies.can_sample();
+    const bool is_guided = guide != none && (!takes_turns || index % 2 == 0);
+    const LightSample numbers =
+        light_sample(keys_[path.half], vertex_, is_guided ? LightStream::guided_skies : LightStream::skies,
+                     takes_turns ? index / 2 : index);
+    const V3f direction = is_guided
+                              ? plan_.hybrid->guide->sample(guide, path.normal, numbers.choice, numbers.u, numbers.v)
+                              : skies.sample(numbers.choice, numbers.u, numbers.v).direction;
+    const float cosine = path.normal.dot(direction), density = sky_density(path, direction);
+    if (!(cosine > 0 && density > 0)) return;
+    const float weight = balance(density, direction_density(path, direction));
+    shadow_rays_.add({path.position, direction}, none, std::numeric_limits<float>::infinity());
+    connections_.push_back(
+        {path.half, vertex_, path.throughput * sampled_sky(path, direction) * (cosine / pi / density * weight)});
+}
+
+void PathIntegrator::add_light_of_shadow_rays() {
+    const std::span<const Rgb> transmittance = shadow_rays_.trace(plan_.scene.ray_caster, plan_.scene.panes, counts_);
+    for (std::size_t i = 0; i < connections_.size(); ++i) {
+        const Connection& c = connections_[i];
+        if (!(largest_channel(transmittance[i]) > 0)) continue;
+        const Rgb light = c.light * transmittance[i];
+        if (c.first_point != none)
+            first_points_.add_visible(c.first_point, c.kind, light);
+        else
+            add(c.half, c.bounces, light);
+    }
+    connections_.clear();
+}
+
+void PathIntegrator::leave_surfaces() {
+    std::size_t alive = 0;
+    for (Path path : paths_.paths) {
+        const std::uint64_t key = keys_[path.half];
+        if (path.sampling.is_last) {
+            // Starts anywhere: the number of points need not be a multiple.
+            if (!(path.sampling.directions > 0) || (path.point + mix(key, 2)) % paths_per_direction != 0) continue;
+            path.throughput /= path.sampling.directions;
+        }
+        const VertexSample sample = vertex_sample(key, vertex_, path.point);
+        const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
+        if (sample.roulette >= survival) continue;
+        path.throughput /= survival;
+        path.travelled = 0;
+        paths_.rays[alive] = {path.position, cosine_direction(path.normal, sample.direction_u, sample.direction_v)};
+        paths_.paths[alive++] = path;
+    }
+    paths_.paths.resize(alive);
+    paths_.rays.resize(alive);
+}
+
+void PathIntegrator::store(std::span<PathBatch> batches) const {
+    // Irradiance = pi L of a white surface.
+    const double per_radiance = plan_.shows_irradiance() ? std::numbers::pi : 1;
+    std::size_t sample = 0;
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+        PathBatch& batch = batches[b];
+        for (std::size_t h = 0; h < 2; ++h) batch.halves[h] = light_[2 * b + h] * per_radiance;
+        for (const std::size_t end = sample + 2 * std::size_t{batch.size}; sample < end; ++sample)
+            batch.first += first_hits_[sample];
+        batch.done = true;
+    }
+}
+
+void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
+    const Skies& skies = plan_.scene.sources.skies();
+    if (vertex_ == 1) return add(path.half, 0, path.throughput * skies.seen(direction));
+    Rgb radiance = sampled_sky(path, direction);
+    if (channel_sum(radiance) > 0)
+        radiance *= balance(direction_density(path, direction), sky_density(path, direction));
+    if (path.sampling.guide == none) radiance += skies.uniform_radiance();
+    add(path.half, vertex_ - 1, path.throughput * radiance);
+}
+
+void PathIntegrator::add_emission(const Hit& hit, const V3f& direction, float distance, const Path& path,
+                                  const Rgb& exitance) {
+    if (vertex_ > 1 && !path.sampling.has_patches) return;  // found by shadow rays alone
+    const Rgb radiance = path.throughput * exitance / pi;
+    if (vertex_ == 1) return add(path.half, 0, radiance);
+    const float density =
+        plan_.scene.sources.density(hit.patch, path.position, path.normal, direction, distance * distance);
+    const float weight = balance(direction_density(path, direction), static_cast<float>(path.sampling.rays) * density);
+    add(path.half, vertex_ - 1, radiance * weight);
+}
+
+float PathIntegrator::direction_density(const Path& path, const V3f& direction) {
+    return path.normal.dot(direction) / pi * path.sampling.directions;
+}
+
+Rgb PathIntegrator::sampled_sky(const Path& path, const V3f& direction) const {
+    const Skies& skies = plan_.scene.sources.skies();
+    return path.sampling.guide == none ? skies.sampled_radiance(direction) : skies.radiance(direction);
+}
+
+float PathIntegrator::sky_density(const Path& path, const V3f& direction) const {
+    const Skies& skies = plan_.scene.sources.skies();
+    const auto rays = static_cast<float>(path.sampling.rays);
+    const float of_sky = skies.can_sample() ? skies.density(direction) : 0;
+    if (path.sampling.guide == none) return rays * of_sky;
+    const float of_guide = plan_.hybrid->guide->density(path.sampling.guide, path.normal, direction);
+    return skies.can_sample() ? rays * (of_sky + of_guide) / 2 : rays * of_guide;
+}
+
+void PathIntegrator::add(std::uint32_t half, std::uint32_t bounces, const Rgb& radiance) {
+    if (bounces == 1 && !plan_.has_direct) return;
+    PathLight& light = light_[half];
+    (bounces == 0 ? light.emitted : bounces == 1 ? light.direct : light.indirect) += RgbD(radiance);
+}
+
+}  // namespace interflect::detail

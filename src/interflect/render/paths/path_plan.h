@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "interflect/raycast/camera.h"
+#include "interflect/render.h"
+#include "interflect/render/gauges/gauge.h"
+#include "interflect/render/paths/traced_scene.h"
+
+namespace interflect::detail {
+
+class IndirectField;
+class KnownLight;
+class SkyGuide;
+class VirtualLights;
+
+/// Camera, or one gauge per pixel.
+struct PathStart {
+    std::optional<Camera> camera;
+    float pixel_angle = 0;  ///< [rad]
+    std::span<const Gauge> gauges{};
+    float pixel_size = 0;  ///< [m]
+};
+
+/// Hybrid shading of first points: direct light by FirstPoints, indirect light from records.
+struct HybridLight {
+    const IndirectField* field = nullptr;  ///< null: direct light only.
+    const SkyGuide* guide = nullptr;       ///< Of the field's records; may be null.
+};
+
+/// How a PathIntegrator computes light. Pictures, texels, vertices, probes and measuring points differ in nothing else.
+struct PathPlan {
+    const TracedScene& scene;
+    const PathStart& start;
+    const PathOptions& options;
+    std::uint32_t first_rays = 1;                   ///< Shadow rays to each kind of source at first points.
+    bool has_direct = true;                         ///< Includes light that is reflected once.
+    const KnownLight* known = nullptr;              ///< Ends paths; null: only Russian roulette does.
+    std::uint32_t paths_per_place = 1;              ///< Paths for each ray to a place of KnownLight::sample().
+    const VirtualLights* virtual_lights = nullptr;  ///< Light every vertex; paths find the light beyond their bounds.
+    const HybridLight* hybrid = nullptr;
+
+    bool shows_irradiance() const { return options.quantity == PathQuantity::irradiance; }
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/ray_caster.h"
+#include "interflect/raycast/panes.h"
+#include "interflect/render/paths/path_batch.h"
+
+namespace interflect::detail {
+
+/// Visibility of points along rays, in bulk, through panes.
+class ShadowRays {
+  public:
+    /// @param patch     That the ray has to hit; none: it has to be free up to `distance`.
+    /// @param distance  [m]
+    void add(const Ray& ray, std::uint32_t patch, float distance);
+    /// Traces all rays and removes them. Returns the transmittance of each; 0 if it is occluded.
+    std::span<const Rgb> trace(const RayCaster& ray_caster, const Panes& panes, RayCounts& counts);
+
+  private:
+    struct Target {
+        std::uint32_t patch;
+        float distance;
+        /// Escaped rays match luminaires and skies: neither has a patch.
+        bool is_met(const Hit& hit) const { return hit.patch == patch || (patch == none && hit.distance > distance); }
+    };
+    void pass_panes(const RayCaster& ray_caster, const Panes& panes, RayCounts& counts);
+
+    std::vector<Ray> rays_;
+    std::vector<Hit> hits_;
+    std::vector<Target> targets_;
+    std::vector<Rgb> transmittance_;
+};
+
+}  // namespace interflect::detail

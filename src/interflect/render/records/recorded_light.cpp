@@ -1,0 +1,38 @@
+#include "interflect/render/records/recorded_light.h"
+
+#include <vector>
+
+#include "interflect/base/common_stop.h"
+#include "interflect/render/records/seen_light.h"
+
+namespace interflect::detail {
+
+KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, std::span<const SurfacePoint> points,
+                       std::uint64_t seed) {
+    KnownLight light(scene.scene, scene.geometry, known.forest, known.irradiance);
+    sample_seen_light(light, scene, points, seed);
+    return light;
+}
+
+RecordedLight::RecordedLight(const PathPlan& plan, const KnownIrradiance& known, const Monitor& monitor) : plan_(plan) {
+    const CommonStop stop(monitor.stop, monitor.ranks);
+    const std::vector<SurfacePoint> points = first_points(plan, stop.within_process());
+    light_.emplace(known_light(plan.scene, known, points, plan.options.seed));
+    if (!known.is_interpolated) return;
+    PathPlan gathering = plan;
+    gathering.known = &*light_;
+    field_.emplace(gathering, points, monitor);
+    guide_.emplace(plan.scene, *field_, plan.options.seed, stop);
+    rays_ = field_->rays() + guide_->rays();
+    hybrid_ = {&*field_, &*guide_};
+}
+
+PathPlan RecordedLight::plan() const {
+    PathPlan plan = plan_;
+    plan.known = &*light_;
+    plan.first_rays = first_shadow_rays;
+    if (field_) plan.hybrid = &hybrid_;
+    return plan;
+}
+
+}  // namespace interflect::detail
