@@ -3,16 +3,18 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 
+#include "apps/interflect/bench_picture.h"
 #include "apps/interflect/commands.h"
+#include "apps/interflect/embree_rates.h"
 #include "apps/interflect/messages.h"
 #include "apps/interflect/parse.h"
+#include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/threads.h"
 #include "interflect/base/parallel.h"
@@ -20,7 +22,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/exports/records/json_text.h"
 #include "interflect/ray_caster.h"
-#include "interflect/raycast/prepared_rays.h"
+#include "interflect/scene/view.h"
 #include "interflect/solve.h"
 #include "interflect/solver/refinement/oracle_threshold.h"
 #include "interflect/solver/sampling/ray_plan.h"
@@ -33,35 +35,16 @@ using namespace detail;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 struct BenchArguments {
     SceneOptions scene;
     MeshOptions mesh;
     ViewOptions view;
+    PictureBenchOptions picture;
     std::optional<Method> method;
     std::int64_t rays = 4'000'000;
     int rounds = 5, threads = 0;
     bool json = false;
 };
-
-constexpr std::array<std::pair<RayInterface, const char*>, 4> interfaces = {{{RayInterface::single, "single"},
-                                                                             {RayInterface::packet8, "packet8"},
-                                                                             {RayInterface::packet16, "packet16"},
-                                                                             {RayInterface::stream, "stream"}}};
-
-template <class Work>
-double seconds_for(const Work& work) {
-    const auto start = Clock::now();
-    work();
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// A step of the solver with converged light, its mesh and rays.
 struct Workload {
@@ -95,8 +78,8 @@ struct Workload {
 };
 
 struct Measurement {
-    double ceiling = 0, solver = 0;                  // [rays/s], of one round
-    std::array<double, interfaces.size()> embree{};  // [rays/s], per interface
+    EmbreeRates embree;  // of one round
+    double solver = 0;   // [rays/s]
     // Shares of the solver's time, each measured alone: generating rays, tracing, finding the hit leaves, and choosing
     // elements with the oracle. The rest is work per element of every iteration.
     double making_rays = 0, tracing = 0, receiving = 0, refinement = 0;
@@ -125,15 +108,7 @@ void repeat_step(const RayCaster& ray_caster, const Workload& work, bool with_or
 Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workload& work) {
     Measurement m;
     const auto count = static_cast<double>(work.rays.size());
-    for (std::size_t i = 0; i < interfaces.size(); ++i) {
-        PreparedRays prepared(work.rays, interfaces[i].first);
-        m.embree[i] = count / seconds_for([&] {
-                          parallel_for_ranges(prepared.group_count(), 1, [&](std::size_t group, std::size_t) {
-                              prepared.trace_group(ray_caster, group);
-                          });
-                      });
-    }
-    m.ceiling = *std::max_element(m.embree.begin(), m.embree.end());
+    m.embree = measure_embree(ray_caster, work.rays);
     Solution solution;
     const double seconds = seconds_for([&] { solution = solve(scene, ray_caster, work.solution.options); });
     m.solver = static_cast<double>(solution.iterations.back().rays) / seconds;
@@ -148,101 +123,94 @@ Measurement measure(const Scene& scene, const RayCaster& ray_caster, const Workl
     return m;
 }
 
-struct BenchResult {
-    explicit BenchResult(const std::vector<Measurement>& rounds) {
-        const auto median_of = [&](const auto& figure) {
-            std::vector<double> values(rounds.size());
-            std::transform(rounds.begin(), rounds.end(), values.begin(), figure);
-            return median(values);
-        };
-        ratio = median_of([](const Measurement& m) { return m.solver / m.ceiling; });
-        ceiling = median_of([](const Measurement& m) { return m.ceiling; });
-        solver = median_of([](const Measurement& m) { return m.solver; });
-        for (std::size_t i = 0; i < interfaces.size(); ++i)
-            embree[i] = median_of([i](const Measurement& m) { return m.embree[i]; });
-        shares = {{{"making_rays", median_of([](const Measurement& m) { return m.making_rays; })},
-                   {"tracing", median_of([](const Measurement& m) { return m.tracing; })},
-                   {"receiving", median_of([](const Measurement& m) { return m.receiving; })},
-                   {"refinement", median_of([](const Measurement& m) { return m.refinement; })},
-                   {"sweeps", median_of([](const Measurement& m) { return m.sweeps(); })}}};
-    }
-
-    double ratio, ceiling, solver;  // solver / ceiling; [rays/s]
-    std::array<double, interfaces.size()> embree;
-    std::array<std::pair<const char*, double>, 5> shares;  // of the solver's time
-};
-
-Json figures_of(const BenchResult& result) {
-    Json by_interface;
-    for (std::size_t i = 0; i < interfaces.size(); ++i) by_interface[interfaces[i].second] = result.embree[i];
-    Json shares_of_time;
-    for (const auto& [name, share] : result.shares) shares_of_time[name] = share;
-    return {{"ceiling_rays_per_second", result.ceiling},
-            {"embree", by_interface},
-            {"solver_rays_per_second", result.solver},
-            {"ratio", result.ratio},
-            {"shares_of_time", shares_of_time}};
+Json figures_of(const Workload& work, const std::vector<Measurement>& rounds) {
+    const auto median = [&](const auto& figure) { return median_of(rounds, figure); };
+    return {{"method", work.solution.options.method.name},
+            {"elements", work.solution.forest->size()},
+            {"ceiling_rays_per_second", median([](const Measurement& m) { return m.embree.ceiling(); })},
+            {"embree", json_by_interface(median_rates(rounds))},
+            {"solver_rays_per_second", median([](const Measurement& m) { return m.solver; })},
+            {"ratio", median([](const Measurement& m) { return m.solver / m.embree.ceiling(); })},
+            {"shares_of_time",
+             {{"making_rays", median([](const Measurement& m) { return m.making_rays; })},
+              {"tracing", median([](const Measurement& m) { return m.tracing; })},
+              {"receiving", median([](const Measurement& m) { return m.receiving; })},
+              {"refinement", median([](const Measurement& m) { return m.refinement; })},
+              {"sweeps", median([](const Measurement& m) { return m.sweeps(); })}}}};
 }
 
-void print_figures(const BenchResult& result) {
-    for (std::size_t i = 0; i < interfaces.size(); ++i)
-        fmt::print("  Embree alone, {:9}{:8.2f} M rays/s\n", interfaces[i].second, result.embree[i] / 1e6);
-    fmt::print("  whole solver          {:8.2f} M rays/s\n", result.solver / 1e6);
-    fmt::print("  solver over Embree    {:8.3f}\n", result.ratio);
+Json bench_solver(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& solve_options, int rounds) {
+    const Workload work(scene, ray_caster, solve_options);
+    std::vector<Measurement> measured;
+    for (int round = 0; round < rounds; ++round) measured.push_back(measure(scene, ray_caster, work));
+    return figures_of(work, measured);
+}
+
+void print_solver(const Json& figures) {
+    const auto percent_of = [&](const char* part) {
+        return fmt::format("{:.0f}%", 100 * figures["shares_of_time"][part].get<double>());
+    };
+    fmt::print("  method                 {}, {} elements\n", figures["method"].get<std::string>(),
+               figures["elements"].get<std::size_t>());
+    fmt::print("  whole solver           {:8.2f} M rays/s\n", figures["solver_rays_per_second"].get<double>() / 1e6);
+    fmt::print("  solver over Embree     {:8.3f}\n", figures["ratio"].get<double>());
     fmt::print(
-        "  of the solver's time  {:.0f}% making rays, {:.0f}% tracing, {:.0f}% receiving, {:.0f}% refinement, "
-        "{:.0f}% sweeps over the elements\n",
-        100 * result.shares[0].second, 100 * result.shares[1].second, 100 * result.shares[2].second,
-        100 * result.shares[3].second, 100 * result.shares[4].second);
+        "  of the solver's time: {} making rays, {} tracing, {} receiving, {} refinement, {} sweeps over the "
+        "elements\n",
+        percent_of("making_rays"), percent_of("tracing"), percent_of("receiving"), percent_of("refinement"),
+        percent_of("sweeps"));
 }
 
 void run(const BenchArguments& options, const CLI::App& command) {
     const ThreadLimit limit(options.threads);
     options.scene.check(command);
     options.view.check();
+    const bool is_picture = options.picture.is_given;
+    if (is_picture && options.view.count() > 1)
+        throw UsageError("--view", "a picture has one view, but several were given");
+    if (is_picture) require_memory_for_paths(options.picture.size);
     Scene scene = options.scene.load();
     SolveOptions solve_options;
     solve_options.limits.rays = options.rays;
     for (const View& view : options.view.views(scene)) solve_options.views.push_back({view});
+    if (is_picture && solve_options.views.empty())
+        solve_options.views.push_back({scene.views.empty() ? overview(scene) : scene.views.front()});
     solve_options.method = options.method.value_or(default_method(!solve_options.views.empty()));
     scene = options.mesh.divide(std::move(scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(scene);
-    const Workload work(scene, ray_caster, solve_options);
 
-    std::vector<Measurement> rounds;
-    rounds.reserve(static_cast<std::size_t>(options.rounds));
-    for (int round = 0; round < options.rounds; ++round) rounds.push_back(measure(scene, ray_caster, work));
-    const BenchResult result(rounds);
-
+    const Json figures = is_picture ? bench_picture(scene, ray_caster, solve_options, options.picture, options.rounds)
+                                    : bench_solver(scene, ray_caster, solve_options, options.rounds);
     const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
     if (options.json) {
         Json json{{"scene", scene.name},
                   {"patches", scene.patches.size()},
-                  {"method", solve_options.method.name},
-                  {"elements", work.solution.forest->size()},
                   {"threads", threads},
                   {"rays", options.rays},
                   {"rounds", options.rounds}};
-        json.update(figures_of(result));
+        json.update(figures);
         json["ray_tracer_bytes"] = ray_caster.memory();
         std::cout << json_text(json, 2) << '\n';
         return;
     }
-    print_line("{}, {}: {} patches, {} elements, {} threads, medians of {} rounds", scene.name,
-               solve_options.method.name, scene.patches.size(), work.solution.forest->size(), threads, options.rounds);
-    print_figures(result);
+    print_line("{}: {} patches, {} threads, medians of {} rounds", scene.name, scene.patches.size(), threads,
+               options.rounds);
+    print_rates(figures["embree"]);
+    is_picture ? print_picture(figures) : print_solver(figures);
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app) {
     const auto options = std::make_shared<BenchArguments>();
-    CLI::App& command = *app.add_subcommand("bench", "Measure the solver's rays a second beside the ray tracer's own");
+    CLI::App& command = *app.add_subcommand(
+        "bench", "Measure the rays a second of the solver or a picture beside the ray tracer's own");
     options->scene.add_to(command);
     options->mesh.add_to(command);
     options->view.add_to(command);
+    options->picture.add_to(command);
     add_method(command, options->method);
-    add_parsed(command, "--rays", options->rays, parse_count, "Rays of each measurement")
+    add_parsed(command, "--rays", options->rays, parse_count, "Rays to solve with, and of each measurement of Embree")
         ->type_name("COUNT")
         ->default_str("4M");
     command.add_option("--rounds", options->rounds, "How often to measure; medians are reported")

@@ -16,10 +16,10 @@ constexpr std::string_view indented_line = "\n  ";
 std::string escaped_lines(std::string_view text) {
     std::string result;
     for (auto end = text.find(indented_line); end != std::string_view::npos; end = text.find(indented_line)) {
-        result += escaped(text.substr(0, end)).append(indented_line);
+        result += detail::escaped(text.substr(0, end)).append(indented_line);
         text.remove_prefix(end + indented_line.size());
     }
-    return result + escaped(text);
+    return result + detail::escaped(text);
 }
 
 /// Pattern flag for the escaped message.

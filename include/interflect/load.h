@@ -23,8 +23,10 @@ struct ReadOptions {
     /// Length of the file's unit [m], in [1e-9, 1e9]: scales all coordinates, for every format. Views in a separate
     /// file (view_list_path) are in metres.
     double unit = 1;
-    Axis up_axis = Axis::z;                  ///< Up axis of the file, which is rotated to z.
-    int curve_divisions = 4;                 ///< Flat pieces per quarter circle of a curved surface, 1 to 1000.
+    Axis up_axis = Axis::z;  ///< Up axis of the file, which is rotated to z.
+    /// Flat pieces per quarter circle of a curved surface, 1 to 1000. Pieces of an emitting surface have its exact
+    /// area.
+    int curve_divisions = 4;
     std::uint64_t max_patches = 50'000'000;  ///< Total patches, at most 4 * 10^9; also bounds the work for arrays.
     int max_include_depth = 32;              ///< Nested include files; 0 refuses every include.
     int max_nesting = 1000;                  ///< Nested transforms, and nested objects.

@@ -14,7 +14,8 @@ namespace interflect {
 
 namespace detail {
 class PreparedRays;
-}
+class RayRecorder;
+}  // namespace detail
 
 /// A ray of unit direction. Rays that leave a patch start RayCaster::ray_offset() above it, to avoid hits in its own
 /// plane.
@@ -68,6 +69,7 @@ class RayCaster {
 
   private:
     friend class detail::PreparedRays;
+    friend class detail::RayRecorder;
     struct Embree;
     std::unique_ptr<Embree> embree_;
     std::uint64_t scene_fingerprint_;

@@ -22,7 +22,8 @@ def load(path: str | os.PathLike[str], *, unit: float | str = 1.0, up_axis: str 
         path: Scene file.
         unit: Length of the file's unit: "m", "cm", "mm", "km", "in", "ft", or [m].
         up_axis: Up axis of the file, which is rotated to z: "x", "-x", "y", "-y", "z" or "-z".
-        curve_divisions: Flat pieces per quarter circle of a curved surface, 1 to 1000.
+        curve_divisions: Flat pieces per quarter circle of a curved surface, 1 to 1000. Pieces of an emitting surface
+            have its exact area.
         max_patches: Limit of patches.
         outside_files: Whether a file may refer to files outside its folder.
         luminaires: Measured light to add.

@@ -253,7 +253,7 @@ class Help(CommandTest):
             "solve": ("--rays COUNT", "20M", "--time SECONDS", "--seed NUMBER=1", "--threads", "--stats FILE", "[m]"),
             "render": ("--view NAME", "--eye X,Y,Z", "[degrees]", "--size WxH=1280x720", "hybrid|gather|smooth|flat|path|instant=hybrid", "STOPS"),
             "compare": ("IMAGE", "REFERENCE", "--scale"),
-            "bench": ("--rays COUNT=4M", "--rounds"),
+            "bench": ("--rays COUNT=4M", "--rounds", "--picture", "hybrid|gather|path|instant=hybrid"),
             "make-scene": ("maze", "office", "boxes", "two-rooms"),
         }
         self.assertEqual(tuple(expected), SUBCOMMANDS)

@@ -53,9 +53,10 @@ std::size_t triangles(const PolygonMesh& mesh) {
 }
 
 const V3d centre(1, 2, 3), tilted = V3d(1, -2, 2) / 3;
+const int all_divisions[] = {1, 2, 3, 4, 7, 8, 32};
 
 TEST(Curves, SphereHasTrianglesAtThePolesAndQuadrilateralsElsewhere) {
-    const PolygonMesh sphere = make_sphere(centre, 0.5, 4);
+    const PolygonMesh sphere = make_sphere(centre, 0.5, {4});
     EXPECT_EQ(sphere.faces.size(), 16u * 8);
     EXPECT_EQ(triangles(sphere), 2u * 16);
     EXPECT_EQ(sphere.points.size(), 16u * 7 + 2);
@@ -65,22 +66,22 @@ TEST(Curves, SphereHasTrianglesAtThePolesAndQuadrilateralsElsewhere) {
 
 TEST(Curves, SphereComesCloseToTheTrueOneAsDivisionsGrow) {
     const double true_area = 4 * pi * 0.25, true_volume = 4.0 / 3 * pi * 0.125;
-    EXPECT_NEAR(area(make_sphere(centre, 0.5, 4)) / true_area, 1, 0.04);
-    EXPECT_NEAR(area(make_sphere(centre, 0.5, 40)) / true_area, 1, 0.0004);
-    EXPECT_NEAR(volume(make_sphere(centre, 0.5, 40)) / true_volume, 1, 0.001);
+    EXPECT_NEAR(area(make_sphere(centre, 0.5, {4})) / true_area, 1, 0.04);
+    EXPECT_NEAR(area(make_sphere(centre, 0.5, {40})) / true_area, 1, 0.0004);
+    EXPECT_NEAR(volume(make_sphere(centre, 0.5, {40})) / true_volume, 1, 0.001);
 }
 
 TEST(Curves, NegativeRadiusTurnsTheFrontInside) {
-    EXPECT_GT(volume(make_sphere(centre, 0.5, 4)), 0);
-    EXPECT_LT(volume(make_sphere(centre, -0.5, 4)), 0);
-    EXPECT_GT(volume(make_torus(centre, tilted, 0.2, 0.6, 4)), 0);
-    EXPECT_LT(volume(make_torus(centre, tilted, -0.2, -0.6, 4)), 0);
+    EXPECT_GT(volume(make_sphere(centre, 0.5, {4})), 0);
+    EXPECT_LT(volume(make_sphere(centre, -0.5, {4})), 0);
+    EXPECT_GT(volume(make_torus(centre, tilted, 0.2, 0.6, {4})), 0);
+    EXPECT_LT(volume(make_torus(centre, tilted, -0.2, -0.6, {4})), 0);
 }
 
 TEST(Curves, CylinderLooksAwayFromItsAxis) {
     const V3d end = centre + 2.0 * tilted;
     for (const double radius : {0.5, -0.5}) {
-        const PolygonMesh cylinder = make_cone(centre, radius, end, radius, 4);
+        const PolygonMesh cylinder = make_cone(centre, radius, end, radius, {4});
         EXPECT_EQ(cylinder.faces.size(), 16u);
         EXPECT_EQ(triangles(cylinder), 0u);
         EXPECT_NEAR(area(cylinder), 2 * 32 * 0.5 * std::sin(pi / 16), 1e-12);  // height times 16 chords
@@ -93,7 +94,7 @@ TEST(Curves, CylinderLooksAwayFromItsAxis) {
 
 TEST(Curves, ConeWithATipIsMadeOfTriangles) {
     for (const auto& cone :
-         {make_cone(centre, 1, centre + tilted, 0, 4), make_cone(centre + tilted, 0, centre, 1, 4)}) {
+         {make_cone(centre, 1, centre + tilted, 0, {4}), make_cone(centre + tilted, 0, centre, 1, {4})}) {
         EXPECT_EQ(cone.faces.size(), 16u);
         EXPECT_EQ(triangles(cone), 16u);
         // The outside of a cone whose tip is up faces slightly up.
@@ -102,7 +103,7 @@ TEST(Curves, ConeWithATipIsMadeOfTriangles) {
 }
 
 TEST(Curves, RingLooksAlongItsNormal) {
-    const PolygonMesh ring = make_ring(centre, tilted, 0.5, 1, 4), disk = make_ring(centre, tilted, 0, 1, 4);
+    const PolygonMesh ring = make_ring(centre, tilted, 0.5, 1, {4}), disk = make_ring(centre, tilted, 0, 1, {4});
     const double polygon = 16 * 0.5 * std::sin(pi / 8);  // area of a regular 16-gon of radius 1
     EXPECT_NEAR(area(ring), 0.75 * polygon, 1e-12);
     EXPECT_NEAR(area(disk), polygon, 1e-12);
@@ -112,11 +113,52 @@ TEST(Curves, RingLooksAlongItsNormal) {
 }
 
 TEST(Curves, Torus) {
-    const PolygonMesh torus = make_torus(centre, tilted, 0.2, 0.6, 40);
+    const PolygonMesh torus = make_torus(centre, tilted, 0.2, 0.6, {40});
     EXPECT_TRUE(is_closed(torus));
     EXPECT_NEAR(area(torus) / (4 * pi * pi * 0.4 * 0.2), 1, 1e-3);
     EXPECT_NEAR(volume(torus) / (2 * pi * pi * 0.4 * 0.04), 1, 1e-3);
-    EXPECT_TRUE(is_closed(make_torus(centre, tilted, 0, 0.6, 4))) << "without a hole, it meets at its centre";
+    EXPECT_TRUE(is_closed(make_torus(centre, tilted, 0, 0.6, {4}))) << "without a hole, it meets at its centre";
+}
+
+TEST(Curves, EqualAreaFacetsHaveTheAreaOfTheCurvedSurface) {
+    const auto lateral = [](double r1, double r2, double height) {
+        return pi * std::abs(r1 + r2) * std::hypot(height, r1 - r2);
+    };
+    for (const int divisions : all_divisions) {
+        const Tessellation equal{divisions, true};
+        const auto cone = [&](double r1, double r2, double height) {
+            return area(make_cone(centre, r1, centre + height * tilted, r2, equal)) / lateral(r1, r2, height);
+        };
+        EXPECT_NEAR(area(make_sphere(centre, 0.5, equal)) / (4 * pi * 0.25), 1, 1e-12) << divisions;
+        EXPECT_NEAR(area(make_sphere(centre, -0.5, equal)) / (4 * pi * 0.25), 1, 1e-12) << divisions;
+        EXPECT_NEAR(area(make_ring(centre, tilted, 0, 2, equal)) / (4 * pi), 1, 1e-12) << divisions;
+        EXPECT_NEAR(area(make_ring(centre, tilted, 0.5, 2, equal)) / (3.75 * pi), 1, 1e-12) << divisions;
+        EXPECT_NEAR(area(make_torus(centre, tilted, 0.2, 0.6, equal)) / (4 * pi * pi * 0.4 * 0.2), 1, 1e-12);
+        EXPECT_NEAR(area(make_torus(centre, tilted, -0.0, -0.6, equal)) / (4 * pi * pi * 0.3 * 0.3), 1, 1e-12);
+        EXPECT_NEAR(cone(0.5, 0.5, 2), 1, 1e-12) << divisions;
+        EXPECT_NEAR(cone(0, 3, 1), 1, 1e-12) << divisions;
+        EXPECT_NEAR(cone(3, 1, 0.01), 1, 1e-12) << divisions;
+        EXPECT_NEAR(cone(-0.1, -0.2, 20), 1, 1e-12) << divisions;
+    }
+}
+
+TEST(Curves, EqualAreaKeepsTheHeightOfAConeAndTheShapeOfARing) {
+    const PolygonMesh cone = make_cone(centre, 2, centre + 3.0 * tilted, 1, {4, true});
+    double low = 10, high = -10, large = 0, small = 10;
+    for (const V3d& p : cone.points) {
+        const double height = (p - centre).dot(tilted), radius = (p - centre - height * tilted).length();
+        low = std::min(low, height), high = std::max(high, height);
+        large = std::max(large, radius), small = std::min(small, radius);
+    }
+    EXPECT_NEAR(low, 0, 1e-12);
+    EXPECT_NEAR(high, 3, 1e-12);
+    EXPECT_NEAR(large / small, 2, 1e-12);
+    const PolygonMesh ring = make_ring(centre, tilted, 0.5, 1, {4, true});
+    const double scale = std::sqrt(pi / (8 * std::sin(pi / 8)));  // of a circle to a regular 16-gon of its area
+    for (const V3d& p : ring.points) {
+        const double radius = (p - centre).length() / scale;
+        EXPECT_TRUE(std::abs(radius - 0.5) < 1e-12 || std::abs(radius - 1) < 1e-12) << radius;
+    }
 }
 
 TEST(Curves, PrismIsBehindItsOutlineAndClosed) {
@@ -132,14 +174,14 @@ TEST(Curves, PrismIsBehindItsOutlineAndClosed) {
 }
 
 TEST(Curves, IllegalArgumentsAreRefused) {
-    EXPECT_THROW(make_sphere(centre, 0, 4), std::invalid_argument);
-    EXPECT_THROW(make_cone(centre, 0, centre + tilted, 0, 4), std::invalid_argument);
-    EXPECT_THROW(make_cone(centre, 1, centre + tilted, -1, 4), std::invalid_argument);
-    EXPECT_THROW(make_cone(centre, 1, centre, 1, 4), std::invalid_argument);
-    EXPECT_THROW(make_ring(centre, tilted, 1, 1, 4), std::invalid_argument);
-    EXPECT_THROW(make_ring(centre, tilted, -1, 1, 4), std::invalid_argument);
-    EXPECT_THROW(make_torus(centre, tilted, 1, 0.5, 4), std::invalid_argument);
-    EXPECT_THROW(make_torus(centre, tilted, -0.5, 1, 4), std::invalid_argument);
+    EXPECT_THROW(make_sphere(centre, 0, {4}), std::invalid_argument);
+    EXPECT_THROW(make_cone(centre, 0, centre + tilted, 0, {4}), std::invalid_argument);
+    EXPECT_THROW(make_cone(centre, 1, centre + tilted, -1, {4}), std::invalid_argument);
+    EXPECT_THROW(make_cone(centre, 1, centre, 1, {4}), std::invalid_argument);
+    EXPECT_THROW(make_ring(centre, tilted, 1, 1, {4}), std::invalid_argument);
+    EXPECT_THROW(make_ring(centre, tilted, -1, 1, {4}), std::invalid_argument);
+    EXPECT_THROW(make_torus(centre, tilted, 1, 0.5, {4}), std::invalid_argument);
+    EXPECT_THROW(make_torus(centre, tilted, -0.5, 1, {4}), std::invalid_argument);
     EXPECT_THROW(make_prism(std::vector<V3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0), std::invalid_argument);
     EXPECT_THROW(make_prism(std::vector<V3d>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, 1), std::invalid_argument);
 }

@@ -6,14 +6,18 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/ray_caster.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
 
 using namespace detail;
+using std::numbers::pi;
 namespace {
 
 /// Corners of the unit square, and of a square of half the size inside it.
@@ -43,6 +47,11 @@ double total_area(const Scene& scene) {
     double area = 0;
     for (const Patch& p : scene.patches) area += patch_area(scene, p);
     return area;
+}
+double power(const Scene& scene) {
+    double sum = 0;
+    for (const Patch& p : scene.patches) sum += patch_area(scene, p) * scene.materials[p.material].exitance.x;
+    return sum;
 }
 std::int64_t warnings(const Scene& scene, const std::string& kind) {
     std::int64_t count = 0;
@@ -307,6 +316,31 @@ TEST(Mgf, CurvesAreTransformed) {
     for (const V3f& x : scene.vertices) EXPECT_NEAR((x - V3f(2, 0, 7)).length(), 2, 1e-5);
     for (std::size_t i = 0; i < scene.patches.size(); ++i)
         EXPECT_LT(normal_of(scene, i).dot(centre_of(scene, i) - V3f(2, 0, 7)), 0) << "a negative radius looks inside";
+}
+
+TEST(Mgf, CurvedLampsHaveTheirPower) {
+    const std::string lamp = "m lamp =\n ed 100\n sides 1\nv a =\n p 3 1 0\n n 0 0 2\nv b =\n p 3 1 4\n";
+    const std::pair<std::string, double> lamps[] = {
+        {"sph a 2", 16 * pi},         {"sph a -2", 16 * pi},         {"cyl a .5 b", 4 * pi},
+        {"cyl a -.5 b", 4 * pi},      {"cone a 3 b 0", 15 * pi},     {"cone a -1 b -4", 25 * pi},
+        {"ring a 0 2", 4 * pi},       {"ring a 1 2", 3 * pi},        {"torus a 1 3", 8 * pi * pi},
+        {"torus a 0 2", 4 * pi * pi}, {"torus a -1 -3", 8 * pi * pi}};
+    for (const auto& [entity, area] : lamps)
+        for (const int divisions : {2, 3, 4, 8, 32}) {
+            const ReadOptions options{.curve_divisions = divisions};
+            EXPECT_NEAR(power(read(lamp + entity + "\n", options)) / (100 * area), 1, 1e-5) << entity << divisions;
+            EXPECT_NEAR(power(read(lamp + "sides 2\n" + entity + "\n", options)) / (200 * area), 1, 1e-5) << entity;
+            EXPECT_NEAR(power(read(lamp + "xf -s 3 -rx 20\n" + entity + "\nxf\n", options)) / (900 * area), 1, 1e-5);
+        }
+}
+
+TEST(Mgf, LampFlushInARoundHoleKeepsItsPower) {
+    const Scene scene = read(one_sided + "v a =\n n 0 0 -1\nring a 1 4\nm lamp =\n ed 100\n sides 1\nring a 0 1\n");
+    const RayCaster ray_caster(scene);
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        const bool is_lamp = material_of(scene, i).exitance.x > 0;
+        EXPECT_EQ(ray_caster.uncovered_share(i) == 1, is_lamp) << "the lamp covers the border of the hole";
+    }
 }
 
 TEST(Mgf, Prism) {

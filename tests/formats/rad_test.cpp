@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -92,6 +93,24 @@ TEST_P(RadCurve, ComesCloseToTheTrueSurface) {
     EXPECT_NEAR(volume(scene) / GetParam().volume, 1, 2e-3);
 }
 
+TEST_P(RadCurve, EmitsThePowerOfTheTrueSurface) {
+    for (const int divisions : {2, 3, 4, 8, 32}) {
+        const Scene scene = read("void light lamp 0 0 3 1 1 1\nlamp " + std::string(GetParam().surface),
+                                 {.curve_divisions = divisions});
+        EXPECT_NEAR(power(scene) / (179 * pi * GetParam().area), 1, 1e-5) << divisions;
+    }
+}
+
+TEST_P(RadCurve, HasItsCornersOnTheTrueSurfaceIfItIsDark) {
+    const Scene coarse = read(grey + "grey " + GetParam().surface, {.curve_divisions = 1});
+    const Scene fine = read(grey + "grey " + GetParam().surface, {.curve_divisions = 8});
+    const auto is_of_fine = [&](const V3f& x) {
+        return std::any_of(fine.vertices.begin(), fine.vertices.end(),
+                           [&](const V3f& y) { return (x - y).length() < 1e-5f; });
+    };
+    EXPECT_TRUE(std::all_of(coarse.vertices.begin(), coarse.vertices.end(), is_of_fine));
+}
+
 INSTANTIATE_TEST_SUITE_P(, RadCurve,
                          testing::Values(Curve{"Sphere", "sphere s 0 0 4 0 0 0 2", 16 * pi, 32 * pi / 3},
                                          Curve{"Bubble", "bubble s 0 0 4 0 0 0 2", 16 * pi, -32 * pi / 3},
@@ -112,9 +131,11 @@ TEST(Rad, LightEmitsFromItsFrontAlone) {
     expect_near(scene.materials[scene.patches[1].material].exitance, {0, 0, 0});
 }
 
-TEST(Rad, PowerOfASphereIsThatOfItsArea) {
-    const Scene scene = read("void glow lamp 0 0 4 1 1 1 0\nlamp sphere s 0 0 4 0 0 0 2\n", {.curve_divisions = 40});
-    EXPECT_NEAR(power(scene) / (pi * 179 * 16 * pi), 1, 1e-3);
+TEST(Rad, ScaledAndMirroredLampsHaveTheirPower) {
+    const TemporaryFolder folder;
+    folder.write("lamp.rad", "void glow lamp 0 0 4 1 1 1 0\nlamp cone c 0 0 8 0 0 0 0 0 3 4 0\n");
+    const Scene scene = load_scene(folder.write("room.rad", "!xform -s 2 -mx -rx 30 lamp.rad\n"));
+    EXPECT_NEAR(power(scene) / (179 * pi * 4 * 20 * pi), 1, 1e-5);
 }
 
 struct MaterialCase {

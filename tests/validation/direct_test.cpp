@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "interflect/formats/mgf.h"
 #include "interflect/load.h"
 #include "tests/support/scenes.h"
 #include "tests/validation/closed_forms.h"
@@ -215,12 +216,32 @@ TEST(AreaSource, OverAFloorAndBesideAWall) {
     check_lamp(placements[3], 1, {places[1], places[3]});
 }
 
-/// A regular polygon with the disc's area, and the opening of a luminaire with I(gamma) = I0 cos gamma.
-Scene disc_lamp(double radius, double height, double exitance, bool is_luminaire) {
-    Scene scene;
+/// A black floor of 6 x 6 m.
+void add_floor(Scene& scene) {
     add_rectangle(scene, {-3, -3, 0}, {6, 0, 0}, {0, 6, 0}, add_material(scene, Rgb(0), Rgb(0)));
-    const auto z = static_cast<float>(height);
-    if (is_luminaire) {
+}
+
+/// A disc over the middle of a floor.
+struct Disc {
+    static constexpr double radius = 0.5, height = 1.2, exitance = 5000;
+
+    static double illuminance(double distance) {
+        return exitance * disc_configuration_factor(radius, height, distance);
+    }
+
+    /// Reads the disc from a scene file.
+    static Scene ring(int divisions) {
+        const std::string text = fmt::format("m lamp =\n ed {}\n sides 1\nv c =\n p 0 0 {}\n n 0 0 -1\nring c 0 {}\n",
+                                             exitance, height, radius);
+        Scene scene = detail::read_mgf_text(text, "disc.mgf", {.curve_divisions = divisions});
+        add_floor(scene);
+        return scene;
+    }
+
+    /// The opening of a luminaire with I(gamma) = I0 cos gamma.
+    static Scene luminaire() {
+        Scene scene;
+        add_floor(scene);
         auto web = std::make_shared<PhotometricWeb>();
         const double peak = exitance * radius * radius;  // M A / pi
         web->azimuth = {0, 360};
@@ -230,39 +251,43 @@ Scene disc_lamp(double radius, double height, double exitance, bool is_luminaire
                 web->intensities.push_back(i < 180 ? static_cast<float>(peak * std::cos(i * pi / 360)) : 0);
         const auto width = static_cast<float>(2 * radius);
         web->opening = {LuminousOpening::Shape::cylinder, {width, width, 0}, 2};
-        scene.luminaires = {{"", 0, MeasuredLight{web, {0, 0, z}}}};
+        scene.luminaires = {{"", 0, MeasuredLight{web, {0, 0, static_cast<float>(height)}}}};
         return scene;
     }
-    constexpr int sides = 96;
-    const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(static_cast<float>(exitance)));
-    const double corner = radius * std::sqrt(2 * pi / sides / std::sin(2 * pi / sides));
-    const auto vertex = static_cast<std::uint32_t>(scene.vertices.size());
-    scene.vertices.emplace_back(0, 0, z);
-    for (int i = 0; i < sides; ++i) {
-        const double turn = 2 * pi * i / sides;
-        scene.vertices.emplace_back(static_cast<float>(corner * std::cos(turn)),
-                                    static_cast<float>(corner * std::sin(turn)), z);
-        Patch patch;
-        patch.vertices = {vertex, vertex + 1 + static_cast<std::uint32_t>((i + 1) % sides),
-                          vertex + 1 + static_cast<std::uint32_t>(i), none};
-        patch.material = lamp;
-        scene.patches.push_back(patch);
-    }
-    return scene;
-}
+};
+
+/// Positions on the floor [m from the axis].
+const std::vector<double> disc_distances{0, 0.4, 1.5, 2.8};
+
+V3d on_floor(double distance) { return V3d(0.6, 0.8, 0) * distance; }
 
 TEST(AreaSource, DiscOverAFloor) {
-    constexpr double radius = 0.5, height = 1.2, exitance = 5000;
-    const std::vector<double> distances{0, 0.4, 1.5, 2.8};
     for (const bool is_luminaire : {false, true}) {
-        const Scene scene = disc_lamp(radius, height, exitance, is_luminaire);
+        const Scene scene = is_luminaire ? Disc::luminaire() : Disc::ring(ReadOptions().curve_divisions);
         std::vector<MeasuringPoint> points;
-        for (const double a : distances) points.push_back({{0.6 * a, 0.8 * a, 0}, {0, 0, 1}});
+        for (const double a : disc_distances) points.push_back({on_floor(a), {0, 0, 1}});
         const auto found = measured(scene, points, 1000, 2048);
         for (std::size_t i = 0; i < points.size(); ++i)
-            check("area", is_luminaire ? "disc, as the opening of a luminaire" : "disc, as a polygon of 96 triangles",
-                  fmt::format("E at {:g} m from the axis [lx]", distances[i]),
-                  exitance * disc_configuration_factor(radius, height, distances[i]), found[i], 5e-4);
+            check("area", is_luminaire ? "disc, as the opening of a luminaire" : "disc, as a ring of 16 triangles",
+                  fmt::format("E at {:g} m from the axis [lx]", disc_distances[i]),
+                  Disc::illuminance(disc_distances[i]), found[i], 5e-4);
+    }
+}
+
+TEST(AreaSource, DiscOfAnyNumberOfFacets) {
+    for (const int divisions : {2, 3, 4, 8, 32}) {
+        const Scene scene = Disc::ring(divisions);
+        for (const double a : disc_distances) {
+            double found = 0;
+            for (const Patch& patch : scene.patches) {
+                const double exitance = scene.materials[patch.material].exitance.x;
+                if (exitance == 0) continue;
+                std::vector<V3d> corners;
+                for (int i = 0; i < patch.vertex_count(); ++i) corners.emplace_back(scene.vertices[patch.vertices[i]]);
+                found += exitance * std::abs(configuration_factor(on_floor(a), {0, 0, 1}, corners));
+            }
+            EXPECT_NEAR(found / Disc::illuminance(a), 1, 1e-3) << divisions << " divisions, " << a << " m";
+        }
     }
 }
 

@@ -122,6 +122,7 @@ class MgfReader {
     void add_loop(MgfWords names);
     std::uint32_t usable_material();
     void add_face();
+    Tessellation tessellation();
     void add_mesh(const PolygonMesh& mesh);
     void open_transform(MgfWords words, const LineReader::Position& body);
     bool close_transform();

@@ -108,31 +108,34 @@ void MgfReader::add_mesh(const PolygonMesh& mesh) {
     }
 }
 
+Tessellation MgfReader::tessellation() {
+    return {.divisions = options_.curve_divisions, .keeps_area = materials_.current().ed > 0};
+}
+
 void MgfReader::sphere(MgfWords words) {
     scene_.require_room(8.0 * options_.curve_divisions * options_.curve_divisions);
-    add_mesh(make_sphere(vertices_.find(words[0]).point, number_argument(words[1]), options_.curve_divisions));
+    add_mesh(make_sphere(vertices_.find(words[0]).point, number_argument(words[1]), tessellation()));
 }
 
 void MgfReader::torus(MgfWords words) {
     scene_.require_room(16.0 * options_.curve_divisions * options_.curve_divisions);
     add_mesh(make_torus(vertices_.find(words[0]).point, normal_of(words[0]), number_argument(words[1]),
-                        number_argument(words[2]), options_.curve_divisions));
+                        number_argument(words[2]), tessellation()));
 }
 
 void MgfReader::cylinder(MgfWords words) {
     const double radius = number_argument(words[1]);
-    add_mesh(make_cone(vertices_.find(words[0]).point, radius, vertices_.find(words[2]).point, radius,
-                       options_.curve_divisions));
+    add_mesh(make_cone(vertices_.find(words[0]).point, radius, vertices_.find(words[2]).point, radius, tessellation()));
 }
 
 void MgfReader::cone(MgfWords words) {
     add_mesh(make_cone(vertices_.find(words[0]).point, number_argument(words[1]), vertices_.find(words[2]).point,
-                       number_argument(words[3]), options_.curve_divisions));
+                       number_argument(words[3]), tessellation()));
 }
 
 void MgfReader::ring(MgfWords words) {
     add_mesh(make_ring(vertices_.find(words[0]).point, normal_of(words[0]), number_argument(words[1]),
-                       number_argument(words[2]), options_.curve_divisions));
+                       number_argument(words[2]), tessellation()));
 }
 
 void MgfReader::prism(MgfWords words) {

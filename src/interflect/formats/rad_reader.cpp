@@ -192,7 +192,9 @@ void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file,
     // A sphere has the most faces.
     const double d = options_.curve_divisions;
     if (primitive.type == "sphere" || primitive.type == "bubble") require_room(8 * d * d, file.copies.size());
-    add_mesh((this->*surface.read)(primitive.numbers), primitive, material, file, where);
+    const Tessellation tessellation{.divisions = options_.curve_divisions,
+                                    .keeps_area = largest_channel(model_.materials[material].exitance) > 0};
+    add_mesh((this->*surface.read)(primitive.numbers, tessellation), primitive, material, file, where);
 }
 
 void RadReader::add_mesh(const PolygonMesh& polygons, const RadPrimitive& primitive, std::uint32_t material,
@@ -227,7 +229,7 @@ void RadReader::require_room(double faces, std::size_t copies) {
         throw PatchLimit(fmt::format("this would give more than {} patches (max_patches)", options_.max_patches));
 }
 
-PolygonMesh RadReader::polygon(const std::vector<double>& numbers) {
+PolygonMesh RadReader::polygon(const std::vector<double>& numbers, const Tessellation&) const {
     const std::size_t vertices = numbers.size() / 3;
     if (numbers.size() % 3 != 0 || vertices < 3 || vertices > options_.max_face_vertices)
         throw std::invalid_argument(fmt::format("a polygon needs three numbers for each of 3 to {} vertices, not {}",
@@ -241,35 +243,35 @@ PolygonMesh RadReader::polygon(const std::vector<double>& numbers) {
     return result;
 }
 
-PolygonMesh RadReader::sphere(const std::vector<double>& numbers) {
-    return make_sphere(point(numbers, 0), numbers[3], options_.curve_divisions);
+PolygonMesh RadReader::sphere(const std::vector<double>& numbers, const Tessellation& tessellation) const {
+    return make_sphere(point(numbers, 0), numbers[3], tessellation);
 }
 
-PolygonMesh RadReader::bubble(const std::vector<double>& numbers) {
-    return make_sphere(point(numbers, 0), -numbers[3], options_.curve_divisions);
+PolygonMesh RadReader::bubble(const std::vector<double>& numbers, const Tessellation& tessellation) const {
+    return make_sphere(point(numbers, 0), -numbers[3], tessellation);
 }
 
-PolygonMesh RadReader::cylinder(const std::vector<double>& numbers) {
-    return make_cone(point(numbers, 0), numbers[6], point(numbers, 3), numbers[6], options_.curve_divisions);
+PolygonMesh RadReader::cylinder(const std::vector<double>& numbers, const Tessellation& tessellation) const {
+    return make_cone(point(numbers, 0), numbers[6], point(numbers, 3), numbers[6], tessellation);
 }
 
-PolygonMesh RadReader::tube(const std::vector<double>& numbers) {
-    return make_cone(point(numbers, 0), -numbers[6], point(numbers, 3), -numbers[6], options_.curve_divisions);
+PolygonMesh RadReader::tube(const std::vector<double>& numbers, const Tessellation& tessellation) const {
+    return make_cone(point(numbers, 0), -numbers[6], point(numbers, 3), -numbers[6], tessellation);
 }
 
-PolygonMesh RadReader::cone(const std::vector<double>& numbers) {
-    return make_cone(point(numbers, 0), numbers[6], point(numbers, 3), numbers[7], options_.curve_divisions);
+PolygonMesh RadReader::cone(const std::vector<double>& numbers, const Tessellation& tessellation) const {
+    return make_cone(point(numbers, 0), numbers[6], point(numbers, 3), numbers[7], tessellation);
 }
 
-PolygonMesh RadReader::cup(const std::vector<double>& numbers) {
-    return make_cone(point(numbers, 0), -numbers[6], point(numbers, 3), -numbers[7], options_.curve_divisions);
+PolygonMesh RadReader::cup(const std::vector<double>& numbers, const Tessellation& tessellation) const {
+    return make_cone(point(numbers, 0), -numbers[6], point(numbers, 3), -numbers[7], tessellation);
 }
 
-PolygonMesh RadReader::ring(const std::vector<double>& numbers) {
+PolygonMesh RadReader::ring(const std::vector<double>& numbers, const Tessellation& tessellation) const {
     const V3d normal = point(numbers, 3);
     if (normal == V3d(0)) throw std::invalid_argument("a ring needs a normal");
     const auto [inner, outer] = std::minmax(numbers[6], numbers[7]);
-    return make_ring(point(numbers, 0), normal.normalized(), inner, outer, options_.curve_divisions);
+    return make_ring(point(numbers, 0), normal.normalized(), inner, outer, tessellation);
 }
 
 }  // namespace interflect::detail

@@ -37,7 +37,7 @@ class RadReader {
         const OpenFile* includer = nullptr;
         int depth = 0;
     };
-    using Reader = PolygonMesh (RadReader::*)(const std::vector<double>&);
+    using Reader = PolygonMesh (RadReader::*)(const std::vector<double>&, const Tessellation&) const;
     struct Surface {
         std::size_t numbers;  // 0: any
         Reader read;          // nullptr: ignored
@@ -57,14 +57,14 @@ class RadReader {
     std::uint32_t object(const std::string& name);
     void require_room(double faces, std::size_t copies);
 
-    PolygonMesh polygon(const std::vector<double>& numbers);
-    PolygonMesh sphere(const std::vector<double>& numbers);
-    PolygonMesh bubble(const std::vector<double>& numbers);
-    PolygonMesh cylinder(const std::vector<double>& numbers);
-    PolygonMesh tube(const std::vector<double>& numbers);
-    PolygonMesh cone(const std::vector<double>& numbers);
-    PolygonMesh cup(const std::vector<double>& numbers);
-    PolygonMesh ring(const std::vector<double>& numbers);
+    PolygonMesh polygon(const std::vector<double>& numbers, const Tessellation& tessellation) const;
+    PolygonMesh sphere(const std::vector<double>& numbers, const Tessellation& tessellation) const;
+    PolygonMesh bubble(const std::vector<double>& numbers, const Tessellation& tessellation) const;
+    PolygonMesh cylinder(const std::vector<double>& numbers, const Tessellation& tessellation) const;
+    PolygonMesh tube(const std::vector<double>& numbers, const Tessellation& tessellation) const;
+    PolygonMesh cone(const std::vector<double>& numbers, const Tessellation& tessellation) const;
+    PolygonMesh cup(const std::vector<double>& numbers, const Tessellation& tessellation) const;
+    PolygonMesh ring(const std::vector<double>& numbers, const Tessellation& tessellation) const;
 
     ReadOptions options_;
     SourceFiles sources_;

@@ -18,6 +18,7 @@
 
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/coincident.h"
+#include "interflect/raycast/ray_recorder.h"
 
 namespace interflect::detail {
 
@@ -88,6 +89,7 @@ struct interflect::RayCaster::Embree {
     RTCScene scene = nullptr;
     std::vector<detail::Faces> geometries;
     detail::CoincidentFaces coincident;
+    detail::RayRecorder* recorder = nullptr;  // of measurements
 
     explicit Embree(detail::CoincidentFaces coincident_faces);
     ~Embree();
