@@ -277,7 +277,15 @@ def grouped(rows: list[dict]) -> dict[tuple[str, str], list[dict]]:
     return groups
 
 
-def main(only: list[str], rays: int | None, seeds: int, quick: bool, only_draw: bool, out: Path | None) -> None:
+def main(
+    only: list[str],
+    rays: int | None,
+    seeds: int,
+    command: program.Program,
+    quick: bool,
+    only_draw: bool,
+    out: Path | None,
+) -> None:
     unknown = sorted(set(only) - set(SCENES))
     if unknown:
         raise program.ExperimentError(f"--only {' '.join(unknown)}: no such scene; there are {', '.join(SCENES)}")
@@ -286,7 +294,7 @@ def main(only: list[str], rays: int | None, seeds: int, quick: bool, only_draw: 
     scale = QUICK if quick else Scale()
     scale = replace(scale, rays=rays) if rays else scale
     if not only_draw:
-        bench = Bench(program.find_program(), scale, out / "cache/audit" if out else WORK, table)
+        bench = Bench(command, scale, out / "cache/audit" if out else WORK, table)
         for name in only or SCENES:
             bench.measure(name, seeds)
     page = (out / "figures" if out else program.ROOT / "docs/figures") / "audit.md"
