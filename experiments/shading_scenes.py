@@ -71,10 +71,10 @@ def textured_quad(m: Mgf, material: str, corner: Point, u: Point, v: Point, repe
 
 
 def slats(draw: random.Random) -> Scene:
-    """A grid of thin slats close below a luminous ceiling, seen from within the grid."""
+    """A small room with a grid of thin slats close below its luminous ceiling, seen from within the grid."""
     m = Mgf()
     paint(m, draw)
-    x, y, z = draw.uniform(4, 6), draw.uniform(4, 6), draw.uniform(2.7, 3.1)
+    x, y, z = draw.uniform(2, 3), draw.uniform(2, 3), draw.uniform(2.4, 2.8)
     closed_room(m, (x, y, z), "+z")
     m.lamp("lamp", draw.uniform(8000, 25000), 0)
     m.quad("lamp", (0, 0, z), (0, y, 0), (x, 0, 0))
