@@ -11,6 +11,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
 
 import shading_audit
+from audit_scenes import Scene
 from lab import baked, blocks
 
 SIZE = (90, 180)  # height and width: 10 x 20 blocks, in tiles of 2 x 2
@@ -174,10 +175,23 @@ class Baked(unittest.TestCase):
         ceiling, roof = [(0, 0, 2), (0, 2, 2), (2, 0, 2)], [(0, 0, 2), (1, 0, 3), (0, 1, 3)]
         far = [(50, 0, 0), (52, 0, 0), (50, 2, 0)]
         room = baked.Baked(np.array([floor, wall, ceiling, roof, far], float), lambda triangle, weights: triangle)
-        points, normals = shading_audit.draw_points(room, np.zeros(3), 1000)
+        scene = Scene("", eye=(50, 50, 50), look_at=(0, 0, 0), fov=30)
+        y, x = np.indices((90, 160)) + 0.5
+        tangent = np.hypot(x - 80, y - 45) / 45 * math.tan(math.radians(15))
+        depth = 75**0.5 * 10 * np.hypot(1, tangent)  # of the plane through the origin that faces the eye
+        points, normals = shading_audit.draw_points(room, scene, depth, 1000)
         self.assertEqual(set(map(tuple, normals)), {(0, 0, 1), (1, 0, 0)})
         self.assertLess(np.abs(points).max(), 2)
         self.assertAlmostEqual((normals[:, 2] == 1).mean(), 0.5, delta=0.064)  # 4 standard deviations
+
+    def test_visible_points(self):
+        # The camera at z = 10 looks down with y up in the picture; one half of it shows the floor, the other a table.
+        scene = Scene("", eye=(0, 0, 10), look_at=(0, 0, 0), fov=90, up=(0, 1, 0))
+        y, x = np.indices((60, 80)) + 0.5
+        distance = np.hypot(1, np.hypot(x - 40, y - 30) / 30)
+        depth = np.where(x < 40, 10 * distance, 9 * distance)
+        points = np.array([(-3, 2, 0), (-3, 2, 1), (3, 2, 0), (3, 2, 1), (3, 20, 1), (0, 0, 20)], float)
+        np.testing.assert_array_equal(shading_audit.visible(points, scene, depth), [1, 0, 0, 1, 0, 0])
 
     def test_cells_are_squares_of_one_plane(self):
         points = np.array([(0.1, 0.1, 0), (0.4, 0.4, 0), (0.5, 0.1, 0), (0.1, 0.1, 1), (0, 0.1, 0.1), (0, 0.4, 0.4)])
