@@ -33,7 +33,7 @@ class Baked:
         return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
 
     def at(self, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
-        """Returns the illuminance at points of surfaces [lx]; 0 where no triangle faces this way, since exports leave out
+        """Returns the illuminance at points of surfaces [lx]; 0 where no triangle faces this way, because exports omit
         dark surfaces."""
         low, high = self.corners.min(axis=1) - SAME_PLANE, self.corners.max(axis=1) + SAME_PLANE
         found = np.zeros(len(points))
@@ -73,7 +73,7 @@ def read_baked(path: Path) -> Baked:
     if "_IRRADIANCE" in parts[0]["attributes"]:
         illuminance = corners_of("_IRRADIANCE") @ LUMINANCE
         return Baked(positions, lambda triangle, weights: (illuminance[triangle] * weights).sum(axis=1))
-    maps = [read_exr(path.parent / name) @ LUMINANCE for name in document["asset"]["extras"]["interflect"]["lightmap"]["unclamped"]]
+    maps = [read_exr(path.parent / name) @ LUMINANCE for name in _lightmaps(document)]
     pages = np.concatenate([np.full(len(i), _page(document, p)) for p, i in zip(parts, indices)])
     coordinates = corners_of("TEXCOORD_1")
 
@@ -100,8 +100,11 @@ def _page(document: dict, primitive: dict) -> int:
     """Returns the index of a primitive's lightmap among the unclamped images, which have the names of the textures."""
     texture = document["materials"][primitive["material"]]["extensions"]["MOZ_lightmap"]["index"]
     name = document["images"][document["textures"][texture]["source"]]["name"]
-    names = [Path(n).stem for n in document["asset"]["extras"]["interflect"]["lightmap"]["unclamped"]]
-    return names.index(name)
+    return [Path(file).stem for file in _lightmaps(document)].index(name)
+
+
+def _lightmaps(document: dict) -> list[str]:
+    return document["asset"]["extras"]["interflect"]["lightmap"]["unclamped"]
 
 
 def _chunks(path: Path) -> tuple[dict, bytes]:
@@ -112,9 +115,7 @@ def _chunks(path: Path) -> tuple[dict, bytes]:
 
 def _array(document: dict, binary: bytes, index: int) -> np.ndarray:
     accessor = document["accessors"][index]
-    view = document["bufferViews"][accessor["bufferView"]]
-    if "byteStride" in view and view["byteStride"] != WIDTHS[accessor["type"]] * np.dtype(COMPONENTS[accessor["componentType"]]).itemsize:
-        raise ValueError("interleaved attributes are not supported")
+    view = document["bufferViews"][accessor["bufferView"]]  # the command writes no interleaved attributes
     begin = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
     width = WIDTHS[accessor["type"]]
     values = np.frombuffer(binary, COMPONENTS[accessor["componentType"]], accessor["count"] * width, begin)

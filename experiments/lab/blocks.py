@@ -105,7 +105,7 @@ def error_of_mean(estimates: Sequence[np.ndarray], layout: Layout) -> float:
 
 
 def mean_ratio(estimates: Sequence[np.ndarray], references: Sequence[np.ndarray], layout: Layout) -> Interval:
-    """Returns the mean of the estimates over that of the references.
+    """Returns the mean of the estimates over the mean of the references.
 
     With several seeds, the bounds contain the noise of both sides. A single estimate has the spread of the ratio from
     tile to tile, which also contains its bias there, so its bounds are wider.
@@ -198,17 +198,16 @@ def coverage(
     references. @param stated, reference_errors  Standard error of each block."""
     wanted = sum(layout.means(r) for r in references) / len(references)
     noise = sum(e**2 for e in reference_errors) / len(reference_errors) ** 2
-    within = [
-        np.abs(layout.means(e) - wanted) <= NORMAL_95 * np.sqrt(s**2 + noise) for e, s in zip(estimates, stated, strict=True)
-    ]
+    pairs = zip(estimates, stated, strict=True)
+    within = [np.abs(layout.means(e) - wanted) <= NORMAL_95 * np.sqrt(s**2 + noise) for e, s in pairs]
     found = ratio_of_sums(np.mean(within, axis=0), np.ones(len(layout.tile)), layout.tile)
-    # The spread of few tiles may be 0 by chance, so it counts at least as that of independent blocks.
+    # The spread of few tiles may be 0 by chance. The spread of independent blocks is its lower limit.
     binomial = math.sqrt(CONFIDENCE * (1 - CONFIDENCE) / len(layout.tile))
     return Interval.around(found.value, max(binomial, (found.high - found.value) / 2))
 
 
 def darkest(values: np.ndarray, layout: Layout, share: float = 0.2) -> Layout:
-    """Returns the layout of this share of the blocks, those with the least light.
-    @param values  Independent of the compared ones: a choice by noisy values prefers those that are too low."""
+    """Returns the layout of this share of the blocks with the least light.
+    @param values  Independent of the compared values, because a choice by noisy values prefers low ones."""
     means = layout.means(values)
     return layout.only(means <= np.quantile(means, share))

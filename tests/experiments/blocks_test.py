@@ -1,5 +1,5 @@
-"""The statistics of the audit of shadings, against known values. Seeds are fixed; each tolerance of random numbers states
-how often correct code would exceed it with other seeds."""
+"""The statistics of the audit of shadings, against known values. Seeds are fixed. Tolerances of random numbers are four
+standard errors, which correct code exceeds with other seeds once in 16,000 comparisons, unless stated otherwise."""
 
 import math
 import sys
@@ -10,9 +10,10 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
 
-import shading_audit
 from audit_scenes import Scene
 from lab import baked, blocks
+from shadings import page
+from shadings.points import cells_of, draw_points, visible
 
 SIZE = (90, 180)  # height and width: 10 x 20 blocks, in tiles of 2 x 2
 LAYOUT = blocks.pixel_layout(np.ones(SIZE, bool), tile_side=18)
@@ -63,8 +64,8 @@ class Ratio(unittest.TestCase):
 
 class Mean(unittest.TestCase):
     def test_two_standard_errors_cover_the_ratio(self):
-        # 400 trials of 95.4%: fewer than 91% or all of them with probability below 1e-4. Estimates share half of their
-        # noise within blocks, which errors of independent pixels would miss (cover 75%).
+        # 400 trials of 95.4%: fewer than 91% or all of them with probability below 1e-4. Blocks share noise of the
+        # estimates; standard errors of independent pixels would be too small.
         random, within = np.random.default_rng(1), 0
         for _ in range(400):
             references = [10 + n for n in noise(random, 2, 2)]
@@ -87,8 +88,8 @@ class Mean(unittest.TestCase):
 
 class Blocks(unittest.TestCase):
     def test_error_without_the_noise_of_the_references(self):
-        # Blocks are 6% too bright or too dark; the references' noise alone is 4%. The product's relative standard error
-        # is below 7%, so the error is within 4 of its halves.
+        # Blocks are 6% too bright or too dark; the noise of the references alone is 4%. The relative standard error of
+        # the products is below 7%, and that of their root is half of it.
         random = np.random.default_rng(2)
         references = [10 + n + noise_of_blocks(random, 0.4) for n in noise(random, 1, 2)]
         estimates = [10 + np.where(np.arange(200) % 3 == 0, 0.6, -0.6)[LAYOUT.block]] * 2
@@ -121,7 +122,7 @@ class Stated(unittest.TestCase):
         self.estimates = [self.light + self.deviation * n for n in noise(random, 1, 2)]
 
     def test_over_true(self):
-        # 16,200 pixels, two seeds: the true error has a relative standard error of 0.5%; within 4 of these.
+        # 16,200 pixels, two seeds: the true error has a relative standard error of 0.5%.
         for factor in (1, 0.5, 3):
             stated = [factor * self.deviation] * 2
             found = blocks.stated_over_true(stated, self.estimates, self.references, self.light, LAYOUT)
@@ -138,8 +139,8 @@ class Stated(unittest.TestCase):
         self.assertEqual(found.high, math.inf)
 
     def test_coverage(self):
-        # 200 blocks and two seeds: standard error below 1.6%, within 4 of these. The noise of the references is two thirds
-        # of the intervals' variance; without it, they would cover 74%. Half the error covers 67.3%.
+        # 200 blocks and two seeds: standard error below 1.6%. The noise of the references is two thirds of the
+        # variance; intervals without it would cover 74%. Half the error covers 67.3%, with a standard error below 2.4%.
         of = lambda deviation: blocks.block_standard_error(deviation**2, np.zeros(PIXELS), LAYOUT)
         noisy = [self.light + 0.2 * self.light * n for n in noise(np.random.default_rng(5), 1, 2)]
         for factor, references, noise_of_them, share in (
@@ -179,7 +180,7 @@ class Baked(unittest.TestCase):
         y, x = np.indices((90, 160)) + 0.5
         tangent = np.hypot(x - 80, y - 45) / 45 * math.tan(math.radians(15))
         depth = 75**0.5 * 10 * np.hypot(1, tangent)  # of the plane through the origin that faces the eye
-        points, normals = shading_audit.draw_points(room, scene, depth, 1000)
+        points, normals = draw_points(room, scene, depth, 1000)
         self.assertEqual(set(map(tuple, normals)), {(0, 0, 1), (1, 0, 0)})
         self.assertLess(np.abs(points).max(), 2)
         self.assertAlmostEqual((normals[:, 2] == 1).mean(), 0.5, delta=0.064)  # 4 standard deviations
@@ -191,12 +192,12 @@ class Baked(unittest.TestCase):
         distance = np.hypot(1, np.hypot(x - 40, y - 30) / 30)
         depth = np.where(x < 40, 10 * distance, 9 * distance)
         points = np.array([(-3, 2, 0), (-3, 2, 1), (3, 2, 0), (3, 2, 1), (3, 20, 1), (0, 0, 20)], float)
-        np.testing.assert_array_equal(shading_audit.visible(points, scene, depth), [1, 0, 0, 1, 0, 0])
+        np.testing.assert_array_equal(visible(points, scene, depth), [1, 0, 0, 1, 0, 0])
 
     def test_cells_are_squares_of_one_plane(self):
         points = np.array([(0.1, 0.1, 0), (0.4, 0.4, 0), (0.5, 0.1, 0), (0.1, 0.1, 1), (0, 0.1, 0.1), (0, 0.4, 0.4)])
         normals = np.array([(0, 0, 1)] * 4 + [(1, 0, 0)] * 2, float)
-        cell = shading_audit.cells_of(points, normals)
+        cell = cells_of(points, normals)
         self.assertEqual(cell[0], cell[1])
         self.assertEqual(cell[4], cell[5])
         self.assertEqual(len(set(cell)), 4)
@@ -204,22 +205,23 @@ class Baked(unittest.TestCase):
 
 class Misses(unittest.TestCase):
     def row(self, run="hybrid", failure="", seconds=9.0, **intervals):
-        row = {"scene": "crate", "run": run, "failure": failure, "seconds": seconds}
+        row = dict.fromkeys(page.COLUMNS, math.nan)
+        row |= {"scene": "crate", "run": run, "failure": failure, "seconds": seconds}
         for name, (value, low, high) in intervals.items():
             row |= {name: value, f"{name}_low": low, f"{name}_high": high}
         return row
 
     def test_limits_are_widened_by_two_standard_errors(self):
-        self.assertEqual(shading_audit.misses(self.row(mean=(1.006, 1.004, 1.008), coverage=(0.98, 0.96, 1))), [])
-        self.assertEqual(shading_audit.misses(self.row(mean=(1.007, 1.0055, 1.009))), ["mean"])
-        self.assertEqual(shading_audit.misses(self.row(dark_stated=(0.7, 0.65, 0.75))), ["dark_stated"])
+        self.assertEqual(page.misses(self.row(mean=(1.006, 1.004, 1.008), coverage=(0.98, 0.96, 1))), [])
+        self.assertEqual(page.misses(self.row(mean=(1.007, 1.0055, 1.009))), ["mean"])
+        self.assertEqual(page.misses(self.row(dark_stated=(0.7, 0.65, 0.75))), ["dark_stated"])
 
     def test_time(self):
-        self.assertEqual(shading_audit.misses(self.row("hybrid --time 10", seconds=10.9)), [])
-        self.assertEqual(shading_audit.misses(self.row("hybrid --time 10", seconds=11.1)), ["time"])
+        self.assertEqual(page.misses(self.row("hybrid --time 10", seconds=10.9)), [])
+        self.assertEqual(page.misses(self.row("hybrid --time 10", seconds=11.1)), ["time"])
 
     def test_failures_are_misses(self):
-        self.assertEqual(shading_audit.misses(self.row(failure="no light")), ["failure"])
+        self.assertEqual(page.misses(self.row(failure="no light")), ["failure"])
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
-"""Scenes on which shadings and bakes are audited (shading_audit.py). Each kind draws proportions, reflectances,
-positions and lamps from a seed, so a kind stands for many scenes."""
+"""Scenes on which shadings and bakes are audited. Each kind draws proportions, reflectances, positions and lamps from a
+seed, so a kind stands for many scenes."""
 
 import math
 import random
@@ -28,7 +28,7 @@ def closed_room(m: Mgf, size: Point, without: str = "") -> None:
 
 
 def furnish(m: Mgf, draw: random.Random, low: Point, high: Point, count: int = 3) -> None:
-    """Places boxes on the floor between two corners, one in each of `count` cells, so that none meet."""
+    """Places boxes on the floor between two corners, one in each of `count` cells, where none meets another."""
     width = (high[0] - low[0]) / count
     for k in range(count):
         side, depth = draw.uniform(0.35, 0.6) * width, draw.uniform(0.25, 0.4) * (high[1] - low[1])
@@ -186,8 +186,8 @@ def sun_and_sphere(draw: random.Random) -> Scene:
 
 
 def two_rooms(m: Mgf, draw: random.Random, ratio: float) -> tuple[Point, float, float]:
-    """Adds a bright room, and behind it one whose lamp is dimmer by `ratio`. Returns the size of both together, and the
-    place and the thickness of a wall between them, which is missing."""
+    """Adds a bright room, and behind it a room with a lamp dimmer by `ratio`. The wall between them is missing. Returns
+    the size of both rooms together, and the place and the thickness of the wall."""
     paint(m, draw)
     size = (draw.uniform(6.5, 8), draw.uniform(3.5, 4.5), draw.uniform(2.6, 3))
     closed_room(m, size)
@@ -311,9 +311,11 @@ def corridor(draw: random.Random) -> Scene:
     m.material("off", "rd 0.6")
     step = draw.uniform(3.5, 5)
     for k in range(int(x / step)):
-        m.fixture("lamp" if (k + 0.5) * step > 0.35 * x else "off", ((k + 0.4) * step, y / 2 - 0.15, z - 0.05), (1.2, 0.3), z)
+        material = "lamp" if (k + 0.5) * step > 0.35 * x else "off"
+        m.fixture(material, ((k + 0.4) * step, y / 2 - 0.15, z - 0.05), (1.2, 0.3), z)
     for k in range(5):
-        m.box("blue", ((0.08 + 0.17 * k) * x, 0 if k % 2 else y - 0.3, 0), (0.9, 0.3, draw.uniform(0.8, 2)), without="-z")
+        low = ((0.08 + 0.17 * k) * x, 0 if k % 2 else y - 0.3, 0)
+        m.box("blue", low, (0.9, 0.3, draw.uniform(0.8, 2)), without="-z")
     return Scene(m.text(), (0.4, 0.5 * y, 1.6), (8, 0.5 * y, 1), 60)
 
 
@@ -328,7 +330,8 @@ def hundred_desks(draw: random.Random) -> Scene:
         m.box("white", low + (0, 0, 0.72), (1.4, 0.7, 0.03))
         for shift in (0.05, 1.31):
             m.box("grey", low + (shift, 0.05, 0), (0.04, 0.6, 0.72), without="-z +z")
-        m.box(("blue", "red")[k % 2], low + (0.45, 0.45, 0.751), (0.5, 0.04, draw.uniform(0.3, 0.45)), draw.uniform(-20, 20))
+        screen = (0.5, 0.04, draw.uniform(0.3, 0.45))
+        m.box(("blue", "red")[k % 2], low + (0.45, 0.45, 0.751), screen, draw.uniform(-20, 20))
     m.lamp("lamp", draw.uniform(8000, 16000))
     for k in range(36):
         m.fixture("lamp", ((k % 6 + 0.4) * x / 6, (k // 6 + 0.45) * y / 6, z - 0.05), (1.2, 0.3), z)
