@@ -33,7 +33,7 @@ def read_rows(table: Path) -> list[dict]:
 def misses(row: dict) -> list[str]:
     """Returns the names of the limits that a row misses."""
     if row["failure"]:
-        return ["failure"]
+        return ["not measured"]
     missed = []
     for part in PARTS:
         for name, limits in LIMITS.items():
@@ -72,15 +72,15 @@ def write_page(table: Path, page: Path) -> None:
         doubt = (row["mean_high"] - row["mean_low"]) / 2
         verdict = ", ".join(m.replace("_", " ") for m in missed) or ("pass" if doubt <= RESOLVED else "not resolved")
 
-        def cell(name: str, text: str) -> str:
-            shown = [(n, text.format(row[n])) for n in (name, f"dark_{name}") if not math.isnan(row[n])]
+        def cell(name: str, text: str, subtracted: float = 0) -> str:
+            shown = [(n, text.format(row[n] - subtracted)) for n in (name, f"dark_{name}") if not math.isnan(row[n])]
             return "; ".join(f"**{value}**" if n in missed else value for n, value in shown)
 
         lines.append(
             [
                 row["scene"],
                 row["run"],
-                f"{cell('mean', '{:.2%}')} (± {doubt:.2%})",
+                cell("mean", "{:+.2%}", 1) + (f" (± {doubt:.2%})" if doubt >= 0 else ""),
                 cell("blocks", "{:.1%}"),
                 cell("stated", "{:.2f}"),
                 cell("printed", "{:.2f}"),

@@ -221,7 +221,7 @@ class Misses(unittest.TestCase):
         self.assertEqual(page.misses(self.row("hybrid --time 10", seconds=11.1)), ["time"])
 
     def test_failures_are_misses(self):
-        self.assertEqual(page.misses(self.row(failure="no light")), ["failure"])
+        self.assertEqual(page.misses(self.row(failure="no light")), ["not measured"])
 
 
 if __name__ == "__main__":
