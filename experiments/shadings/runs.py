@@ -42,7 +42,7 @@ class Run:
 
 def picture_runs(scale: Scale) -> list[Run]:
     # Without limits of rays and samples, --until would not end where too little light arrives.
-    until = f"--until 5% --rays {scale.until_rays} --max-samples 256"
+    until = f"--until 5% --rays {scale.until_rays} --max-samples 128"
     hybrid = {"shares_records": True}
     return [
         Run("instant", f"--shading instant --samples {scale.second_samples}", "scene"),

@@ -1,6 +1,6 @@
-"""The scenes of the audit of shadings: each kind is a valid scene, for any seed."""
+"""The audit of shadings: each kind of scene is valid for any seed, and a small audit measures every run."""
 
-import json
+import os
 import sys
 import unittest
 from pathlib import Path
@@ -11,6 +11,8 @@ sys.path.insert(0, str(ROOT / "experiments"))
 
 from lab import program
 from shadings import page, pictures, scenes
+from shadings.bench import MITSUBA, Bench
+from shadings.runs import BAKES, Scale, picture_runs
 
 # Kinds of findings of `validate`: harmless ones, and intended ones of a kind of scene.
 HARMLESS = {"open-edge", "no-view"}
@@ -47,6 +49,38 @@ class Kinds(CommandTest):
                 reflected = picture.light > picture.emitted
                 self.assertGreater(reflected.mean(), 0.2)  # a fifth of the picture
                 self.assertGreater(picture.printed, 0)
+
+
+class Audit(CommandTest):
+    SMALL = Scale((48, 27), 8, 4, 4, "--rays 20k", "20k", 1, 60, 8)
+
+    def audit(self) -> list[dict]:
+        """Measures a scene and returns the rows of the table."""
+        table = self.folder / "table.csv"
+        Bench(program.find_program(), self.SMALL, self.folder / "cache", table).measure("two-lamps")
+        return page.read_rows(table)
+
+    def test_a_row_for_every_run(self):
+        os.environ.pop(MITSUBA, None)
+        rows = {row["run"]: row for row in self.audit()}
+        runs = picture_runs(self.SMALL) + BAKES
+        self.assertEqual(list(rows), [run.name for run in runs])
+        self.assertIn(MITSUBA, rows.pop("mitsuba")["failure"])
+        for run in runs:
+            if run.name in rows:
+                row = rows[run.name]
+                self.assertEqual(row["failure"], "", run.name)
+                self.assertAlmostEqual(row["mean"], 1, delta=0.3, msg=run.name)  # wrong units differ by more
+                self.assertEqual(run.stated, row["stated"] > 0, run.name)
+        # Only failures are measured again.
+        written = {file: file.stat().st_mtime_ns for file in (self.folder / "cache").iterdir()}
+        again = {row["run"]: row for row in self.audit()}
+        self.assertEqual(again.pop("mitsuba")["failure"][:12], "not measured")
+        seconds = lambda table: {run: row["seconds"] for run, row in table.items()}
+        self.assertEqual(seconds(again), seconds(rows))
+        self.assertEqual(written, {file: file.stat().st_mtime_ns for file in (self.folder / "cache").iterdir()})
+        page.write_page(self.folder / "table.csv", self.folder / "table.md")
+        self.assertEqual(len((self.folder / "table.md").read_text().splitlines()), 2 + len(runs))
 
 
 class Names(unittest.TestCase):
