@@ -277,16 +277,21 @@ def grouped(rows: list[dict]) -> dict[tuple[str, str], list[dict]]:
     return groups
 
 
-def main(only: list[str], rays: int | None, seeds: int, quick: bool, only_draw: bool, out: Path | None) -> None:
-    unknown = sorted(set(only) - set(SCENES))
-    if unknown:
-        raise program.ExperimentError(f"--only {' '.join(unknown)}: no such scene; there are {', '.join(SCENES)}")
+def main(
+    only: list[str],
+    rays: int | None,
+    seeds: int,
+    command: program.Program,
+    quick: bool,
+    only_draw: bool,
+    out: Path | None,
+) -> None:
     out = out or (program.ROOT / "out/experiments/quick" if quick else None)
     table = out / "results/audit.csv" if out else TABLE
     scale = QUICK if quick else Scale()
     scale = replace(scale, rays=rays) if rays else scale
     if not only_draw:
-        bench = Bench(program.find_program(), scale, out / "cache/audit" if out else WORK, table)
+        bench = Bench(command, scale, out / "cache/audit" if out else WORK, table)
         for name in only or SCENES:
             bench.measure(name, seeds)
     page = (out / "figures" if out else program.ROOT / "docs/figures") / "audit.md"

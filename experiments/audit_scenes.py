@@ -108,6 +108,8 @@ class Scene:
     reference_text: str = ""  # the same scene in a form that the path tracer draws exactly
     total: bool = False  # also solve it without a view, and compare the total power
     images: dict[str, np.ndarray] = field(default_factory=dict)  # image files beside it
+    files: dict[str, str] = field(default_factory=dict)  # text files beside it, such as .ies
+    mirrors: bool = False  # has a mirror in its view
     samples: int = 8  # paths per pixel of each of the two reference pictures
 
     def view(self) -> str:
@@ -120,6 +122,8 @@ class Scene:
         path.write_text(text)
         for file, texels in self.images.items():
             Image.fromarray(texels).save(folder / file)
+        for file, content in self.files.items():
+            (folder / file).write_text(content)
         return path
 
 

@@ -11,8 +11,13 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # linear Rec. 709
 
 
 def read_exr(path: Path, layer: str = "") -> np.ndarray:
-    """Returns height x width x RGB of a layer such as "emitted" (default: the picture itself). Reads only the files of
-    this program: 32 bit floats, scan lines, ZIP."""
+    """Returns height x width x RGB of a layer such as "emitted" (default: the picture itself)."""
+    return read_layer(path, layer, "RGB")
+
+
+def read_layer(path: Path, layer: str, letters: str) -> np.ndarray:
+    """Returns height x width x channels of a layer, whose channels have these letters. Reads only the files of this
+    program: 32 bit floats, scan lines, ZIP."""
     data = path.read_bytes()
     attributes, position = {}, 8
     while data[position]:
@@ -24,8 +29,8 @@ def read_exr(path: Path, layer: str = "") -> np.ndarray:
     left, top, right, bottom = struct.unpack("<4i", attributes["dataWindow"])
     width, height = right - left + 1, bottom - top + 1
     channels = _channel_names(attributes["channels"])
-    wanted = [channels.index(f"{layer}.{c}" if layer else c) for c in "RGB"]
-    picture = np.empty((height, width, 3))
+    wanted = [channels.index(f"{layer}.{c}" if layer else c) for c in letters]
+    picture = np.empty((height, width, len(letters)))
     blocks = -(-height // LINES_PER_BLOCK)
     for offset in struct.unpack_from(f"<{blocks}q", data, position + 1):
         line, size = struct.unpack_from("<2i", data, offset)

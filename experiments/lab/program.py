@@ -38,13 +38,14 @@ class Finished:
     peak_mib: float  # peak resident memory
 
 
-def find_program() -> Program:
-    """Returns the command in the environment variable INTERFLECT_COMMAND, else the build of scripts/build."""
-    named = os.environ.get("INTERFLECT_COMMAND")
+def find_program(named: str | None = None) -> Program:
+    """Returns the named command, else that in the environment variable INTERFLECT_COMMAND or INTERFLECT, else the build
+    of scripts/build."""
+    named = named or os.environ.get("INTERFLECT_COMMAND") or os.environ.get("INTERFLECT")
     path = Path(named or ROOT / BUILT)
     if not path.is_file():
         raise ExperimentError(
-            f"{path} is not there: build it with scripts/build, or name another in INTERFLECT_COMMAND"
+            f"{path} is not there: build it with scripts/build, or name another with --program or in INTERFLECT_COMMAND"
         )
     printed = subprocess.run([path, "--version"], capture_output=True, text=True, check=True).stdout
     fingerprint = hashlib.sha256(path.read_bytes()).hexdigest()

@@ -1,0 +1,1 @@
+"""Audit of shadings and bakes against path tracing: scenes, runs, measures and the page."""
