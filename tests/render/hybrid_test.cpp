@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "interflect/base/random.h"
+#include "interflect/measure.h"
+#include "interflect/prepare.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/render/gauges/gauge_light.h"
@@ -133,21 +135,35 @@ std::vector<LitScene> lit_scenes() {
 
 class HybridScene : public testing::TestWithParam<LitScene> {};
 
-/// All light, direct light and indirect light have the means of path tracing within 1%. The solution's own error is
-/// 0.3%.
+/// Direct and indirect light have the means of path tracing. The noise of records is common to many pixels: the mean of
+/// a picture varies from seed to seed by up to 0.45% (indirect) and 0.15% (direct), of which four seeds leave half;
+/// path tracing varies by 0.1%. Interpolation and the solution may cause 0.3%. The probability that correct code fails
+/// is 1e-3 (3.3 standard errors).
 TEST_P(HybridScene, HasTheMeanOfPathTracing) {
+    constexpr double quantile = 3.3, bias = 0.003, path_error = 0.001;
+    constexpr double direct_error = 0.0015, indirect_error = 0.0045;
+    constexpr std::uint64_t seeds = 4;
     const Scene& scene = GetParam().scene;
     const RayCaster ray_caster(scene);
-    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 3'000'000}});
     PathOptions options{.width = 64, .height = 48, .samples = 512};
     const PathTracing reference = trace_paths(scene, ray_caster, GetParam().view, options);
-    options.samples = 64;
-    options.seed = 2;
-    const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, GetParam().view, options);
-    EXPECT_NEAR(mean_of(hybrid.image) / mean_of(reference.image), 1, 0.01);
-    EXPECT_NEAR(mean_of(hybrid.layers.reflected.direct) / mean_of(reference.layers.reflected.direct), 1, 0.01);
-    EXPECT_NEAR(mean_of(hybrid.layers.reflected.indirect) / mean_of(reference.layers.reflected.indirect), 1, 0.01);
-    EXPECT_EQ(hybrid.non_finite_pixels, 0);
+    options.samples = 16;
+    double direct = 0, indirect = 0;
+    for (options.seed = 2; options.seed < 2 + seeds; ++options.seed) {
+        SolveOptions solving{.method = find_method("hsrr"), .limits = {.rays = 1'000'000}};
+        solving.seed = options.seed;
+        const Solution solution = solve(scene, ray_caster, solving);
+        const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, GetParam().view, options);
+        direct += mean_of(hybrid.layers.reflected.direct) / seeds;
+        indirect += mean_of(hybrid.layers.reflected.indirect) / seeds;
+        EXPECT_EQ(hybrid.non_finite_pixels, 0);
+    }
+    const SampledLight& expected = reference.layers.reflected;
+    const auto tolerance = [](double of_seed) {
+        return bias + quantile * std::hypot(of_seed / std::sqrt(static_cast<double>(seeds)), path_error);
+    };
+    EXPECT_NEAR(direct / mean_of(expected.direct), 1, tolerance(direct_error));
+    EXPECT_NEAR(indirect / mean_of(expected.indirect), 1, tolerance(indirect_error));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, HybridScene, testing::ValuesIn(lit_scenes()),
@@ -250,6 +266,74 @@ TEST(Hybrid, HasEqualNoiseInARoomWithSunlitGroundOutside) {
     const double alone = noise_inside(inside);
     EXPECT_GT(alone, 0);
     EXPECT_LT(noise_inside(everywhere), 1.4 * alone);
+}
+
+/// Indirect light beside a sunlit crate without a sky, where most rays of records escape: as by path tracing at every
+/// place. Seen to fail (-57%) when escaped rays extend the reach of records.
+TEST(Hybrid, FindsTheIndirectLightInTheShadowOfACrate) {
+    Scene scene;
+    scene.objects = {""};
+    const std::uint32_t ground = add_material(scene, Rgb(0.4f), Rgb(0));
+    add_rectangle(scene, {-20, -20, 0}, {40, 0, 0}, {0, 40, 0}, ground, 40, 40);
+    add_box(scene, {0, 0, 0}, {1, 1.4f, 0.9f}, add_material(scene, Rgb(0.7f), Rgb(0)));
+    add_box(scene, {-1.6f, 0.1f, 0}, {-0.8f, 0.9f, 1.1f}, 1);
+    scene.luminaires.push_back({"sun", 0, DirectionalLight{{0.8f, 0.1f, -0.9f}, Rgb(10'000)}});
+    scene = cut_at_contacts(std::move(scene));
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 2'000'000}});
+    std::vector<MeasuringPoint> points;
+    std::vector<Gauge> gauges;
+    for (int i = 0; i < 12; ++i) {
+        const V3f x(1.02f + 0.05f * static_cast<float>(i), 0.6f, 1e-4f), up(0, 0, 1);
+        points.push_back({Imath::V3d(x), up});
+        gauges.push_back({.position = x, .normal = up, .side_u = {0.04f, 0, 0}, .side_v = {0, 0.04f, 0}});
+        gauges.push_back({.position = x + V3f(0.3f * static_cast<float>(i), 3, 0),
+                          .normal = up,
+                          .side_u = {0.04f, 0, 0},
+                          .side_v = {0, 0.04f, 0}});
+    }
+    const KnownIrradiance known{*solution.forest, solution.irradiance, true};
+    const TracedScene traced(scene, ray_caster);
+    const auto found =
+        hybrid_irradiance(traced, known, gauges, {.samples = 16, .quantity = PathQuantity::irradiance}, {});
+    const auto expected = measure_irradiance(scene, nullptr, ray_caster, points, {.samples = 1 << 14});
+    double mean = 0;
+    for (const MeasuredIrradiance& e : expected) mean += static_cast<double>(e.indirect.x) / 12;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        EXPECT_NEAR(found[2 * i].indirect.x, expected[i].indirect.x, 0.15 * mean) << i;
+}
+
+/// Light through a gap of 2 cm below a door is rare: few samples find it. The stated error is the true one, which the
+/// difference of two pictures tells. Seen to fail (0.1) when errors are relative to the noisy value of the pixel.
+TEST(Hybrid, StatesTheErrorOfRareLight) {
+    Scene scene;
+    scene.objects = {""};
+    const std::uint32_t wall = add_material(scene, Rgb(0.5f), Rgb(0));
+    add_rectangle(scene, {0, 0, 0}, {6, 0, 0}, {0, 3, 0}, wall, 4, 2, true);
+    add_rectangle(scene, {0, 0, 2.5f}, {6, 0, 0}, {0, 3, 0}, wall, 4, 2, true);
+    for (const float y : {0.0f, 3.0f}) add_rectangle(scene, {0, y, 0}, {6, 0, 0}, {0, 0, 2.5f}, wall, 4, 2, true);
+    for (const float x : {0.0f, 6.0f}) add_rectangle(scene, {x, 0, 0}, {0, 3, 0}, {0, 0, 2.5f}, wall, 2, 2, true);
+    add_rectangle(scene, {3, 0, 0.02f}, {0, 3, 0}, {0, 0, 2.48f}, wall, 2, 2, true);
+    add_panel(scene, {0.5f, 0.5f, 2.45f}, 1.2f, 2, add_material(scene, Rgb(0), Rgb(5000)));
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 1'000'000}});
+    const View view{"dark room", {5.7, 0.4, 1.6}, {3.4, 2, 0.3}, {0, 0, 1}, 60};
+    double stated = 0, actual = 0;
+    constexpr std::uint64_t pairs = 4;
+    for (std::uint64_t pair = 0; pair < pairs; ++pair) {
+        PathOptions options{.width = 96, .height = 54, .samples = 16, .seed = 2 * pair + 1};
+        const PathTracing a = render_hybrid(scene, solution, ray_caster, view, options);
+        ++options.seed;
+        const PathTracing b = render_hybrid(scene, solution, ray_caster, view, options);
+        const double mean = (mean_of(a.image) + mean_of(b.image)) / 2;
+        double squares = 0;
+        for (std::size_t i = 0; i < a.image.pixels.size(); ++i)
+            squares += std::pow(channel_sum(RgbD(a.image.pixels[i] - b.image.pixels[i])) / 3 / mean, 2);
+        actual += squares / static_cast<double>(2 * a.image.pixels.size()) / pairs;
+        stated += (a.relative_error * a.relative_error + b.relative_error * b.relative_error) / (2 * pairs);
+    }
+    EXPECT_GT(std::sqrt(stated / actual), 0.5);
+    EXPECT_LT(std::sqrt(stated / actual), 1.25);
 }
 
 /// Without occluders, direct light is exact in every pixel.
