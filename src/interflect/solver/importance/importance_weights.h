@@ -30,8 +30,9 @@ struct ImportanceWeights {
     std::vector<float> nearby;               ///< By patch; may be empty.
     std::vector<float> parts, parts_nearby;  ///< By luminaire part.
 };
+/// @param rays  That estimated the indirect importance. The fewer, the more a patch takes from its neighbourhood.
 /// @param found  By luminaire part.
-ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
+ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods, std::int64_t rays,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
 /// Smooths importance for sampling (docs/method.md, One step of transport). The paper uses `from_parent` 0 and

@@ -102,11 +102,19 @@ void compute_view_importance(SolverState& state) {
                                state.options.importance.camera_rays);
     state.solution.view_importance.clear();
     state.solution.indirect_importance.clear();
+    state.importance_rays_of_other_views = state.importance_rays;
+    state.rays_of_first_importance = 0;
     if (state.view.empty()) return;
     if (state.neighbourhoods.empty()) state.neighbourhoods = Neighbourhoods(*state.forest);
     state.solution.view_importance =
         state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
     state.solution.indirect_importance.assign(state.forest->size(), 0.0f);
+}
+
+ImportanceWeights importance_weights(const SolverState& state) {
+    return importance_weights(state.solution, state.neighbourhoods,
+                              state.importance_rays - state.importance_rays_of_other_views, state.emission,
+                              state.part_importance);
 }
 
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits) {
