@@ -11,7 +11,7 @@
 namespace interflect::detail {
 
 /// Trees of clusters: groups of patches that are near each other and face alike, groups of groups, up to the roots. The
-/// patches that the views show have a tree of their own.
+/// patches visible in the views form a separate tree.
 class PatchClusters {
   public:
     /// Groups of 32 are divided into four of eight.
@@ -24,7 +24,7 @@ class PatchClusters {
         bool is_patch() const { return first_child == none; }
     };
 
-    /// @param shown  Patches that the views show. @param others  All others. One of them may be empty.
+    /// @param shown  Visible patches; may be empty. @param others  The remaining patches; may be empty.
     /// @param length  Distance over which irradiance changes about as much as from one direction to the opposite [m].
     /// @param turn  Angle by which the scene is turned before it is divided [radians].
     PatchClusters(const ElementForest& forest, std::vector<std::uint32_t> shown, std::vector<std::uint32_t> others,

@@ -168,8 +168,8 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
     return means;
 }
 
-/// Clusters keep the weighted mean of the irradiance. The patches of each tree also keep the light that they reflect:
-/// uncertain ones are scaled by 1 + x (1 - kept) (rho - y), where x and y keep both.
+/// Restores the reflected light of each tree. Multiplies patches by 1 + x (1 - kept) (rho - y); x and y are such that
+/// the weighted mean irradiance does not change.
 void ClusterShrinkage::keep_reflected_light(std::vector<Rgb>& means) const {
     constexpr double most = 1;  // no patch becomes negative
     struct Sums {

@@ -16,11 +16,11 @@ constexpr double growth = 0.5;
 constexpr std::int64_t largest_iteration = 1 << 24;
 /// Some per patch, but a small share of the budget.
 constexpr std::int64_t first_rays_per_patch = 4, fewest_first_rays = 50'000, budget_over_first_rays = 8;
-/// All rays of a run over those before the first iteration, which are not averaged. 4 instead of 8 has 4% to 10% more
-/// noise after 100,000 rays in one furnished room, 16 as much (docs/results.md, Few rays).
+/// Ratio of all rays to the rays before the first iteration, which are not averaged. In one furnished room with 100,000
+/// rays, a ratio of 4 increases the noise by 4% to 10%; 16 changes nothing (docs/results.md, Few rays).
 constexpr std::int64_t budget_over_start_rays = 8;
 
-/// Two make the initial mesh; a transport of importance comes before them.
+/// Number of passes before the first iteration: two for the initial mesh, one for importance if it is used.
 std::int64_t passes_of_start(const SolveOptions& options) {
     return !options.views.empty() && options.method.importance == ImportanceUse::full ? 3 : 2;
 }
