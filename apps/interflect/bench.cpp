@@ -57,7 +57,8 @@ struct Workload {
             throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
         const bool combined = importance_use(solution) == ImportanceUse::full;
         const Radiosity light(materials, solution.irradiance);
-        const ImportanceWeights weights = importance_weights(solution, Neighbourhoods(*forest));
+        const ImportanceWeights weights =
+            importance_weights(solution, Neighbourhoods(*forest), solution.iterations.back().importance_rays);
         step = TransportStep(
             plan_power(materials, Emission(), solution, light, weights, combined, options.limits.rays).plan);
         step.importance_at_patches = options.experimental.importance_at_patches;
