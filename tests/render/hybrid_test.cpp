@@ -16,6 +16,7 @@
 #include "interflect/render/paths/traced_scene.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
+#include "tests/support/shadings.h"
 #include "tests/support/skies.h"
 #include "tests/support/textured_scenes.h"
 
@@ -139,11 +140,11 @@ TEST_P(HybridScene, HasTheMeanOfPathTracing) {
     const Scene& scene = GetParam().scene;
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 3'000'000}});
-    PathOptions options{.width = 64, .height = 48, .samples = 512};
-    const PathTracing reference = trace_paths(scene, ray_caster, GetParam().view, options);
+    PictureOptions options{.width = 64, .height = 48, .samples = 512};
+    const Rendering reference = render(scene, ray_caster, GetParam().view, by(Shading::path, options));
     options.samples = 64;
     options.seed = 2;
-    const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, GetParam().view, options);
+    const Rendering hybrid = render(scene, solution, ray_caster, GetParam().view, by(Shading::hybrid, options));
     EXPECT_NEAR(mean_of(hybrid.image) / mean_of(reference.image), 1, 0.01);
     EXPECT_NEAR(mean_of(hybrid.layers.reflected.direct) / mean_of(reference.layers.reflected.direct), 1, 0.01);
     EXPECT_NEAR(mean_of(hybrid.layers.reflected.indirect) / mean_of(reference.layers.reflected.indirect), 1, 0.01);
@@ -160,9 +161,9 @@ TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
     const Scene scene = closed_box({4, 3, 2.5f}, 3, {Material{"", Rgb(0.6f), Rgb(40)}});
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1'000'000}});
-    PathOptions options{.width = 40, .height = 30, .samples = 16, .quantity = PathQuantity::irradiance};
+    PictureOptions options{.width = 40, .height = 30, .samples = 16, .quantity = PictureQuantity::irradiance};
     for (options.seed = 1; options.seed <= 4; ++options.seed) {
-        const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, into_corner, options);
+        const Rendering hybrid = render(scene, solution, ray_caster, into_corner, by(Shading::hybrid, options));
         double squares = 0;
         for (const Rgb& direct : hybrid.layers.reflected.direct.pixels) EXPECT_NEAR(direct.x, 40, 0.1);
         for (const Rgb& indirect : hybrid.layers.reflected.indirect.pixels) {
@@ -202,7 +203,7 @@ TEST(Hybrid, FindsTheIndirectLightOfABrightSpot) {
     double ratio = 0;
     constexpr int seeds = 4;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-        PathOptions options{.samples = 16, .quantity = PathQuantity::irradiance};
+        PictureOptions options{.samples = 16, .quantity = PictureQuantity::irradiance};
         options.seed = seed;
         const std::vector<GaugeLight> found = hybrid_irradiance(traced, gauges, options, {});
         for (std::size_t i = 0; i < found.size(); ++i) {
@@ -238,7 +239,7 @@ TEST(Hybrid, HasEqualNoiseInARoomWithSunlitGroundOutside) {
     const auto noise_inside = [&](const std::vector<Gauge>& gauges) {
         std::vector<GaugeLight> found[2];
         for (std::uint64_t seed = 0; seed < 2; ++seed) {
-            PathOptions options{.samples = 16, .quantity = PathQuantity::irradiance};
+            PictureOptions options{.samples = 16, .quantity = PictureQuantity::irradiance};
             options.seed = seed;
             found[seed] = hybrid_irradiance(traced, gauges, options, {});
         }
@@ -260,10 +261,10 @@ TEST(Hybrid, HasNoNoiseInDirectLightWithoutShadows) {
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 100'000}});
     const View down{"down", {2, 1.5, 2}, {2, 1.5, 0}, {0, 1, 0}, 50};
-    PathOptions options{.width = 32, .height = 24, .samples = 4, .quantity = PathQuantity::irradiance};
-    const PathTracing few = render_hybrid(scene, solution, ray_caster, down, options);
+    PictureOptions options{.width = 32, .height = 24, .samples = 4, .quantity = PictureQuantity::irradiance};
+    const Rendering few = render(scene, solution, ray_caster, down, by(Shading::hybrid, options));
     options.samples = 256;
-    const PathTracing many = trace_paths(scene, ray_caster, down, options);
+    const Rendering many = render(scene, ray_caster, down, by(Shading::path, options));
     for (std::size_t i = 0; i < few.image.pixels.size(); ++i) {
         EXPECT_LT(few.layers.reflected.direct_variance[i], std::pow(0.02f * few.image.pixels[i].x, 2.0f));
         EXPECT_NEAR(few.layers.reflected.direct.pixels[i].x / many.layers.reflected.direct.pixels[i].x, 1, 0.1);
@@ -276,9 +277,9 @@ TEST(Hybrid, SameSeedSameBits) {
     add_lamp(scene, 0.6f);
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 100'000}});
-    const PathOptions options{.width = 80, .height = 60, .samples = 16};
-    const PathTracing a = render_hybrid(scene, solution, ray_caster, into_corner, options);
-    const PathTracing b = render_hybrid(scene, solution, ray_caster, into_corner, options);
+    const PictureOptions options{.width = 80, .height = 60, .samples = 16};
+    const Rendering a = render(scene, solution, ray_caster, into_corner, by(Shading::hybrid, options));
+    const Rendering b = render(scene, solution, ray_caster, into_corner, by(Shading::hybrid, options));
     EXPECT_EQ(a.image.pixels, b.image.pixels);
 }
 

@@ -29,7 +29,7 @@ void with_known_light(const Scene& scene, const std::vector<Rgb>& irradiance, co
     const KnownIrradiance known{forest, irradiance};
     const TracedScene traced(scene, ray_caster, &known);
     const PathStart start;
-    const PathOptions options;
+    const PictureOptions options;
     visit(traced.known_light(traced.paths(start, options, 1), points));
 }
 

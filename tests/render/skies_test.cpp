@@ -42,40 +42,36 @@ Scene under(const std::vector<Luminaire>& luminaires) {
 
 const std::vector<V3f> normals{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-0.5f, -0.6f, 0.3f}, {0.1f, 0.2f, -1}};
 
-std::vector<MeasuredIrradiance> measured(const Scene& scene, EmitterSampling sampling, int samples,
-                                         bool is_gathered = false) {
+std::vector<MeasuredIrradiance> measured(const Scene& scene, int samples, Shading shading = Shading::path) {
     const RayCaster ray_caster(scene);
     std::optional<Solution> solution;
-    if (is_gathered) solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1000}});
+    if (needs_solution(shading))
+        solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1000}});
     std::vector<MeasuringPoint> points;
     for (const V3f& n : normals) points.push_back({{0, 0, 0}, n});
     return measure_irradiance(scene, solution ? &*solution : nullptr, ray_caster, points,
-                              {.samples = samples, .emitter_sampling = sampling});
+                              {.shading = shading, .samples = samples});
 }
 
 class EverySky : public testing::TestWithParam<KnownSky> {};
 INSTANTIATE_TEST_SUITE_P(All, EverySky, testing::ValuesIn(known_skies()),
                          [](const auto& test) { return test.param.name; });
 
-/// Planes that face up, sideways, aslant and down, with all ways of sampling the sky. Five standard errors: one test in
+/// Planes that face up, sideways, aslant and down, by both shadings. Five standard errors: one test in
 /// a million would fail by chance.
 TEST_P(EverySky, CausesItsIrradiance) {
     const KnownSky& sky = GetParam();
     const Scene scene = under({sky.luminaire});
     std::vector<double> irradiance;
     for (const V3f& n : normals) irradiance.push_back(sky.irradiance(V3d(n.normalized())));
-    for (const bool is_gathered : {false, true})
-        for (const auto sampling : {EmitterSampling::combined, EmitterSampling::lights, EmitterSampling::directions}) {
-            const auto found = measured(scene, sampling, 1 << 14, is_gathered);
-            for (std::size_t i = 0; i < normals.size(); ++i) {
-                const double expected = irradiance[i], error = static_cast<double>(found[i].standard_error.x);
-                EXPECT_NEAR(found[i].sum().x, expected, 5 * error + 3e-4 * expected + 1e-3)
-                    << i << " " << static_cast<int>(sampling);
-                if (sampling != EmitterSampling::directions) {
-                    EXPECT_LT(error, 0.025 * expected + 1e-3) << i;
-                }
-            }
+    for (const Shading shading : {Shading::path, Shading::gather}) {
+        const auto found = measured(scene, 1 << 14, shading);
+        for (std::size_t i = 0; i < normals.size(); ++i) {
+            const double expected = irradiance[i], error = static_cast<double>(found[i].standard_error.x);
+            EXPECT_NEAR(found[i].sum().x, expected, 5 * error + 3e-4 * expected + 1e-3) << i << " " << label(shading);
+            EXPECT_LT(error, 0.025 * expected + 1e-3) << i;
         }
+    }
     if (const auto* dome = std::get_if<SkyDome>(&sky.luminaire.kind); dome && dome->zenith.z > 0) {
         EXPECT_NEAR(irradiance[0] / static_cast<double>(rating(sky.luminaire).x), 1, 1e-3)
             << "the illuminance that was asked for";
@@ -96,10 +92,12 @@ TEST_P(EverySky, IsSeenAsItIs) {
     }
     const View view{"up", {0, 0, 0}, {0.3, -0.4, 1.1}, {0, 1, 0}, 0.01f};
     const double expected = GetParam().radiance(V3d(0.3, -0.4, 1.1).normalized());
-    const Image traced = trace_paths(scene, ray_caster, view, {.width = 1, .height = 1, .samples = 8}).image;
+    const Image traced =
+        render(scene, ray_caster, view, {.width = 1, .height = 1, .shading = Shading::path, .samples = 8}).image;
     EXPECT_NEAR(traced.pixels[0].x, expected, 1e-3 * expected);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1000}});
-    const Image drawn = render(scene, solution, ray_caster, view, {.width = 1, .height = 1}).image;
+    const Image drawn =
+        render(scene, solution, ray_caster, view, {.width = 1, .height = 1, .shading = Shading::smooth}).image;
     EXPECT_NEAR(drawn.pixels[0].x, expected, 1e-3 * expected);
 }
 
@@ -157,7 +155,7 @@ TEST_P(EverySky, IsSampledByItsDensity) {
 
 TEST(EnvironmentMap, OfOneRadianceIsAUniformSky) {
     const auto image = image_of(7, 5, std::vector<Rgb>(35, Rgb(3, 2, 1)));
-    const auto of_map = measured(under({{"", 0, EnvironmentMap{image}}}), EmitterSampling::combined, 1 << 12);
+    const auto of_map = measured(under({{"", 0, EnvironmentMap{image}}}), 1 << 12);
     for (const MeasuredIrradiance& e : of_map) {
         EXPECT_NEAR(e.direct.x, 3 * pi, 5 * static_cast<double>(e.standard_error.x) + 1e-3);
         EXPECT_NEAR(e.direct.z, 1 * pi, 5 * static_cast<double>(e.standard_error.z) + 1e-3);
@@ -173,10 +171,8 @@ TEST(EnvironmentMap, WithOneBrightTexelIsParallelLight) {
     const SkyFrame frame({0, 0, 1}, {0, 1, 0});
     const V3f towards = frame.direction(grid.middle(column, row));
     const float irradiance = 1000 * static_cast<float>(grid.solid_angle(row));
-    const auto found =
-        measured(under({{"", 0, EnvironmentMap{image_of(width, height, texels)}}}), EmitterSampling::lights, 1024);
-    const auto expected =
-        measured(under({{"", 0, DirectionalLight{-towards, Rgb(irradiance)}}}), EmitterSampling::lights, 1024);
+    const auto found = measured(under({{"", 0, EnvironmentMap{image_of(width, height, texels)}}}), 1024);
+    const auto expected = measured(under({{"", 0, DirectionalLight{-towards, Rgb(irradiance)}}}), 1024);
     for (std::size_t i = 0; i < normals.size(); ++i)
         EXPECT_NEAR(found[i].direct.x, expected[i].direct.x, 2e-3 * irradiance) << i;
     EXPECT_GT(expected[1].direct.x, 0.1 * irradiance);
@@ -186,7 +182,7 @@ const Luminaire sun{"", 0, DirectionalLight{{-1, -0.5f, -1.5f}, {90, 80, 70}, 12
 
 TEST(Sun, CausesItsIrradianceAndIsSeenAsADisc) {
     const Scene scene = under({sun});
-    const auto found = measured(scene, EmitterSampling::combined, 1 << 12);
+    const auto found = measured(scene, 1 << 12);
     const V3f towards = V3f(1, 0.5f, 1.5f).normalized();
     for (std::size_t i = 0; i < 3; ++i) {  // the entire disc is above these planes
         EXPECT_NEAR(found[i].direct.x, 90 * normals[i].normalized().dot(towards),
@@ -215,7 +211,8 @@ TEST(Sun, HasAPenumbra) {
     std::vector<MeasuringPoint> points;
     const std::vector<double> offsets{-1.2, -0.95, -0.7, -0.3, 0, 0.5, 0.9, 1.2};  // in radii; the edge is at 0
     for (const double offset : offsets) points.push_back({{offset * radius, 0, 0}});
-    const auto found = measure_irradiance(scene, nullptr, ray_caster, points, {.samples = 1 << 14});
+    const auto found =
+        measure_irradiance(scene, nullptr, ray_caster, points, {.shading = Shading::path, .samples = 1 << 14});
     for (std::size_t i = 0; i < offsets.size(); ++i) {
         // The disc's part beyond a chord: directions that lead to x > 0 at the edge's height pass the edge.
         const double t = std::clamp(offsets[i], -1.0, 1.0),
@@ -249,8 +246,8 @@ TEST(SkyThroughAnOpening, IsTheIntegralOverIt) {
                 const V3d d = V3d(-2 + 4 * (i + 0.5) / nx, -1 + 2 * (k + 0.5) / ny, 3) - x;
                 expected += sky.radiance(d.normalized()) * 9 / std::pow(d.length2(), 2) * (8.0 / (nx * ny));
             }
-        const auto found =
-            measure_irradiance(scene, nullptr, ray_caster, std::vector<MeasuringPoint>{{x}}, {.samples = 1 << 15});
+        const auto found = measure_irradiance(scene, nullptr, ray_caster, std::vector<MeasuringPoint>{{x}},
+                                              {.shading = Shading::path, .samples = 1 << 15});
         const double error = static_cast<double>(found[0].standard_error.x);
         EXPECT_NEAR(found[0].direct.x, expected, 5 * error + 2e-3 * expected + 0.05) << sky.name;
         EXPECT_LT(error, 0.02 * expected + 0.05) << sky.name;

@@ -28,6 +28,10 @@
 
 namespace interflect::detail {
 
+using PathOptions = PictureOptions;
+using PathTracing = Rendering;
+using PathQuantity = PictureQuantity;
+
 /// In hybrid shading, one path of each group of this size also samples lights by its direction, best near emitters.
 constexpr std::uint32_t paths_per_direction = 4;
 
