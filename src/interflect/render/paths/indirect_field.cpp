@@ -144,7 +144,7 @@ bool IndirectField::gather(const PathScene& scene, std::span<const std::uint32_t
     gathering.is_indirect_only = true;
     // Irradiance in pictures of irradiance, else radiance of a white surface.
     const double per_path =
-        (scene.options.quantity == PathQuantity::irradiance ? 1 : std::numbers::pi) / paths_per_group;
+        (scene.options.quantity == PictureQuantity::irradiance ? 1 : std::numbers::pi) / paths_per_group;
     const std::size_t at_once = stop.ranks() ? groups_of_rank * stop.ranks()->count() : batches.size();
     for (std::size_t first = 0; first < batches.size(); first += at_once) {
         const std::span<BatchOfPaths> some =

@@ -54,7 +54,7 @@ void PathWavefront::trace(std::span<BatchOfPaths> batches) {
     for (; !paths_.empty(); ++vertex_) advance_paths();
     add_light_of_seen_places();
     // Irradiance = pi L of a white surface.
-    const double per_radiance = s_.options.quantity == PathQuantity::irradiance ? std::numbers::pi : 1;
+    const double per_radiance = s_.options.quantity == PictureQuantity::irradiance ? std::numbers::pi : 1;
     for (std::size_t i = 0; i < light_.size(); ++i) {
         BatchOfPaths& batch = batches[i / s_.batch_size];
         batch.emitted += RgbD(light_[i].emitted) * per_radiance;
@@ -163,7 +163,9 @@ Rgb PathWavefront::reflectance_of_hit(const Ray& ray, const Hit& hit) const {
     return reflectance_at(s_.scene, s_.scene.patches[hit.patch], p);
 }
 
-bool PathWavefront::shows_irradiance() const { return vertex_ == 1 && s_.options.quantity == PathQuantity::irradiance; }
+bool PathWavefront::shows_irradiance() const {
+    return vertex_ == 1 && s_.options.quantity == PictureQuantity::irradiance;
+}
 
 bool PathWavefront::interact(const Hit& hit, Ray& ray, Path& path) {
     if (hit.patch == none) {

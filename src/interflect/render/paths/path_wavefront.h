@@ -28,10 +28,6 @@
 
 namespace interflect::detail {
 
-using PathOptions = PictureOptions;
-using PathTracing = Rendering;
-using PathQuantity = PictureQuantity;
-
 /// In hybrid shading, one path of each group of this size also samples lights by its direction, best near emitters.
 constexpr std::uint32_t paths_per_direction = 4;
 
@@ -51,7 +47,7 @@ struct PathScene {
     const LightTree& lights;
     const LuminaireChoice& luminaires;
     const Skies& skies;
-    const PathOptions& options;
+    const PictureOptions& options;
     std::size_t batch_size;
     Panes panes;
     bool splits;                                    // at panes or mirrors

@@ -48,7 +48,7 @@ TracedScene::TracedScene(const Scene& scene, const RayCaster& ray_caster, const 
     if (known->is_interpolated && !scene.normals.empty()) smooth_normals_.emplace(scene, find_smooth_surfaces(scene));
 }
 
-PathScene TracedScene::paths(const PathStart& start, const PathOptions& options, std::size_t batch_size) const {
+PathScene TracedScene::paths(const PathStart& start, const PictureOptions& options, std::size_t batch_size) const {
     PathScene paths{scene_,
                     ray_caster_,
                     &start,
@@ -71,7 +71,7 @@ KnownLight TracedScene::known_light(const PathScene& paths, std::span<const Surf
     return light;
 }
 
-VirtualLights TracedScene::virtual_lights(const PathOptions& options) const {
+VirtualLights TracedScene::virtual_lights(const PictureOptions& options) const {
     return {scene_, ray_caster_, geometry_, panes_, static_cast<std::size_t>(options.light_walks), options.seed};
 }
 
@@ -206,7 +206,7 @@ std::size_t batch_size_of_gauges(const PathScene& paths) {
 }  // namespace
 
 std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
-                                          const PathOptions& options, const Monitor& monitor) {
+                                          const PictureOptions& options, const Monitor& monitor) {
     const PathStart start = start_at(gauges);
     PathScene paths = scene.paths(start, options, 1);
     paths.batch_size = batch_size_of_gauges(paths);
@@ -223,7 +223,7 @@ std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, std::span<co
 }
 
 std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
-                                                 const PathOptions& options, const Monitor& monitor) {
+                                                 const PictureOptions& options, const Monitor& monitor) {
     const PathStart start = start_at(gauges);
     PathScene paths = scene.paths(start, options, 1);
     paths.batch_size = batch_size_of_gauges(paths);

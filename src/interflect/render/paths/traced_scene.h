@@ -36,13 +36,13 @@ class TracedScene {
     TracedScene& operator=(const TracedScene&) = delete;
 
     /// Without known light. @param start, options  Must outlive the result.
-    PathScene paths(const PathStart& start, const PathOptions& options, std::size_t batch_size) const;
+    PathScene paths(const PathStart& start, const PictureOptions& options, std::size_t batch_size) const;
 
     /// Returns the known irradiance, with sampling adapted to the points (sample_seen_light()).
     KnownLight known_light(const PathScene& paths, std::span<const SurfacePoint> points) const;
 
     /// Refers to this object.
-    VirtualLights virtual_lights(const PathOptions& options) const;
+    VirtualLights virtual_lights(const PictureOptions& options) const;
 
     /// Paths per batch, a power of two, for at least this number of batches.
     static std::size_t batch_size(int samples, int batches);
@@ -87,9 +87,9 @@ struct GaugeLight {
 /// @return       Per gauge, in rank 0 only; the same bits for any number of threads and ranks. Collective.
 /// @throws Stopped, in all ranks.
 std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
-                                          const PathOptions& options, const Monitor& monitor);
+                                          const PictureOptions& options, const Monitor& monitor);
 /// The direct part.
 std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
-                                                 const PathOptions& options, const Monitor& monitor);
+                                                 const PictureOptions& options, const Monitor& monitor);
 
 }  // namespace interflect::detail

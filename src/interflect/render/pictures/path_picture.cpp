@@ -36,12 +36,12 @@ constexpr std::uint32_t starting_batches = 2;
 /// Minimum of hybrid shading, whose batches look up indirect and unoccluded light; maximum within a time limit.
 constexpr std::size_t small_batch = 2;
 
-bool is_limited(const PathOptions& options) { return std::isfinite(options.time); }
+bool is_limited(const PictureOptions& options) { return std::isfinite(options.time); }
 
 class PathPicture {
   public:
-    /// @param time_left  As PathOptions::time.
-    PathPicture(const PathScene& scene, SharedBatches& batches, const PathOptions& options, const Monitor& monitor,
+    /// @param time_left  As PictureOptions::time.
+    PathPicture(const PathScene& scene, SharedBatches& batches, const PictureOptions& options, const Monitor& monitor,
                 const StopRequest& time_left)
         : s_(scene),
           options_(options),
@@ -71,8 +71,8 @@ class PathPicture {
         if (!stopped()) report(1);
     }
 
-    PathTracing result() const {
-        PathTracing result;
+    Rendering result() const {
+        Rendering result;
         result.image = Image(options_.width, options_.height);
         result.standard_error = Image(options_.width, options_.height);
         result.batches.reserve(pixels_.size());
@@ -215,7 +215,7 @@ class PathPicture {
     }
 
     const PathScene& s_;
-    const PathOptions& options_;
+    const PictureOptions& options_;
     const Monitor& monitor_;
     const StopRequest& time_left_;
     SharedBatches& shared_;
@@ -228,7 +228,7 @@ class PathPicture {
     RayCounts counts_;
 };
 
-void require_valid(const PathOptions& options) {
+void require_valid(const PictureOptions& options) {
     if (!(options.time > 0)) throw InputError(fmt::format("a time of {} s: expected more than 0", options.time));
     if (options.samples < 2)
         throw InputError(
@@ -244,8 +244,8 @@ void require_valid(const PathOptions& options) {
 
 namespace {
 
-PathTracing draw(const PathScene& scene, const PathOptions& options, const Monitor& monitor,
-                 const StopRequest& time_left, VirtualLights* virtual_lights = nullptr) {
+Rendering draw(const PathScene& scene, const PictureOptions& options, const Monitor& monitor,
+               const StopRequest& time_left, VirtualLights* virtual_lights = nullptr) {
     SharedBatches batches(scene, virtual_lights, monitor.ranks);
     if (batches.is_helper()) {
         batches.help(time_left);
@@ -259,8 +259,8 @@ PathTracing draw(const PathScene& scene, const PathOptions& options, const Monit
 
 }  // namespace
 
-PathTracing trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
-                                  const PathOptions& options, const Monitor& monitor) {
+Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
+                                const PictureOptions& options, const Monitor& monitor) {
     require_valid(options);
     if (options.light_walks < 1)
         throw InputError(fmt::format("{} walks from the light sources: expected 1 or more", options.light_walks));
@@ -275,8 +275,8 @@ PathTracing trace_instant_picture(const Scene& scene, const RayCaster& ray_caste
     return draw(paths, options, monitor, time_left, &lights);
 }
 
-PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
-                          const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
+Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
+                        const PictureOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
     ray_caster.require_made_for(scene);
     const bool is_hybrid = known && known->is_interpolated;
@@ -305,7 +305,7 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     const SkyGuide guide(path_scene, field, stop);
     path_scene.sky_guide = &guide;
     const std::int64_t rays = field.rays() + guide.rays();
-    PathTracing result = draw(path_scene, options, monitor_section(monitor, share_of_records, 1, rays), time_left);
+    Rendering result = draw(path_scene, options, monitor_section(monitor, share_of_records, 1, rays), time_left);
     result.rays += rays;
     return result;
 }
@@ -316,7 +316,7 @@ KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest
     return {forest, irradiance};
 }
 
-PathStart start_at_camera(const View& view, const PathOptions& options, const Imath::V3d& origin) {
+PathStart start_at_camera(const View& view, const PictureOptions& options, const Imath::V3d& origin) {
     constexpr float degree = std::numbers::pi_v<float> / 180;
     const Camera camera(view, options.width, options.height, origin);
     if (view.extent > 0) return {camera, 0, {}, view.extent / static_cast<float>(options.height)};

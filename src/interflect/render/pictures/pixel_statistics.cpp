@@ -50,7 +50,7 @@ double relative_error(const std::vector<PixelStatistics>& pixels) {
     return std::sqrt(sum / static_cast<double>(pixels.size()));
 }
 
-std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target) {
     const double picture_mean = mean_reflected(pixels);
     std::vector<double> variance(pixels.size());

@@ -43,12 +43,12 @@ struct PixelStatistics {
     RgbD squared_error() const { return batches > 1 ? variance() / static_cast<double>(batches) : RgbD(0, 0, 0); }
 };
 
-/// Returns PathTracing::relative_error.
+/// Returns Rendering::relative_error.
 double relative_error(const std::vector<PixelStatistics>& pixels);
 
 /// Returns the total per pixel.
 /// @param target  Of the relative standard error.
-std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+std::vector<double> needed_batches(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target);
 
 }  // namespace interflect::detail
