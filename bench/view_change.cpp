@@ -37,7 +37,8 @@ struct Setup {
 };
 
 std::vector<Rgb> picture(const Solver& solver, const View& view) {
-    return render(solver.scene(), solver.solution(), solver.ray_caster(), view, {.width = 320, .height = 180})
+    return render(solver.scene(), solver.solution(), solver.ray_caster(), view,
+                  {.width = 320, .height = 180, .shading = Shading::smooth})
         .image.pixels;
 }
 

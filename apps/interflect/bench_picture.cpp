@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,20 +18,6 @@ using namespace detail;
 
 namespace {
 
-constexpr std::array<TracedShading, 4> shadings = {
-    {{"hybrid", true,
-      [](const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-         const PathOptions& options) { return render_hybrid(scene, *solution, ray_caster, view, options); }},
-     {"gather", true,
-      [](const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-         const PathOptions& options) { return gather(scene, *solution, ray_caster, view, options); }},
-     {"path", false,
-      [](const Scene& scene, const Solution*, const RayCaster& ray_caster, const View& view,
-         const PathOptions& options) { return trace_paths(scene, ray_caster, view, options); }},
-     {"instant", false,
-      [](const Scene& scene, const Solution*, const RayCaster& ray_caster, const View& view,
-         const PathOptions& options) { return render_instant(scene, ray_caster, view, options); }}}};
-
 /// Rays of a picture, recorded or sampled from it.
 struct RecordedRays {
     double count = 0;  // of the whole picture
@@ -42,7 +27,7 @@ struct RecordedRays {
 
 RecordedRays record(const RayCaster& ray_caster, std::int64_t max_rays, const auto& draw) {
     const RayRecorder recorder(ray_caster, static_cast<std::size_t>(max_rays));
-    const PathTracing picture = draw();
+    const Rendering picture = draw();
     const auto share = [&](std::int64_t rays) { return static_cast<double>(rays) / static_cast<double>(picture.rays); };
     return {static_cast<double>(recorder.traced()), recorder.kept(),
             Json{{"camera", share(picture.paths)},
@@ -57,21 +42,19 @@ struct PictureRound {
 
 }  // namespace
 
-PictureBenchOptions::PictureBenchOptions() : shading(&shadings.front()) {}
-
 void PictureBenchOptions::add_to(CLI::App& command) {
     CLI::Option* picture = command.add_flag("--picture", is_given, "Measure a picture instead of the solver");
-    std::vector<std::pair<std::string, const TracedShading*>> choices;
-    for (const TracedShading& choice : shadings) choices.emplace_back(choice.name, &choice);
-    add_choice<const TracedShading*>(command, "--shading", shading, choices, "Shading of the picture, as of render")
-        ->default_str(shading->name)
+    std::vector<std::pair<std::string, Shading>> choices;
+    for (const Shading choice : available_shadings(&DefaultSamples::pixel))
+        if (traces_paths(choice)) choices.emplace_back(label(choice), choice);
+    add_choice<Shading>(command, "--shading", shading, choices, "Shading of the picture, as of render")
+        ->default_str(label(shading))
         ->needs(picture);
     add_parsed(command, "--size", size, parse_size, "Picture size in pixels")
         ->type_name("WxH")
         ->default_str("640x360")
         ->needs(picture);
-    command.add_option("--samples", samples, "Camera rays a pixel of the picture")
-        ->capture_default_str()
+    command.add_option("--samples", samples, "Camera rays a pixel of the picture (default: as of render)")
         ->check(CLI::Range(2, 65536))
         ->needs(picture);
 }
@@ -79,12 +62,15 @@ void PictureBenchOptions::add_to(CLI::App& command) {
 Json bench_picture(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& solve_options,
                    const PictureBenchOptions& options, int rounds) {
     std::optional<Solution> solution;
-    if (options.shading->needs_solution) solution = solve(scene, ray_caster, solve_options);
-    const PathOptions path_options{
-        .width = options.size.width, .height = options.size.height, .samples = options.samples};
+    if (needs_solution(options.shading)) solution = solve(scene, ray_caster, solve_options);
+    const PictureOptions picture{.width = options.size.width,
+                                 .height = options.size.height,
+                                 .shading = options.shading,
+                                 .samples = require_samples(options.shading, &DefaultSamples::pixel, options.samples)};
+    const View& view = solve_options.views.front().view;
     const auto draw = [&] {
-        return options.shading->draw(scene, solution ? &*solution : nullptr, ray_caster,
-                                     solve_options.views.front().view, path_options);
+        return solution ? render(scene, *solution, ray_caster, view, picture)
+                        : render(scene, ray_caster, view, picture);
     };
     const RecordedRays rays = record(ray_caster, solve_options.limits.rays, draw);
 
@@ -95,10 +81,10 @@ Json bench_picture(const Scene& scene, const RayCaster& ray_caster, const SolveO
     }
     const auto median = [&](const auto& figure) { return median_of(measured, figure); };
     const auto rate = [&](const PictureRound& round) { return rays.count / round.seconds; };
-    return {{"shading", options.shading->name},
+    return {{"shading", label(options.shading)},
             {"width", options.size.width},
             {"height", options.size.height},
-            {"samples", options.samples},
+            {"samples", picture.samples},
             {"picture_rays", rays.count},
             {"shares_of_rays", rays.shares},
             {"recorded_rays", rays.sample.size()},

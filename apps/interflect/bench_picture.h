@@ -9,23 +9,13 @@
 
 namespace interflect::command {
 
-/// A shading of `render` that traces paths.
-struct TracedShading {
-    const char* name;
-    bool needs_solution;
-    /// @param solution  Null unless needed.
-    PathTracing (*draw)(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-                        const PathOptions& options);
-};
-
 /// Options of `bench --picture`.
 struct PictureBenchOptions {
     bool is_given = false;
-    const TracedShading* shading;
+    Shading shading = Shading::hybrid;
     Size size{640, 360};
-    int samples = 32;  ///< Camera rays per pixel; the default of `render` with hybrid shading.
+    int samples = 0;  ///< Camera rays per pixel; 0: the default of `render`.
 
-    PictureBenchOptions();
     void add_to(CLI::App& command);
 };
 

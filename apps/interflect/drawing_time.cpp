@@ -48,25 +48,25 @@ double reduce(int& width, int& height, int reduction) {
 double seconds_of_process() { return seconds_since(process_start); }
 
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                                  const View& view, const Tracer& tracer, const PathOptions& options, bool filters) {
+                                  const View& view, const PictureOptions& options, bool filters) {
     constexpr double shortest = 1e-9;  // [s]; ends after two batches per pixel
     CrewLight crew_light(scene, &solution);
     const double sending = seconds_of([&] { crew_light.start(); });
-    PathTracing traced;
-    const auto seconds_to_draw = [&](const PathOptions& picture) {
+    Rendering traced;
+    const auto seconds_to_draw = [&](const PictureOptions& picture) {
         return seconds_of([&] {
             crew_light.share({{}, &stop_flag()}, [&](const Monitor& monitor) {
-                traced = tracer(scene, solution, ray_caster, view, picture, monitor);
+                traced = render(scene, solution, ray_caster, view, picture, monitor);
             });
         });
     };
-    PathOptions one = options;
+    PictureOptions one = options;
     one.time = shortest;
     one.width = one.height = 1;
     const double preparation = seconds_to_draw(one);
-    PathOptions small = options;
+    PictureOptions small = options;
     small.time = shortest;
-    const Growth& growth = tracer == static_cast<Tracer>(render_hybrid) ? of_hybrid : of_gathering;
+    const Growth& growth = options.shading == Shading::hybrid ? of_hybrid : of_gathering;
     const double ratio = reduce(small.width, small.height, growth.reduction);
     const double drawing = seconds_to_draw(small);
     const double filtering = filters ? seconds_of([&] { denoise(traced.layers); }) : 0;
@@ -76,8 +76,8 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
 }
 
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                                     const View& view, const RenderOptions& options) {
-    RenderOptions small = options;
+                                     const View& view, const PictureOptions& options) {
+    PictureOptions small = options;
     const double ratio = reduce(small.width, small.height, of_elements.reduction);
     const double drawing = seconds_of([&] { render(scene, solution, ray_caster, view, small, {{}, &stop_flag()}); });
     const double least = std::pow(ratio, of_elements.exponent) * drawing;

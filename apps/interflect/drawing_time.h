@@ -1,7 +1,5 @@
 #pragma once
 
-#include "apps/interflect/parse.h"
-#include "apps/interflect/run_path_tracer.h"
 #include "interflect/render.h"
 
 namespace interflect::command {
@@ -22,9 +20,9 @@ struct DrawingTime {
 /// offices and a maze.
 /// @param options  Of the full picture.
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                                  const View& view, const Tracer& tracer, const PathOptions& options, bool filters);
+                                  const View& view, const PictureOptions& options, bool filters);
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                                     const View& view, const RenderOptions& options);
+                                     const View& view, const PictureOptions& options);
 
 /// Drawing takes at most this share of the time that is left.
 constexpr double largest_drawing_share = 0.8;

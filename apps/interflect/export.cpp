@@ -17,6 +17,7 @@
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/read_light.h"
 #include "apps/interflect/refused_options.h"
+#include "apps/interflect/shading_options.h"
 #include "apps/interflect/shared_options.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/threads.h"
@@ -34,15 +35,10 @@ using namespace detail;
 
 namespace {
 
-/// Effort of a bake; other options take precedence.
-struct Quality {
-    float texels_per_metre;
-    int samples_of_texel;
-    int max_triangles;
-    int samples;  // of a vertex; gathered directions
-};
-constexpr Quality low_quality{10, 4, 50'000, 16}, medium_quality{20, 16, 200'000, 64},
-    high_quality{40, 64, 800'000, 256};
+/// Resolution of a bake, relative to the library's defaults, which are of medium quality. Numbers of samples and
+/// triangles follow its square.
+enum class Quality { low, medium, high };
+double resolution_of(Quality quality) { return quality == Quality::low ? 0.5 : quality == Quality::high ? 2 : 1; }
 
 struct ExportArguments {
     SceneOptions scene;
@@ -54,7 +50,7 @@ struct ExportArguments {
     ProbeOptions probes;
     bool has_lightmap = false;
     BakeOptions bake;
-    std::optional<Quality> quality;
+    Quality quality = Quality::medium;
     LightmapOptions lightmap;
     VertexOptions vertices;
     DimmingOptions dimming;
@@ -83,10 +79,7 @@ std::vector<OptionsOfFormats> options_of_formats() {
 float automatic_exposure_of(const SolvedScene& solved) {
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     const View view = solved.scene.views.empty() ? overview(solved.scene) : solved.scene.views.front();
-    RenderOptions options;
-    options.width = 160;
-    options.height = 90;
-    options.samples = 4;
+    const PictureOptions options{.width = 160, .height = 90, .shading = Shading::smooth, .samples = 4};
     return automatic_exposure(render(solved.scene, solved.solution, ray_caster, view, options).image);
 }
 
@@ -122,7 +115,7 @@ bool traces_rays(const std::filesystem::path& output, const ExportOptions& optio
     const std::string extension = lower_case_extension(output);
     const bool is_bake =
         options.lightmap || extension == ".glb" || extension == ".gltf" || extension == ".ply" || extension == ".obj";
-    return (is_bake && options.bake.shading != BakeShading::smooth) || extension == ".json" || extension == ".exr";
+    return (is_bake && options.bake.shading != Shading::smooth) || extension == ".json" || extension == ".exr";
 }
 
 /// Before the first rays a signal ends the process. Later it stops the rays and keeps a usable result.
@@ -168,10 +161,10 @@ void check_format_options(const ExportArguments& arguments, const CLI::App& comm
             refuse_options(command, options, fmt::format("it has no effect on {}: it is for{}", extension, known));
     }
     constexpr std::array<std::string_view, 3> of_sampling = {"--samples", "--seed", vertices_group};
-    if (arguments.bake.shading == BakeShading::smooth)
+    if (arguments.bake.shading == Shading::smooth)
         refuse_options(command, of_sampling, "it has no effect with --shading smooth");
     constexpr std::array<std::string_view, 1> of_effort = {"--quality"};
-    if (arguments.bake.shading == BakeShading::smooth && !arguments.has_lightmap)
+    if (arguments.bake.shading == Shading::smooth && !arguments.has_lightmap)
         refuse_options(command, of_effort, "it has no effect on vertices with --shading smooth");
 }
 
@@ -182,13 +175,14 @@ void set_bake(ExportOptions& options, const ExportArguments& arguments, const CL
     if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
     if (!is_given("--max-edge"))
         options.vertices.max_edge = std::max(options.vertices.max_edge, options.vertices.min_edge);
-    if (!arguments.quality) return;
-    const Quality& quality = *arguments.quality;
-    const bool is_of_texels = arguments.has_lightmap && arguments.bake.shading == BakeShading::hybrid;
-    if (!is_given("--samples")) options.bake.samples = is_of_texels ? quality.samples_of_texel : quality.samples;
-    if (!is_given("--max-triangles")) options.vertices.max_triangles = quality.max_triangles;
+    const double resolution = resolution_of(arguments.quality);
+    const auto scaled = [&](int number) { return static_cast<int>(std::lround(number * resolution * resolution)); };
+    if (!is_given("--samples") && traces_paths(arguments.bake.shading))
+        options.bake.samples = scaled(require_samples(
+            arguments.bake.shading, arguments.has_lightmap ? &DefaultSamples::texel : &DefaultSamples::vertex));
+    if (!is_given("--max-triangles")) options.vertices.max_triangles = scaled(options.vertices.max_triangles);
     if (options.lightmap && !is_given("--texels-per-metre"))
-        options.lightmap->texels_per_metre = quality.texels_per_metre;
+        options.lightmap->texels_per_metre *= static_cast<float>(resolution);
 }
 
 void run(const ExportArguments& arguments, const CLI::App& command, int& exit_code) {
@@ -220,20 +214,17 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
 
 void add_bake(CLI::App& command, ExportArguments& arguments) {
     const auto group = [](CLI::Option* option) { return option->group(bake_group); };
-    group(add_choice<BakeShading>(
-              command, "--shading", arguments.bake.shading,
-              {{"smooth", BakeShading::smooth}, {"hybrid", BakeShading::hybrid}, {"gather", BakeShading::gather}},
-              "smooth: interpolated between the elements; hybrid: direct light of each texel or vertex, indirect light "
-              "interpolated; gather: each texel or vertex finds its own light"))
-        ->default_str("hybrid");
+    group(add_shading(command, arguments.bake.shading, &DefaultSamples::texel, "texel or vertex"));
     group(add_choice<Quality>(command, "--quality", arguments.quality,
-                              {{"low", low_quality}, {"medium", medium_quality}, {"high", high_quality}},
+                              {{"low", Quality::low}, {"medium", Quality::medium}, {"high", Quality::high}},
                               "low: 10 texels a metre or 50,000 triangles, few samples; medium: 20, 200,000; high: "
                               "40, 800,000, many samples, in three to four times the time of medium"))
         ->default_str("medium");
-    group(command.add_option(
-              "--samples", arguments.bake.samples,
-              "Points a texel (default: 16) or vertex (default: 64); with --shading gather, directions (default: 64)"))
+    group(
+        command.add_option("--samples", arguments.bake.samples,
+                           fmt::format("Points, or gathered directions, a texel (default: {}) or vertex (default: {})",
+                                       text_of_default_samples(&DefaultSamples::texel),
+                                       text_of_default_samples(&DefaultSamples::vertex))))
         ->check(CLI::Range(2, 1 << 24));
     group(add_parsed(command, "--seed", arguments.bake.seed, parse_seed, "Of sampling"))->default_str("1");
 }

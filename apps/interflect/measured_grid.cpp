@@ -37,7 +37,8 @@ constexpr std::size_t max_compared = 256, min_of_grid = 8;
 /// Traces paths at evenly spread points of each grid, with the gathering's number of samples.
 void compare_with_paths(CrewLight& crew_light, const Scene& scene, const RayCaster& ray_caster,
                         const std::vector<MeasuringPoint>& points, const std::vector<MeasuredIrradiance>& measured,
-                        PathOptions options, std::vector<MeasuredGrid>& grids) {
+                        MeasuringOptions options, std::vector<MeasuredGrid>& grids) {
+    options.shading = Shading::path;
     options.until = 0;
     ++options.seed;
     const std::size_t max_of_grid = std::max(min_of_grid, max_compared / grids.size());
@@ -85,7 +86,7 @@ void warn_of_misplaced_points(const Scene& scene, const RayCaster& ray_caster, s
 
 std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                         std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
-                                        const PathOptions& options) {
+                                        const MeasuringOptions& options) {
     CrewLight crew_light(scene, solution);
     std::vector<MeasuredIrradiance> measured;
     with_path_progress(crew_light, [&](const Monitor& monitor) {

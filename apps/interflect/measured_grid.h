@@ -27,7 +27,7 @@ void warn_of_misplaced_points(const Scene& scene, const RayCaster& ray_caster, s
 /// @throws Stopped if no point was reached.
 std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                         std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
-                                        const PathOptions& options);
+                                        const MeasuringOptions& options);
 
 /// Returns the exterior illuminance of daylight factors [lx]: `told`, or that of the sky if it is the only light. Warns
 /// if other light prevents daylight factors.

@@ -20,6 +20,7 @@
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/run_solve.h"
 #include "apps/interflect/setup_warnings.h"
+#include "apps/interflect/shading_options.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
@@ -36,11 +37,6 @@ namespace {
 
 enum class ProbedQuantity { surface, horizontal, vertical, cylindrical, semicylindrical, ugr };
 
-enum class ProbedLight {
-    gather,  ///< Final gathering from a solution.
-    path,    ///< Path tracing without a solution.
-};
-
 struct ProbeArguments {
     SceneOptions scene;
     MeshOptions mesh;
@@ -49,8 +45,7 @@ struct ProbeArguments {
     MeasuringPlaces places;
     ProbedQuantity quantity = ProbedQuantity::surface;
     std::vector<Imath::V3d> directions;
-    ProbedLight light = ProbedLight::gather;
-    PathOptions path{.samples = 4096};
+    MeasuringOptions measuring;
     std::optional<double> exterior;
     std::filesystem::path output;
     bool json = false;
@@ -131,7 +126,7 @@ std::vector<MeasuredGrid> measure(const Scene& scene, const Solution* solution, 
     std::vector<MeasuringPoint> points;
     for (const MeasuringGrid& grid : grids)
         for (const Imath::V3d& position : grid.points) points.push_back(measuring_point(position, grid, options));
-    return measure_grids(scene, solution, ray_caster, std::move(grids), points, options.path);
+    return measure_grids(scene, solution, ray_caster, std::move(grids), points, options.measuring);
 }
 
 void write_csv(PendingFile& output, const std::vector<MeasuredGrid>& grids) {
@@ -210,7 +205,7 @@ void measure_and_write(const Scene& scene, const Solution* solution, const RayCa
                        std::optional<PendingFile>& output) {
     if (options.quantity == ProbedQuantity::ugr) {
         const std::vector<RatedGrid> rated =
-            rate_grids(scene, solution, ray_caster, grids, lines_of_sight(options), options.path);
+            rate_grids(scene, solution, ray_caster, grids, lines_of_sight(options), options.measuring);
         if (output) write_ratings(*output, rated);
         print_ratings(rated, options.json);
     } else {
@@ -222,9 +217,11 @@ void measure_and_write(const Scene& scene, const Solution* solution, const RayCa
 
 void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
-    const bool traces_paths = options.light == ProbedLight::path;
-    if (traces_paths) refuse_solver_options(command);
-    PathTracerArguments::check_samples(command, options.path.samples);
+    options.measuring.samples =
+        require_samples(options.measuring.shading, &DefaultSamples::point, options.measuring.samples);
+    const bool uses_solution = needs_solution(options.measuring.shading);
+    if (!uses_solution) refuse_solver_options(command);
+    PathTracerArguments::check_samples(command, options.measuring.samples);
     options.scene.check(command, true);
     options.dimming.require_solution(options.scene.path);
     options.places.check();
@@ -240,7 +237,7 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
     require_no_scene_files(solved.scene, outputs);
     std::vector<MeasuringGrid> grids = options.places.grids(solved.scene);
-    const bool solves = !solved_before && !traces_paths;
+    const bool solves = !solved_before && uses_solution;
     const SolveOptions solve_options = options.solver.resolved({});
     if (solves)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
@@ -251,10 +248,10 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     warn_of_setup(solved.scene, ray_caster);
     if (solves) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
 
-    options.path.until = options.solver.until();
-    options.path.seed = options.solver.seed();
+    options.measuring.until = options.solver.until();
+    options.measuring.seed = options.solver.seed();
     stop_on_signal();
-    const Solution* solution = traces_paths ? nullptr : &solved.solution;
+    const Solution* solution = uses_solution ? &solved.solution : nullptr;
     try {
         measure_and_write(solved.scene, solution, ray_caster, std::move(grids), options, output);
     } catch (const Stopped& e) {
@@ -296,18 +293,15 @@ void add_probe(CLI::App& app, int& exit_code) {
     command.add_flag("--json", options->json, "The summary as JSON on stdout");
     options->places.add_to(command);
     add_quantity(command, *options);
-    command.add_option("--samples", options->path.samples, "Paths a point")
-        ->capture_default_str()
+    command
+        .add_option("--samples", options->measuring.samples,
+                    fmt::format("Paths a point (default: {})", text_of_default_samples(&DefaultSamples::point)))
         ->check(CLI::Range(2, 1 << 24));
-    command.add_option("--max-samples", options->path.max_samples, "Most paths a point with --until")
+    command.add_option("--max-samples", options->measuring.max_samples, "Most paths a point with --until")
         ->capture_default_str()
         ->check(CLI::Range(2, 1 << 24))
         ->group(path_group);
-    add_choice<ProbedLight>(command, "--shading", options->light,
-                            {{"gather", ProbedLight::gather}, {"path", ProbedLight::path}},
-                            "gather: each point finds its own light, from the solution; path: path tracing, without "
-                            "solving")
-        ->default_str("gather");
+    add_shading(command, options->measuring.shading, &DefaultSamples::point, "point");
     options->dimming.add_to(command);
     options->solver.add_to(command);
     options->mesh.add_to(command);

@@ -96,7 +96,7 @@ std::size_t RatedGrid::worst() const {
 
 std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                   const std::vector<MeasuringGrid>& grids, std::span<const V3f> directions,
-                                  const PathOptions& options) {
+                                  const MeasuringOptions& options) {
     warn_of_sources_without_area(scene);
     std::vector<Observer> observers;
     for (const MeasuringGrid& grid : grids)

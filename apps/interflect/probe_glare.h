@@ -24,7 +24,7 @@ struct RatedGrid {
 /// @throws Stopped if no observer was reached.
 std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                   const std::vector<MeasuringGrid>& grids, std::span<const V3f> directions,
-                                  const PathOptions& options);
+                                  const MeasuringOptions& options);
 
 void write_ratings(detail::PendingFile& output, const std::vector<RatedGrid>& grids);
 

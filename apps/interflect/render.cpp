@@ -22,6 +22,7 @@
 #include "apps/interflect/refused_options.h"
 #include "apps/interflect/run_path_tracer.h"
 #include "apps/interflect/run_solve.h"
+#include "apps/interflect/shading_options.h"
 #include "apps/interflect/show.h"
 #include "apps/interflect/signals.h"
 #include "apps/interflect/stats_file.h"
@@ -38,7 +39,6 @@
 #include "interflect/render.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/pictures/outlines.h"
-#include "interflect/render/pictures/path_picture.h"
 #include "interflect/scene/view.h"
 #include "interflect/solution.h"
 
@@ -47,23 +47,6 @@ namespace interflect::command {
 using namespace detail;
 
 namespace {
-
-enum class PictureShading {
-    hybrid,  ///< Direct light per pixel, indirect light interpolated, see render_hybrid().
-    gather,  ///< Final gathering from a solution.
-    smooth,  ///< The solution itself, see Shading.
-    flat,
-    path,     ///< Path tracing without a solution.
-    instant,  ///< Virtual lights without a solution, see render_instant().
-};
-
-bool makes_no_solution(PictureShading shading) {
-    return shading == PictureShading::path || shading == PictureShading::instant;
-}
-
-bool traces_paths(PictureShading shading) {
-    return shading == PictureShading::hybrid || shading == PictureShading::gather || makes_no_solution(shading);
-}
 
 struct RenderArguments {
     SceneOptions scene;
@@ -74,11 +57,8 @@ struct RenderArguments {
     SolverOptions solver;
     PathTracerArguments path;
     std::filesystem::path output;
-    Size size;
-    PictureShading shading = PictureShading::hybrid;
-    std::optional<int> samples;
-    int light_walks = PathOptions().light_walks;
-    RenderOptions render;
+    Size size;               // of the picture with its legend
+    PictureOptions picture;  // of the view, see complete()
     Exposure exposure;
     Tonemap tonemap = Tonemap::srgb;
     float display_luminance = usual_display_luminance;
@@ -87,11 +67,19 @@ struct RenderArguments {
     int legend_rows = 0;  // at the foot of the picture
 
     bool is_in_false_colours() const { return is_quantity(shown) || false_colour.measured; }
-    bool shows_irradiance() const { return false_colour.measured == Measured::illuminance; }
     /// Height of the view, above the legend [pixels].
     int rows() const { return size.height - legend_rows; }
     /// Time left to the command [s]; infinite without --time.
     double seconds_left() const { return solver.time() - seconds_of_process(); }
+    /// Sets the options of the view that follow from others.
+    void complete() {
+        picture.width = size.width;
+        picture.height = rows();
+        picture.samples = require_samples(picture.shading, &DefaultSamples::pixel, picture.samples);
+        picture.until = solver.until();
+        picture.seed = solver.seed();
+        if (false_colour.measured == Measured::illuminance) picture.quantity = PictureQuantity::irradiance;
+    }
 };
 
 /// Returns the requested view, the scene's first, or an overview.
@@ -112,7 +100,7 @@ struct Picture {
     std::optional<float> exposure;  // empty if it has no meaning
     std::int64_t non_finite_pixels = 0;
     bool is_dark = false;  // no light is visible
-    PathTracing traced{};  // source of the layers
+    Rendering traced{};    // source of the layers
 };
 
 bool is_for_people(const RenderArguments& options) { return needs_tone_mapping(require_image_format(options.output)); }
@@ -153,60 +141,10 @@ Picture picture_of(const Image& light, std::int64_t non_finite_pixels, const Ren
     return picture;
 }
 
-PathOptions path_options(const RenderArguments& options) {
-    PathOptions result;
-    result.width = options.size.width;
-    result.height = options.rows();
-    constexpr int gathered_samples = 16, hybrid_samples = 32;  // enough for a filtered picture
-    const int usual = makes_no_solution(options.shading)          ? result.samples
-                      : options.shading == PictureShading::hybrid ? hybrid_samples
-                                                                  : gathered_samples;
-    result.samples = options.samples.value_or(usual);
-    result.until = options.solver.until();
-    result.seed = options.solver.seed();
-    result.light_walks = options.light_walks;
-    if (options.shows_irradiance()) result.quantity = PathQuantity::irradiance;
-    return result;
-}
-
-Tracer tracer_of(const RenderArguments& options) {
-    return options.shading == PictureShading::hybrid ? render_hybrid : gather;
-}
-
 /// @param solution  Null for shading without one.
-PathShading path_shading(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-                         const RenderArguments& arguments) {
-    using Draw = std::function<PathTracing(const PathOptions&, const Monitor&)>;
-    const auto from_scene = [&](auto draw) -> Draw {
-        return [&, draw](const auto& options, const auto& monitor) {
-            return draw(scene, ray_caster, view, options, monitor);
-        };
-    };
-    const auto from_solution = [&](Tracer draw) -> Draw {
-        return [&, solution, draw](const auto& options, const auto& monitor) {
-            return draw(scene, *solution, ray_caster, view, options, monitor);
-        };
-    };
-    switch (arguments.shading) {
-        case PictureShading::path:
-            return {"path tracing", from_scene(trace_paths), nullptr};
-        case PictureShading::instant:
-            return {"instant radiosity", from_scene(render_instant), nullptr,
-                    static_cast<std::size_t>(arguments.light_walks) * bytes_per_light_walk};
-        case PictureShading::gather:
-            return {"final gathering", from_solution(gather), solution};
-        default:
-            return {"hybrid shading", from_solution(render_hybrid), solution};
-    }
-}
-
-/// @param solution  As of path_shading(). @param time  As PathOptions::time.
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-                   const RenderArguments& options, double time = PathOptions().time) {
-    PathOptions tracing = path_options(options);
-    tracing.time = time;
-    PathTracing traced =
-        run_path_tracer(scene, path_shading(scene, solution, ray_caster, view, options), view, tracing, options.path);
+                   const RenderArguments& options) {
+    Rendering traced = run_path_tracer(scene, solution, ray_caster, view, options.picture, options.path);
     Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
     picture.traced = std::move(traced);
     return picture;
@@ -216,11 +154,11 @@ Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const
                    const RenderArguments& options) {
     DrawingProgress progress;
     const Rendering rendering =
-        interflect::render(solved.scene, solved.solution, ray_caster, view, options.render, progress.monitor());
+        interflect::render(solved.scene, solved.solution, ray_caster, view, options.picture, progress.monitor());
     Picture picture = picture_of(rendering.image, rendering.non_finite_pixels, options);
     if (options.shown == Shown::mesh)
         picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,
-                                      options.render.samples, options.render.seed, {}, progress.monitor());
+                                      options.picture.samples, options.picture.seed, {}, progress.monitor());
     return picture;
 }
 
@@ -240,7 +178,8 @@ int legend_rows(const RenderArguments& options) {
 /// Uses false colours for display formats only.
 Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                       const RenderArguments& options) {
-    const CameraSampling sampling{options.size.width, options.rows(), options.render.samples, options.render.seed};
+    const PictureOptions& picture = options.picture;
+    const CameraSampling sampling{picture.width, picture.height, picture.samples, picture.seed};
     DrawingProgress progress;
     QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling, progress.monitor());
     if (options.legend_rows > 0) drawn.shown = with_legend(drawn.shown, drawn.scale, label(options));
@@ -280,7 +219,7 @@ bool takes_previews(const RenderArguments& options) {
 void write_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
     constexpr int preview_samples = 4;
-    RenderOptions few = options.render;
+    PictureOptions few = options.picture;
     few.samples = std::min(few.samples, preview_samples);
     few.shading = Shading::smooth;
     const Rendering rendering = interflect::render(scene, solution, ray_caster, view, few, {{}, &stop_flag()});
@@ -297,9 +236,9 @@ void write_preview(const Scene& scene, const Solution& solution, const RayCaster
 DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                          RenderArguments& options) {
     constexpr int few_samples = 4;
-    if (traces_paths(options.shading)) {
-        const DrawingTime paths = predict_time_of_paths(scene, solution, ray_caster, view, tracer_of(options),
-                                                        path_options(options), options.path.denoise);
+    if (traces_paths(options.picture.shading)) {
+        const DrawingTime paths =
+            predict_time_of_paths(scene, solution, ray_caster, view, options.picture, options.path.denoise);
         const double left = options.seconds_left();
         if (paths.total() <= largest_drawing_share * left) return paths;
         const std::string needed = fmt::format("per-pixel shading takes about {}, but --time leaves {}",
@@ -309,33 +248,25 @@ DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const Ray
             return paths;
         }
         spdlog::warn("{}: the light is drawn as by --shading smooth; a smaller --size takes less time", needed);
-        options.shading = PictureShading::smooth;
-        options.render.samples = std::min(options.render.samples, few_samples);
+        options.picture.shading = Shading::smooth;
+        options.picture.samples = std::min(options.picture.samples, few_samples);
     }
-    return predict_time_of_elements(scene, solution, ray_caster, view, options.render);
-}
-
-/// Sets RenderArguments::render by the other options.
-void set_render_options(RenderArguments& options) {
-    options.render.width = options.size.width;
-    options.render.height = options.rows();
-    options.render.irradiance = options.shows_irradiance();
-    options.render.samples = options.samples.value_or(options.render.samples);
-    options.render.shading = options.shading == PictureShading::flat ? Shading::flat : Shading::smooth;
+    return predict_time_of_elements(scene, solution, ray_caster, view, options.picture);
 }
 
 /// Draws smooth shading instead of paths if a signal leaves pixels without light.
-/// @param time  Of tracing paths [s].
 Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                      RenderArguments& options, double time) {
-    if (traces_paths(options.shading)) {
+                      RenderArguments& options) {
+    if (traces_paths(options.picture.shading)) {
         // A signal that ended the solver would end gathering before its first ray.
         if (options.path.needs_paths() || !is_stop_requested()) {
-            Picture picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options, time);
+            Picture picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options);
             if (options.path.needs_paths() || has_every_pixel(picture.traced)) return picture;
         }
         spdlog::warn("stopped before each pixel had enough light: the picture is drawn as by --shading smooth");
-        options.render.samples = std::min(options.render.samples, RenderOptions().samples);
+        options.picture.shading = Shading::smooth;
+        options.picture.samples =
+            std::min(options.picture.samples, require_samples(Shading::smooth, &DefaultSamples::pixel));
     }
     return is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
                                       : draw_light(solved, ray_caster, view, options);
@@ -368,7 +299,6 @@ void run_solution(RenderArguments& options, PendingFile& output) {
         solve_options.limits.time = left / 2;  // until the time of drawing is known
     }
 
-    set_render_options(options);
     std::optional<DrawingTime> planned;
     const auto plan_or_preview = [&](const Solution& so_far) -> std::optional<Limits> {
         if (takes_previews(options)) write_preview(solved.scene, so_far, ray_caster, view, options);
@@ -383,11 +313,11 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     if (!solved_before)
         solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory, {},
                                     {.after = seconds_to_preview, .use = plan_or_preview});
-    if (traces_paths(options.shading) && !planned && !is_stop_requested()) plan_or_preview(solved.solution);
+    if (traces_paths(options.picture.shading) && !planned && !is_stop_requested()) plan_or_preview(solved.solution);
 
-    const double time = is_limited && planned ? std::max(shortest_time, options.seconds_left() - planned->finishing)
-                                              : PathOptions().time;
-    const Picture picture = draw_solution(solved, ray_caster, view, options, time);
+    if (is_limited && planned)
+        options.picture.time = std::max(shortest_time, options.seconds_left() - planned->finishing);
+    const Picture picture = draw_solution(solved, ray_caster, view, options);
     if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
     if (!solved_before) stats.write(solved.scene, solved.solution);
@@ -444,13 +374,15 @@ void check_false_colours(const RenderArguments& options) {
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
     check_option("--output", [&] { return require_image_format(options.output); });
-    if (options.shown != Shown::light && traces_paths(options.shading) && !makes_no_solution(options.shading))
-        options.shading = PictureShading::smooth;  // shows elements
-    if (makes_no_solution(options.shading))
+    Shading& shading = options.picture.shading;
+    const bool uses_solution = needs_solution(shading);
+    if (options.shown != Shown::light && uses_solution && traces_paths(shading))
+        shading = Shading::smooth;  // of elements
+    if (!uses_solution)
         refuse_solver_options(command);
-    else if (!traces_paths(options.shading))
+    else if (!traces_paths(shading))
         refuse_path_options(command);
-    if (options.shading != PictureShading::instant && command.get_option("--light-walks")->count() > 0)
+    if (shading != Shading::instant && command.get_option("--light-walks")->count() > 0)
         throw UsageError("--light-walks", "only --shading instant takes it");
     if (options.path.layers && require_image_format(options.output) != ImageFormat::exr)
         throw UsageError("--layers", "layers need a picture in OpenEXR: expected an --output that ends in .exr");
@@ -463,29 +395,29 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
         throw UsageError("--show", fmt::format("mesh is drawn to be looked at: expected an --output that ends in .png "
                                                "or .jpg, found '{}'",
                                                options.output.string()));
-    if (traces_paths(options.shading)) options.path.check_samples(command, path_options(options).samples);
-    options.scene.check(command, traces_paths(options.shading));
+    options.scene.check(command, traces_paths(shading));
     options.view.check();
     if (options.view.count() > 1) throw UsageError("--view", "a picture has one view, but several were given");
     options.dimming.require_solution(options.scene.path);
-    if (!makes_no_solution(options.shading) && command.get_option("--denoise")->count() == 0)
-        options.path.denoise = is_for_people(options);
+    if (uses_solution && command.get_option("--denoise")->count() == 0) options.path.denoise = is_for_people(options);
     check_tone_options(options, command);
     check_false_colours(options);
     options.cut.check();
     options.path.check();
     options.legend_rows = legend_rows(options);
+    options.complete();
+    if (traces_paths(shading)) options.path.check_samples(command, options.picture.samples);
     require_distinct_files(input_files(options.scene, options.view), outputs_of(options));
     require_text_name({"--stats", options.solver.stats});
-    if (traces_paths(options.shading))
+    if (traces_paths(shading))
         require_memory_for_paths(options.size);
     else
         require_memory_for_elements(options.size);
     PendingFile output(options.output);
-    if (makes_no_solution(options.shading))
-        run_paths(options, output);
-    else
+    if (uses_solution)
         run_solution(options, output);
+    else
+        run_paths(options, output);
     if (is_stop_requested()) exit_code = interrupted;
 }
 
@@ -530,29 +462,18 @@ void add_render(CLI::App& app, int& exit_code) {
         ->type_name("WxH")
         ->default_str("1280x720");
     command
-        .add_option("--samples", options->samples,
-                    "Camera rays a pixel (default: hybrid 32, path and instant 64, else 16)")
+        .add_option("--samples", options->picture.samples,
+                    fmt::format("Camera rays a pixel (default: {})", text_of_default_samples(&DefaultSamples::pixel)))
         ->check(CLI::Range(1, 65536));
-    add_choice<PictureShading>(
-        command, "--shading", options->shading,
-        {{"hybrid", PictureShading::hybrid},
-         {"gather", PictureShading::gather},
-         {"smooth", PictureShading::smooth},
-         {"flat", PictureShading::flat},
-         {"path", PictureShading::path},
-         {"instant", PictureShading::instant}},
-        "hybrid: direct light of each pixel, indirect light interpolated; gather: each pixel finds its own light, from "
-        "the solution; smooth: interpolated over each surface; flat: one value an element; path: path tracing, without "
-        "solving; instant: virtual lights, without solving")
-        ->default_str("hybrid");
+    add_shading(command, options->picture.shading, &DefaultSamples::pixel, "pixel");
     command
-        .add_option("--light-walks", options->light_walks,
+        .add_option("--light-walks", options->picture.light_walks,
                     "Random walks from the light sources that leave virtual lights, for each batch of samples "
                     "(--shading instant)")
         ->capture_default_str()
         ->check(CLI::Range(1, 1 << 18))
         ->group(path_group);
-    options->path.add_to(command);
+    options->path.add_to(command, options->picture);
     add_tone_options(command, *options);
     add_show(command, options->shown);
     options->false_colour.add_to(command);

@@ -43,12 +43,10 @@ struct ReportArguments {
     double eye_height = 1.2;  // of seated observers, z [m]
     ViewOptions view;
     Size size{640, 360};
-    int samples = 2048;
+    int samples = require_samples(Shading::gather, &DefaultSamples::point);
     std::uint64_t seed = 1;
     int threads = 0;
 };
-
-constexpr int picture_samples = 16;  // enough for a filtered picture
 
 /// Returns the floors of objects, except those below 1% of the area, such as doorsteps.
 std::vector<PlanarArea> rooms_of(const Scene& scene, const PlanarArea& floor) {
@@ -92,17 +90,16 @@ std::vector<RatedGrid> rate_rooms(const SolvedScene& solved, const RayCaster& ra
 
 ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                         const ReportArguments& options) {
-    PathOptions path{.width = options.size.width, .height = options.size.height, .samples = picture_samples};
-    path.seed = options.seed;
+    PictureOptions picture{.width = options.size.width, .height = options.size.height, .seed = options.seed};
     const auto draw = [&] {
         Image image;
         with_path_progress([&](const Monitor& monitor) {
-            image = denoise(render_hybrid(solved.scene, solved.solution, ray_caster, view, path, monitor).layers);
+            image = denoise(render(solved.scene, solved.solution, ray_caster, view, picture, monitor).layers);
         });
         return image;
     };
     const Image light = draw();
-    path.quantity = PathQuantity::irradiance;
+    picture.quantity = PictureQuantity::irradiance;
     FalseColourOptions colours;
     colours.measured = Measured::illuminance;
     return {view.name, tone_map(light, automatic_exposure(light)), colours.draw(luminances(draw()), true)};
@@ -132,7 +129,7 @@ ReportContent make_content(const SolvedScene& solved, const RayCaster& ray_caste
     content.date = options.date.empty() ? today() : options.date;
     content.working_plane = options.working_plane;
     content.samples = options.samples;
-    content.picture_samples = picture_samples;
+    content.picture_samples = require_samples(PictureOptions().shading, &DefaultSamples::pixel);
     content.rooms = rooms_of(solved.scene, floor);
     content.exterior = exterior_of(solved.scene, options.exterior);
     content.areas = measure_areas(solved, ray_caster, content.rooms, options);

@@ -129,7 +129,7 @@ class CellValues {
 
 /// Computes the illuminance of pixels over the floor [lx]; 0 elsewhere.
 Image illuminance_over(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                       const PlanarArea& floor, double height, const PathOptions& options, const Raster& raster,
+                       const PlanarArea& floor, double height, const MeasuringOptions& options, const Raster& raster,
                        const std::vector<bool>& mask) {
     const MeasuringGrid grid = area_grid(scene, floor, {.spacing = std::sqrt(floor.area / plan_points)}, height);
     std::vector<MeasuringPoint> points;
@@ -191,7 +191,7 @@ Image outlines_below(const Scene& scene, const RayCaster& ray_caster, const Rast
 }  // namespace
 
 ReportPlan draw_plan(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const PlanarArea& floor,
-                     double height, const PathOptions& options) {
+                     double height, const MeasuringOptions& options) {
     const std::vector<std::vector<V2d>> faces = faces_of(scene, floor);
     Imath::Box2d box;
     for (const std::vector<V2d>& face : faces)

@@ -22,6 +22,6 @@ struct ReportPlan {
 /// Draws a plan with a progress bar; stop_flag() ends it early. @param height  World z of the plane [m].
 /// @param options  Options per measuring point; width and height are ignored.
 ReportPlan draw_plan(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const PlanarArea& floor,
-                     double height, const PathOptions& options);
+                     double height, const MeasuringOptions& options);
 
 }  // namespace interflect::command

@@ -25,9 +25,22 @@ using namespace detail;
 
 namespace {
 
-void log_outcome(const std::string& what, const PathTracing& traced, double seconds) {
+const char* name_of(Shading shading) {
+    switch (shading) {
+        case Shading::path:
+            return "path tracing";
+        case Shading::instant:
+            return "instant radiosity";
+        case Shading::gather:
+            return "final gathering";
+        default:
+            return "hybrid shading";
+    }
+}
+
+void log_outcome(Shading shading, const Rendering& traced, double seconds) {
     const auto rays = static_cast<double>(traced.rays);
-    spdlog::info("{}: {} paths, {} rays in {}, estimated relative error {} a pixel{}", what,
+    spdlog::info("{}: {} paths, {} rays in {}, estimated relative error {} a pixel{}", name_of(shading),
                  magnitude(static_cast<double>(traced.paths)), magnitude(rays), duration(seconds),
                  percent(traced.relative_error),
                  traced.escaped_rays > 0 ? fmt::format(", {} of the rays left the scene",
@@ -37,8 +50,8 @@ void log_outcome(const std::string& what, const PathTracing& traced, double seco
 
 }  // namespace
 
-void PathTracerArguments::add_to(CLI::App& app) {
-    app.add_option("--max-samples", max_samples, "Most paths a pixel with --until")
+void PathTracerArguments::add_to(CLI::App& app, PictureOptions& picture) {
+    app.add_option("--max-samples", picture.max_samples, "Most paths a pixel with --until")
         ->capture_default_str()
         ->check(CLI::Range(2, 1 << 24))
         ->group(path_group);
@@ -50,7 +63,7 @@ void PathTracerArguments::add_to(CLI::App& app) {
                  "Write direct and indirect light, albedo, normal, depth, variance and element level too: .exr")
         ->group(path_group);
     app.add_flag(
-           "--mirrors,!--no-mirrors", mirrors,
+           "--mirrors,!--no-mirrors", picture.mirrors,
            "Show what mirrors reflect to the camera (default), or leave it out, as all other light that they reflect")
         ->group(path_group);
     app.add_option("--error-image", error_image, "Write the standard error of each pixel: .exr .hdr")
@@ -81,12 +94,12 @@ void PathTracerArguments::check_samples(const CLI::App& app, int samples) {
                          fmt::format("expected no less than --samples, {}, found {}", samples, most.as<int>()));
 }
 
-bool has_every_pixel(const PathTracing& traced) {
+bool has_every_pixel(const Rendering& traced) {
     return std::all_of(traced.batches.begin(), traced.batches.end(),
                        [](std::uint32_t batches) { return batches >= 2; });
 }
 
-std::vector<ImageLayer> layers_of(const PathTracing& traced) {
+std::vector<ImageLayer> layers_of(const Rendering& traced) {
     const PictureLayers& l = traced.layers;
     const auto of_image = [](const std::string& name, const char* channels, const Image& image) {
         static_assert(sizeof(Rgb) == 3 * sizeof(float));
@@ -110,22 +123,24 @@ void require_memory_for_paths(Size size) {
                         "a smaller --size, and --shading smooth, need less");
 }
 
-PathTracing run_path_tracer(const Scene& scene, const PathShading& shading, const View& view, PathOptions options,
-                            const PathTracerArguments& arguments) {
-    options.max_samples = arguments.max_samples;
-    options.mirrors = arguments.mirrors;
+Rendering run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
+                          const PictureOptions& options, const PathTracerArguments& arguments) {
+    const std::size_t walks = options.shading == Shading::instant ? static_cast<std::size_t>(options.light_walks) : 0;
     require_free_memory(scene.patches.size() * path_bytes_per_patch +
-                            Size{options.width, options.height}.pixels() * path_bytes_per_pixel + shading.memory,
+                            Size{options.width, options.height}.pixels() * path_bytes_per_pixel +
+                            walks * bytes_per_light_walk,
                         fmt::format("tracing paths in {}", scene.name),
                         "a smaller --size, fewer --light-walks, and a scene of fewer faces, need less");
     std::optional<PendingFile> error_image;
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
-    PathTracing traced;
+    Rendering traced;
     stop_on_signal();
-    CrewLight crew_light(scene, shading.solution);
-    const double seconds =
-        with_path_progress(crew_light, [&](const Monitor& monitor) { traced = shading.draw(options, monitor); });
-    if (shading.solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
+    CrewLight crew_light(scene, solution);
+    const double seconds = with_path_progress(crew_light, [&](const Monitor& monitor) {
+        traced = solution ? render(scene, *solution, ray_caster, view, options, monitor)
+                          : render(scene, ray_caster, view, options, monitor);
+    });
+    if (solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
         spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());
     if (arguments.denoise && traced.paths > 0) {
@@ -133,9 +148,9 @@ PathTracing run_path_tracer(const Scene& scene, const PathShading& shading, cons
         traced.image = denoise(traced.layers);
     }
     if (traced.interrupted) spdlog::warn("stopped early: the picture has more noise than asked for");
-    log_outcome(shading.name, traced, seconds);
+    log_outcome(options.shading, traced, seconds);
     if (error_image) {
-        const char* unit = options.quantity == PathQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";
+        const char* unit = options.quantity == PictureQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";
         write_image(*error_image, traced.standard_error,
                     {view, std::string("standard error of ") + unit, scene.name, INTERFLECT_VERSION, options.seed});
     }

@@ -12,28 +12,22 @@
 
 #include "interflect/core.h"
 #include "interflect/measure.h"
-#include "interflect/render.h"
 #include "interflect/scene.h"
+#include "interflect/shading.h"
 #include "interflect/solve.h"
 
 namespace interflect {
 
-/// Source of the irradiance of texels and vertices.
-enum class BakeShading {
-    smooth,  ///< Interpolated between the elements, as by Shading::smooth; in vertices of the elements.
-    hybrid,  ///< Direct light of each texel or vertex, averaged around it; indirect light as by render_hybrid().
-    gather,  ///< Gathered at each texel or vertex, as by measure_irradiance().
-};
-
+/// Light of texels and vertices.
 struct BakeOptions {
-    BakeShading shading = BakeShading::hybrid;
-    /// Points per texel or vertex where direct light is sampled, or gathered directions; >= 2. Default: 16 per texel;
-    /// 64 per vertex, because a vertex affects a larger surface; 64 directions.
-    std::optional<int> samples;
+    Shading shading = Shading::hybrid;  ///< `smooth`, `hybrid` or `gather`.
+    /// Points per texel or vertex where direct light is sampled, or gathered directions; >= 2. 0: the number in
+    /// default_samples. Not for `smooth`.
+    int samples = 0;
     std::uint64_t seed = 1;
 };
 
-/// Triangles of light in vertices, except for BakeShading::smooth: finer where direct light varies.
+/// Triangles of light in vertices, except for Shading::smooth: finer where direct light varies.
 struct VertexOptions {
     /// Largest error of interpolated direct light, relative to the irradiance there, or to the mean where that is
     /// darker; > 0.

@@ -9,7 +9,7 @@
 ///     options.views = {{scene.views.at(0)}};
 ///     const Solution solution = solve(scene, ray_caster, options);    // solve.h; step by step: Solver in solver.h
 ///     for (const Leaf& leaf : leaves(scene, solution)) ... // solution.h: irradiance and errors of the mesh; files
-///     render(scene, solution, ray_caster, scene.views[0]); // render.h; image.h writes files
+///     render(scene, solution, ray_caster, scene.views[0]); // render.h, shading.h; image.h writes files
 ///     measure_irradiance(...);                             // measure.h: lux at points and grids, glare, probes
 ///     export_solution("office.glb", scene, solution);      // export.h: lit glTF, lightmaps, other renderers
 ///     view_factors(scene, ray_caster, object_groups(scene));          // view_factors.h: exchange of radiation
@@ -29,6 +29,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/scene.h"
+#include "interflect/shading.h"
 #include "interflect/solution.h"
 #include "interflect/solve.h"
 #include "interflect/solve_options.h"

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "interflect/ray_caster.h"
-#include "interflect/render.h"
 #include "interflect/scene.h"
+#include "interflect/shading.h"
 #include "interflect/solve.h"
 
 namespace interflect {
@@ -50,16 +50,26 @@ struct MeasuredIrradiance {
     float illuminance_error() const { return luminance(standard_error); }  ///< [lux]
 };
 
-/// Measures irradiance by final gathering as for a pixel, see gather(). For cylinders, the mean over their normals (CIE
-/// 136).
-/// @param solution  Of the same scene, as is `ray_caster`; null: path tracing alone, see trace_paths().
-/// @param options   For each point; width and height are ignored. `until` is relative to the point's irradiance.
+/// Options of measure_irradiance() and rate_glare().
+struct MeasuringOptions {
+    Shading shading = Shading::gather;  ///< `gather` or `path`.
+    int samples = 0;  ///< Paths per point, >= 2; with a target the minimum. 0: the number in default_samples.
+    int max_samples = default_max_samples;  ///< Maximum number of paths per point with a target, >= samples.
+    double until = 0;  ///< Target of each point's standard error, relative to its irradiance, >= 0; 0: no target.
+    /// Maximum duration [s], > 0. Every point gets two batches of paths, however long they take.
+    double time = std::numeric_limits<double>::infinity();
+    std::uint64_t seed = 1;
+};
+
+/// Measures irradiance as for a pixel, see Shading. For cylinders, the mean over their normals (CIE 136).
+/// @param solution  Of the same scene, as is `ray_caster`; may be null for Shading::path, which ignores it.
 /// @return          One entry per point. Points with too few samples after an interruption have an infinite standard
 ///                  error.
-/// @throws InputError as gather() does, and for a point, normal or axis that is not finite or has no direction.
+/// @throws InputError for an option out of range, a solution or a ray caster of another scene, and for a point, normal
+///         or axis that is not finite or has no direction.
 std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Solution* solution,
                                                    const RayCaster& ray_caster, std::span<const MeasuringPoint> points,
-                                                   PathOptions options = {}, const Monitor& monitor = {});
+                                                   const MeasuringOptions& options = {}, const Monitor& monitor = {});
 
 /// Upper limit of measuring points per grid.
 inline constexpr std::size_t max_measuring_points = 1'000'000;
@@ -219,7 +229,7 @@ std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_
 /// @return          One rating per observer. Observers not reached before an interruption have a non-finite standard
 ///                  error.
 std::vector<GlareRating> rate_glare(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
-                                    std::span<const Observer> observers, const PathOptions& options = {},
+                                    std::span<const Observer> observers, const MeasuringOptions& options = {},
                                     const Monitor& monitor = {});
 
 /// Real spherical harmonics of degree 0, 1 and 2 in a unit direction, orthonormal over the sphere: Y00, Y1-1, Y10, Y11,

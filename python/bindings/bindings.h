@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -106,6 +107,12 @@ py::array_t<float> array_of(Image image);
 /// @param name  Of the argument, for messages.
 /// @throws InputError unless the array has the shape (height, width, 3).
 Image image_of(const py::array_t<float, py::array::c_style | py::array::forcecast>& array, const std::string& name);
+
+/// Converts a number of samples to that of the library: None, the default number, becomes 0.
+/// @throws InputError for less than 1.
+int samples_of(const std::optional<int>& samples);
+/// Inverse.
+inline std::optional<int> optional_samples(int samples) { return samples > 0 ? std::optional(samples) : std::nullopt; }
 
 /// One sentence per warning.
 std::vector<std::string> sentences(const Warnings& warnings);

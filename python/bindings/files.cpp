@@ -112,13 +112,6 @@ void bind_findings(py::module_& m) {
             .raises(""));
 }
 
-BakeShading bake_shading_of(const std::string& name) {
-    if (name == "smooth") return BakeShading::smooth;
-    if (name == "hybrid") return BakeShading::hybrid;
-    if (name == "gather") return BakeShading::gather;
-    throw InputError(fmt::format("shading: expected smooth, hybrid or gather, found '{}'", name));
-}
-
 /// Number of a keyword, or its default. Removes it from `left`.
 template <class Value>
 void take(py::dict& left, const char* name, Value& value) {
@@ -151,7 +144,8 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
     ExportOptions options;
     LightmapOptions texels;
     py::dict left(keywords);
-    std::string shading = "hybrid", content = "irradiance";
+    std::string shading = label(options.bake.shading), content = "irradiance";
+    std::optional<int> samples;
     take(left, "exposure", options.exposure);
     Warnings warnings;
     options.warnings = &warnings;
@@ -161,7 +155,7 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
         options.up = up_of(*light->scene, warnings);
     }
     take(left, "shading", shading);
-    take(left, "samples", options.bake.samples);
+    take(left, "samples", samples);
     take(left, "seed", options.bake.seed);
     options.probes.seed = options.bake.seed;
     take(left, "max_error", options.vertices.max_error);
@@ -186,7 +180,8 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
     for (const auto& [name, value] : left)
         throw py::type_error("export: there is no option '" + py::cast<std::string>(name) + "'" +
                              (lightmap ? "" : " without lightmap=True"));
-    options.bake.shading = bake_shading_of(shading);
+    options.bake.shading = find_shading(shading, lightmap ? &DefaultSamples::texel : &DefaultSamples::vertex);
+    options.bake.samples = samples_of(samples);
     auto files = long_work(progress, threads, [&](const Monitor& monitor) {
         options.monitor = monitor;
         return export_solution(path, *light->scene, *light->solution, options);

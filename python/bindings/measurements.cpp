@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "bindings.h"
+#include "fields.h"
 #include "interflect/measure.h"
 #include "long_work.h"
 
@@ -40,23 +41,19 @@ Receiver receiver_of(const std::string& name) {
 }
 
 SharedMeasurement measure(const SharedLight& light, const Doubles& points, const Doubles& normals,
-                          const std::string& receiver, const Doubles& axes, const std::string& shading, int samples,
-                          double until, std::uint64_t seed, int threads, const py::object& progress) {
+                          const std::string& receiver, const Doubles& axes, const MeasuringOptions& options,
+                          int threads, const py::object& progress) {
     const std::vector<Imath::V3d> positions = vectors_of(points, "points");
     const auto count = static_cast<py::ssize_t>(positions.size());
     const std::vector<Imath::V3d> normal = vectors_of(normals, "normals", count),
                                   axis = vectors_of(axes, "axes", count);
     const Receiver kind = receiver_of(receiver);
-    if (shading != "gather" && shading != "path")
-        throw InputError(fmt::format("shading: expected gather or path, found '{}'", shading));
     std::vector<MeasuringPoint> places;
     for (std::size_t i = 0; i < positions.size(); ++i)
         places.push_back({positions[i], V3f(normal[i]), kind, V3f(axis[i])});
-    const PathOptions options{.samples = samples, .until = until, .seed = seed};
     return long_work(progress, threads, [&](const Monitor& monitor) {
-        const Solution* solution = shading == "path" ? nullptr : light->solution.get();
-        return std::make_shared<Measurement>(
-            Measurement{measure_irradiance(*light->scene, solution, *light->ray_caster, places, options, monitor)});
+        return std::make_shared<Measurement>(Measurement{
+            measure_irradiance(*light->scene, light->solution.get(), *light->ray_caster, places, options, monitor)});
     });
 }
 
@@ -84,6 +81,22 @@ py::array_t<double> points_of(const MeasuringGrid& grid) {
     for (const Imath::V3d& point : grid.points)
         for (int c = 0; c < 3; ++c) *next++ = point[c];
     return result;
+}
+
+void bind_measuring_options(py::module_& m) {
+    using Options = MeasuringOptions;
+    Fields<Options>(m, "MeasuringOptions", docs::MeasuringOptions)
+        .field(
+            "shading", [](const Options& o) { return label(o.shading); },
+            [](Options& o, const std::string& name) { o.shading = find_shading(name, &DefaultSamples::point); },
+            docs::MeasuringOptions_shading)
+        .field(
+            "samples", [](const Options& o) { return optional_samples(o.samples); },
+            [](Options& o, const std::optional<int>& samples) { o.samples = samples_of(samples); },
+            docs::MeasuringOptions_samples)
+        .field("until", &Options::until, docs::MeasuringOptions_until)
+        .field("seed", &Options::seed, "The same seed gives the same bits for any number of threads.")
+        .finish();
 }
 
 void bind_grids(py::module_& m) {
@@ -163,24 +176,24 @@ void bind_glare(py::module_& m) {
         });
     m.def(
         "rate_glare",
-        [](const SharedLight& light, const Doubles& eyes, const Doubles& lines_of_sight, int samples,
-           std::uint64_t seed, int threads, const py::object& progress) {
+        [](const SharedLight& light, const Doubles& eyes, const Doubles& lines_of_sight,
+           const std::optional<int>& samples, std::uint64_t seed, int threads, const py::object& progress) {
             const std::vector<Imath::V3d> eye = vectors_of(eyes, "eyes");
             const auto sight = vectors_of(lines_of_sight, "lines_of_sight", static_cast<py::ssize_t>(eye.size()));
             std::vector<Observer> observers;
             for (std::size_t i = 0; i < eye.size(); ++i) observers.push_back({eye[i], V3f(sight[i])});
             return long_work(progress, threads, [&](const Monitor& monitor) {
                 return rate_glare(*light->scene, light->solution.get(), *light->ray_caster, observers,
-                                  {.samples = samples, .seed = seed}, monitor);
+                                  {.samples = samples_of(samples), .seed = seed}, monitor);
             });
         },
-        py::arg("solution"), py::arg("eyes"), py::arg("lines_of_sight"), py::kw_only(), py::arg("samples") = 4096,
-        py::arg("seed") = 1, py::arg("threads") = 0, py::arg("progress") = py::none(),
+        py::arg("solution"), py::arg("eyes"), py::arg("lines_of_sight"), py::kw_only(), py::arg("samples") = py::none(),
+        py::arg("seed") = MeasuringOptions().seed, py::arg("threads") = 0, py::arg("progress") = py::none(),
         Documented(docs::rate_glare,
                    {{"solution", "Result of solve()."},
                     {"eyes", "(n, 3), or (3,): positions of the observers, in world coordinates [m]."},
                     {"lines_of_sight", "(n, 3), or (3,) for all: directions, which need not be normalised."},
-                    {"samples", "Gathered directions per observer, >= 2."}})
+                    {"samples", "Gathered directions per observer, >= 2; None: the default of probe()."}})
             .returns("A list with the rating of each observer.")
             .raises("InputError: for other shapes, and for a line of sight without direction."));
 }
@@ -229,8 +242,9 @@ void bind_measurements(py::module_& m) {
         .def("__len__", [](const Measurement& s) { return s.points.size(); })
         .def("__repr__", [](const Measurement& s) { return fmt::format("<Measurement: {} points>", s.points.size()); });
     m.def("probe", &measure, py::arg("solution"), py::arg("points"), py::arg("normals"), py::arg("receiver"),
-          py::arg("axes"), py::arg("shading"), py::arg("samples"), py::arg("until"), py::arg("seed"),
-          py::arg("threads"), py::arg("progress"), Documented("For interflect.probe()."));
+          py::arg("axes"), py::arg("options"), py::arg("threads"), py::arg("progress"),
+          Documented("For interflect.probe()."));
+    bind_measuring_options(m);
     bind_grids(m);
     bind_glare(m);
 }

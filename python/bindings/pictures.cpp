@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "bindings.h"
+#include "fields.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
 #include "interflect/metrics/metrics.h"
@@ -12,7 +13,7 @@ namespace interflect::python {
 namespace {
 
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
-using SharedTracing = std::shared_ptr<PathTracing>;
+using SharedRendering = std::shared_ptr<Rendering>;
 
 /// Scene and ray caster of a solution, or of a scene.
 struct Place {
@@ -31,58 +32,27 @@ Place place_of(const py::object& lit) {
     return {scene, std::make_shared<const RayCaster>(*scene), nullptr};
 }
 
-py::array_t<float> render_elements(const SharedLight& light, const py::object& view, int width, int height, int samples,
-                                   bool is_flat, bool irradiance, float crease_angle, std::uint64_t seed, int threads,
-                                   const py::object& progress) {
-    const View camera = view_of(*light->scene, view);
-    const RenderOptions options{.width = width,
-                                .height = height,
-                                .samples = samples,
-                                .shading = is_flat ? Shading::flat : Shading::smooth,
-                                .irradiance = irradiance,
-                                .smoothing = {crease_angle},
-                                .seed = seed};
-    return array_of(long_work(progress, threads, [&](const Monitor& monitor) {
-        return render(*light->scene, *light->solution, *light->ray_caster, camera, options, monitor).image;
-    }));
-}
-
-SharedTracing trace(const py::object& lit, const std::string& shading, const py::object& view, int width, int height,
-                    int samples, double until, int max_samples, double time, bool irradiance, bool mirrors,
-                    int light_walks, std::uint64_t seed, int threads, const py::object& progress) {
+SharedRendering draw(const py::object& lit, const py::object& view, const PictureOptions& options, int threads,
+                     const py::object& progress) {
     const Place place = place_of(lit);
     const View camera = view_of(*place.scene, view);
-    const PathOptions options{.width = width,
-                              .height = height,
-                              .samples = samples,
-                              .max_samples = max_samples,
-                              .until = until,
-                              .time = time,
-                              .quantity = irradiance ? PathQuantity::irradiance : PathQuantity::radiance,
-                              .mirrors = mirrors,
-                              .light_walks = light_walks,
-                              .seed = seed};
     return long_work(progress, threads, [&](const Monitor& monitor) {
-        const auto draw = [&]() -> PathTracing {
-            if (shading == "path") return trace_paths(*place.scene, *place.ray_caster, camera, options, monitor);
-            if (shading == "instant") return render_instant(*place.scene, *place.ray_caster, camera, options, monitor);
-            const auto from_solution = shading == "gather" ? gather : render_hybrid;
-            return from_solution(*place.scene, *place.solution, *place.ray_caster, camera, options, monitor);
-        };
-        return std::make_shared<PathTracing>(draw());
+        return std::make_shared<Rendering>(
+            place.solution ? render(*place.scene, *place.solution, *place.ray_caster, camera, options, monitor)
+                           : render(*place.scene, *place.ray_caster, camera, options, monitor));
     });
 }
 
-/// Image that the tracing keeps alive, without a copy.
-py::array image_of_tracing(const SharedTracing& owner, const Image& image) {
+/// Image that the rendering keeps alive, without a copy.
+py::array image_of_rendering(const SharedRendering& owner, const Image& image) {
     constexpr py::ssize_t number = sizeof(float);
     const auto width = static_cast<py::ssize_t>(image.width);
     return read_only(owner, reinterpret_cast<const float*>(image.pixels.data()), {image.height, width, 3},
                      {width * 3 * number, 3 * number, number});
 }
 
-py::dict layers_of(const SharedTracing& tracing) {
-    const PictureLayers& l = tracing->layers;
+py::dict layers_of(const SharedRendering& rendering) {
+    const PictureLayers& l = rendering->layers;
     py::dict layers;
     for (const auto& [name, image] : {std::pair{"emitted", &l.emitted},
                                       {"direct", &l.reflected.direct},
@@ -90,14 +60,14 @@ py::dict layers_of(const SharedTracing& tracing) {
                                       {"albedo", &l.albedo},
                                       {"normal", &l.normal},
                                       {"position", &l.position}})
-        layers[name] = image_of_tracing(tracing, *image);
-    const auto width = static_cast<py::ssize_t>(tracing->image.width);
+        layers[name] = image_of_rendering(rendering, *image);
+    const auto width = static_cast<py::ssize_t>(rendering->image.width);
     for (const auto& [name, values] : {std::pair{"depth", &l.depth},
                                        {"level", &l.level},
                                        {"direct_variance", &l.reflected.direct_variance},
                                        {"indirect_variance", &l.reflected.indirect_variance}})
         if (!values->empty())
-            layers[name] = read_only(tracing, values->data(), {tracing->image.height, width},
+            layers[name] = read_only(rendering, values->data(), {rendering->image.height, width},
                                      {width * static_cast<py::ssize_t>(sizeof(float)), sizeof(float)});
     return layers;
 }
@@ -139,14 +109,62 @@ py::array_t<std::uint8_t> display_bytes(const Image& mapped) {
     return bytes;
 }
 
-void bind_tracing(py::module_& m) {
-    py::class_<PathTracing, SharedTracing>(m, "PathTracing", docs::PathTracing)
+PictureQuantity quantity_of(const std::string& name) {
+    if (name == "radiance") return PictureQuantity::radiance;
+    if (name == "irradiance") return PictureQuantity::irradiance;
+    throw InputError(fmt::format("quantity: expected radiance or irradiance, found '{}'", name));
+}
+
+void bind_picture_options(py::module_& m) {
+    using Options = PictureOptions;
+    const auto set_crease_angle = [](Options& o, float angle) {
+        if (!(angle >= 0 && angle <= 180))
+            throw InputError(fmt::format("crease_angle: expected 0 to 180 degrees, found {}", angle));
+        o.smoothing.crease_angle = angle;
+    };
+    Fields<Options>(m, "PictureOptions", docs::PictureOptions)
+        .field("width", &Options::width, docs::PictureOptions_width)
+        .field("height", &Options::height, docs::PictureOptions_height)
+        .field(
+            "shading", [](const Options& o) { return label(o.shading); },
+            [](Options& o, const std::string& name) { o.shading = find_shading(name, &DefaultSamples::pixel); },
+            docs::Shading)
+        .field(
+            "samples", [](const Options& o) { return optional_samples(o.samples); },
+            [](Options& o, const std::optional<int>& samples) { o.samples = samples_of(samples); },
+            docs::PictureOptions_samples)
+        .field("max_samples", &Options::max_samples, docs::PictureOptions_max_samples)
+        .field("until", &Options::until, docs::PictureOptions_until)
+        .field("time", &Options::time, docs::PictureOptions_time)
+        .field(
+            "quantity",
+            [](const Options& o) { return o.quantity == PictureQuantity::radiance ? "radiance" : "irradiance"; },
+            [](Options& o, const std::string& name) { o.quantity = quantity_of(name); }, docs::PictureQuantity)
+        .field("mirrors", &Options::mirrors, docs::PictureOptions_mirrors)
+        .field(
+            "crease_angle", [](const Options& o) { return o.smoothing.crease_angle; }, set_crease_angle,
+            docs::SmoothingOptions_crease_angle)
+        .field("light_walks", &Options::light_walks, docs::PictureOptions_light_walks)
+        .field("seed", &Options::seed, "The same seed gives the same bits for any number of threads.")
+        .finish();
+    m.def(
+        "needs_solution",
+        [](const std::string& shading) { return needs_solution(find_shading(shading, &DefaultSamples::pixel)); },
+        py::arg("shading"), Documented(docs::needs_solution));
+    m.def(
+        "traces_paths",
+        [](const std::string& shading) { return traces_paths(find_shading(shading, &DefaultSamples::pixel)); },
+        py::arg("shading"), Documented(docs::traces_paths));
+}
+
+void bind_rendering(py::module_& m) {
+    py::class_<Rendering, SharedRendering>(m, "Rendering", docs::Rendering)
         .def_property_readonly(
-            "image", [](const SharedTracing& t) { return image_of_tracing(t, t->image); },
-            array_text("(height, width, 3) float32", docs::PathTracing_image).c_str())
+            "image", [](const SharedRendering& t) { return image_of_rendering(t, t->image); },
+            array_text("(height, width, 3) float32", docs::Rendering_image).c_str())
         .def_property_readonly(
-            "standard_error", [](const SharedTracing& t) { return image_of_tracing(t, t->standard_error); },
-            array_text("(height, width, 3) float32", docs::PathTracing_standard_error).c_str())
+            "standard_error", [](const SharedRendering& t) { return image_of_rendering(t, t->standard_error); },
+            array_text("(height, width, 3) float32", docs::Rendering_standard_error).c_str())
         .def_property_readonly(
             "layers", &layers_of,
             "Dict of read-only float32 arrays, the means over the samples of each pixel. (height, width, 3): "
@@ -155,18 +173,18 @@ void bind_tracing(py::module_& m) {
             "relative "
             "to Scene.origin [m]. (height, width): 'depth' [m]; 'level' of the visible element; 'direct_variance' and "
             "'indirect_variance' of the channel means.")
-        .def_readonly("relative_error", &PathTracing::relative_error, docs::PathTracing_relative_error)
-        .def_readonly("rays", &PathTracing::rays, docs::PathTracing_rays)
-        .def_readonly("paths", &PathTracing::paths, "Number of paths.")
-        .def_readonly("non_finite_pixels", &PathTracing::non_finite_pixels, docs::PathTracing_non_finite_pixels)
+        .def_readonly("relative_error", &Rendering::relative_error, docs::Rendering_relative_error)
+        .def_readonly("rays", &Rendering::rays, docs::Rendering_rays)
+        .def_readonly("paths", &Rendering::paths, "Number of paths.")
+        .def_readonly("non_finite_pixels", &Rendering::non_finite_pixels, docs::Rendering_non_finite_pixels)
         .def(
             "denoise",
-            [](const SharedTracing& t) {
+            [](const SharedRendering& t) {
                 return array_of(long_work(py::none(), 0, [&](const Monitor&) { return denoise(t->layers); }));
             },
             Documented(docs::denoise).returns("The picture, float32 (height, width, 3), in the same unit."))
-        .def("__repr__", [](const PathTracing& t) {
-            return fmt::format("<PathTracing: {} x {}, {} paths, relative error {:.3g}>", t.image.width, t.image.height,
+        .def("__repr__", [](const Rendering& t) {
+            return fmt::format("<Rendering: {} x {}, {} paths, relative error {:.3g}>", t.image.width, t.image.height,
                                t.paths, t.relative_error);
         });
 }
@@ -223,16 +241,17 @@ Image image_of(const Floats& array, const std::string& name) {
     return image;
 }
 
+int samples_of(const std::optional<int>& samples) {
+    if (samples && *samples < 1) throw InputError(fmt::format("samples: expected 1 or more, found {}", *samples));
+    return samples.value_or(0);
+}
+
 void bind_pictures(py::module_& m) {
-    bind_tracing(m);
+    bind_picture_options(m);
+    bind_rendering(m);
     bind_differences(m);
-    m.def("render_elements", &render_elements, py::arg("solution"), py::arg("view"), py::arg("width"),
-          py::arg("height"), py::arg("samples"), py::arg("is_flat"), py::arg("irradiance"), py::arg("crease_angle"),
-          py::arg("seed"), py::arg("threads"), py::arg("progress"), Documented("For interflect.render()."));
-    m.def("trace", &trace, py::arg("lit"), py::arg("shading"), py::arg("view"), py::arg("width"), py::arg("height"),
-          py::arg("samples"), py::arg("until"), py::arg("max_samples"), py::arg("time"), py::arg("irradiance"),
-          py::arg("mirrors"), py::arg("light_walks"), py::arg("seed"), py::arg("threads"), py::arg("progress"),
-          Documented("For interflect.trace()."));
+    m.def("render", &draw, py::arg("lit"), py::arg("view"), py::arg("options"), py::arg("threads"), py::arg("progress"),
+          Documented("For interflect.render() and trace()."));
     m.def(
         "automatic_exposure", [](const Floats& image) { return automatic_exposure(image_of(image, "image")); },
         py::arg("image"),

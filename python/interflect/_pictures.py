@@ -14,39 +14,34 @@ from interflect._errors import InputError
 from interflect._progress import ProgressArgument, reporting
 from interflect._scenes import scene_of
 
-# Samples per pixel, as the command `interflect render` has.
-SAMPLES = {"hybrid": 32, "gather": 16, "path": 64, "instant": 64, "smooth": 16, "flat": 16}
 # Formats with 8-bit colours, for which export() computes the automatic exposure.
 COLOUR_FORMATS = (".glb", ".gltf", ".ply", ".obj")
-FROM_SCENE = ("path", "instant")
+PICTURE = _core.PictureOptions()  # with the defaults of the library
+MEASURING = _core.MeasuringOptions()
 ViewArgument = _core.View | str | None
 LitArgument = _core.Solution | _core.Scene | str | os.PathLike[str]
 
 
 def _lit(lit: LitArgument, shading: str) -> _core.Solution | _core.Scene:
-    if shading not in SAMPLES:
-        raise InputError(f"shading: expected one of {', '.join(SAMPLES)}, found {shading!r}")
     if isinstance(lit, _core.Solution):
         return lit
-    if shading in FROM_SCENE:
-        return _core.cut_at_contacts(scene_of(lit))  # as the command does
-    raise TypeError(f"{shading} shading needs a Solution: expected the result of solve(), found {lit!r}")
+    if _core.needs_solution(shading):
+        raise TypeError(f"{shading} shading needs a Solution: expected the result of solve(), found {lit!r}")
+    return _core.cut_at_contacts(scene_of(lit))  # as the command does
 
 
-def _view(lit: _core.Solution | _core.Scene, view: ViewArgument) -> ViewArgument:
-    """The view, or the first one for which a solution was made."""
-    return lit.views[0].view if view is None and isinstance(lit, _core.Solution) and lit.views else view
+def _draw(lit: LitArgument, view: ViewArgument, options: _core.PictureOptions, threads: int,
+          progress: ProgressArgument) -> _core.Rendering:
+    source = _lit(lit, options.shading)
+    if view is None and isinstance(source, _core.Solution) and source.views:
+        view = source.views[0].view  # for which the solution was made
+    with reporting(progress, "drawing") as report:
+        return _core.render(source, view, options, threads, report)
 
 
-def _quantity(quantity: str) -> bool:
-    if quantity not in ("radiance", "irradiance"):
-        raise InputError(f"quantity: expected radiance or irradiance, found {quantity!r}")
-    return quantity == "irradiance"
-
-
-def render(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, height: int = 720,
-           shading: str = "hybrid", samples: int | None = None, quantity: str = "radiance", denoise: bool = False,
-           crease_angle: float = 30, seed: int = 1, threads: int = 0,
+def render(lit: LitArgument, view: ViewArgument = None, *, width: int = PICTURE.width, height: int = PICTURE.height,
+           shading: str = PICTURE.shading, samples: int | None = PICTURE.samples, quantity: str = PICTURE.quantity,
+           denoise: bool = False, crease_angle: float = PICTURE.crease_angle, seed: int = PICTURE.seed, threads: int = 0,
            progress: ProgressArgument = None, **options: Any) -> NDArray[np.float32]:
     """Draws a view of a solution: float32 (height, width, 3), radiance [cd/m^2 or W/(m^2 sr)], row 0 at the top.
 
@@ -55,9 +50,9 @@ def render(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, he
         view: View, or its name in the scene; default: the first view of the solution, of the scene, or an overview.
         width: [pixels]
         height: [pixels]
-        shading: "hybrid": direct light per pixel, indirect light interpolated. "gather": final gathering. "smooth", "flat":
-            the light of the elements. "path", "instant": without the solution.
-        samples: Samples per pixel; default: 32, 16, 16, 16, 64 and 64, in this order.
+        shading: "flat", "smooth": the light of the elements. "hybrid": direct light per pixel, indirect light interpolated.
+            "gather": final gathering. "path", "instant": without the solution.
+        samples: Samples per pixel; default: 16, 16, 32, 16, 64 and 64, in this order.
         quantity: "radiance", or "irradiance" [lux or W/m^2] independent of reflectance.
         denoise: Filters the noise, not for smooth and flat shading.
         crease_angle: Maximum angle between faces with common smooth shading [degrees].
@@ -69,34 +64,28 @@ def render(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, he
     Raises:
         InputError: for a view that defines no picture and an option out of range.
     """
-    source = _lit(lit, shading)
-    if not 0 <= crease_angle <= 180:
-        raise InputError(f"crease_angle: expected 0 to 180 degrees, found {crease_angle}")
-    if shading not in ("smooth", "flat"):
-        traced = trace(source, view, width=width, height=height, shading=shading, samples=samples, quantity=quantity,
-                       seed=seed, threads=threads, progress=progress, **options)
-        return traced.denoise() if denoise else traced.image
-    if options:
-        raise TypeError(f"{shading} shading takes no {', '.join(options)}")
-    if denoise:
-        raise TypeError(f"{shading} shading has no noise to filter")
-    assert isinstance(source, _core.Solution)  # see _lit()
-    count = SAMPLES[shading] if samples is None else samples
-    with reporting(progress, "drawing") as report:
-        return _core.render_elements(source, _view(source, view), width, height, count, shading == "flat",
-                                     _quantity(quantity), crease_angle, seed, threads, report)
+    picture = _core.PictureOptions(width=width, height=height, shading=shading, samples=samples, quantity=quantity,
+                                   crease_angle=crease_angle, seed=seed, **options)
+    if not _core.traces_paths(shading):
+        if options:
+            raise TypeError(f"{shading} shading takes no {', '.join(options)}")
+        if denoise:
+            raise TypeError(f"{shading} shading has no noise to filter")
+    rendering = _draw(lit, view, picture, threads, progress)
+    return rendering.denoise() if denoise else rendering.image
 
 
-def trace(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, height: int = 720, shading: str = "path",
-          samples: int | None = None, quantity: str = "radiance", until: float = 0, max_samples: int = 16_384,
-          time: float = float("inf"), mirrors: bool = True, light_walks: int = 16_384, seed: int = 1, threads: int = 0,
-          progress: ProgressArgument = None) -> _core.PathTracing:
+def trace(lit: LitArgument, view: ViewArgument = None, *, width: int = PICTURE.width, height: int = PICTURE.height,
+          shading: str = "path", samples: int | None = PICTURE.samples, quantity: str = PICTURE.quantity,
+          until: float = PICTURE.until, max_samples: int = PICTURE.max_samples, time: float = PICTURE.time,
+          mirrors: bool = PICTURE.mirrors, light_walks: int = PICTURE.light_walks, seed: int = PICTURE.seed,
+          threads: int = 0, progress: ProgressArgument = None) -> _core.Rendering:
     """Draws a view by paths, with its standard error and its layers: path tracing, an independent reference without a
     solution; instant radiosity; final gathering or hybrid shading of a solution.
 
     Args:
         lit, view, width, height, samples, quantity, seed, threads, progress: As of render().
-        shading: "path", "instant", "gather" or "hybrid".
+        shading: "hybrid", "gather", "path" or "instant".
         until: Target of each pixel's relative standard error; 0: every pixel gets `samples`.
         max_samples: Maximum number of paths per pixel with a target.
         time: Maximum duration [s]; every pixel gets two batches of paths, however long they take.
@@ -109,13 +98,12 @@ def trace(lit: LitArgument, view: ViewArgument = None, *, width: int = 1280, hei
     Raises:
         InputError: as render(); also for "smooth" and "flat".
     """
-    source = _lit(lit, shading)
-    if shading in ("smooth", "flat"):
+    if not _core.traces_paths(shading):
         raise InputError(f"shading: {shading} traces no paths; use render()")
-    count = SAMPLES[shading] if samples is None else samples
-    with reporting(progress, "drawing") as report:
-        return _core.trace(source, shading, _view(source, view), width, height, count, until, max_samples, time,
-                           _quantity(quantity), mirrors, light_walks, seed, threads, report)
+    picture = _core.PictureOptions(width=width, height=height, shading=shading, samples=samples, quantity=quantity,
+                                   until=until, max_samples=max_samples, time=time, mirrors=mirrors,
+                                   light_walks=light_walks, seed=seed)
+    return _draw(lit, view, picture, threads, progress)
 
 
 def tonemap(image: ArrayLike, *, exposure: float | None = None, curve: str = "srgb",
@@ -136,8 +124,9 @@ def tonemap(image: ArrayLike, *, exposure: float | None = None, curve: str = "sr
 
 
 def probe(solution: _core.Solution, points: ArrayLike | _core.MeasuringGrid, normals: ArrayLike | None = None, *,
-          receiver: str = "planar", axis: ArrayLike = (0, 0, 1), shading: str = "gather", samples: int = 4096,
-          until: float = 0, seed: int = 1, threads: int = 0, progress: ProgressArgument = None) -> _core.Measurement:
+          receiver: str = "planar", axis: ArrayLike = (0, 0, 1), shading: str = MEASURING.shading,
+          samples: int | None = MEASURING.samples, until: float = MEASURING.until, seed: int = MEASURING.seed,
+          threads: int = 0, progress: ProgressArgument = None) -> _core.Measurement:
     """Measures irradiance at points, as `interflect probe`.
 
     Args:
@@ -148,7 +137,7 @@ def probe(solution: _core.Solution, points: ArrayLike | _core.MeasuringGrid, nor
         receiver: "planar", "cylindrical" or "semicylindrical" (EN 12464-1, CIE 136).
         axis: (3,) or (n, 3): axis of cylinders. Need not be normalised.
         shading: "gather" from the solution, or "path" for path tracing alone.
-        samples: Directions per point; with a target the minimum.
+        samples: Directions per point, 4096 by default; with a target the minimum.
         until: Target of the relative standard error; 0: none.
         seed, threads, progress: As of render().
 
@@ -162,8 +151,9 @@ def probe(solution: _core.Solution, points: ArrayLike | _core.MeasuringGrid, nor
         normals = points.normal if normals is None else normals
         points = points.points
     normals = (0, 0, 1) if normals is None else normals
+    options = _core.MeasuringOptions(shading=shading, samples=samples, until=until, seed=seed)
     with reporting(progress, "measuring") as report:
-        return _core.probe(solution, points, normals, receiver, axis, shading, samples, until, seed, threads, report)
+        return _core.probe(solution, points, normals, receiver, axis, options, threads, report)
 
 
 def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: bool = False,
@@ -197,8 +187,8 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
                                      progress=report, **options)
 
 
-def rate_glare(solution: _core.Solution, eyes: ArrayLike, lines_of_sight: ArrayLike, *, samples: int = 4096, seed: int = 1,
-               threads: int = 0, progress: ProgressArgument = None) -> list[_core.GlareRating]:
+def rate_glare(solution: _core.Solution, eyes: ArrayLike, lines_of_sight: ArrayLike, *,
+               samples: int | None = MEASURING.samples, seed: int = MEASURING.seed, threads: int = 0, progress: ProgressArgument = None) -> list[_core.GlareRating]:
     with reporting(progress, "rating glare") as report:
         return _core.rate_glare(solution, eyes, lines_of_sight, samples=samples, seed=seed, threads=threads,
                                 progress=report)

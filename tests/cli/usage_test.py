@@ -251,7 +251,7 @@ class Help(CommandTest):
         expected = {
             "info": ("SCENE", "--json"),
             "solve": ("--rays COUNT", "20M", "--time SECONDS", "--seed NUMBER=1", "--threads", "--stats FILE", "[m]"),
-            "render": ("--view NAME", "--eye X,Y,Z", "[degrees]", "--size WxH=1280x720", "hybrid|gather|smooth|flat|path|instant=hybrid", "STOPS"),
+            "render": ("--view NAME", "--eye X,Y,Z", "[degrees]", "--size WxH=1280x720", "flat|smooth|hybrid|gather|path|instant=hybrid", "STOPS"),
             "compare": ("IMAGE", "REFERENCE", "--scale"),
             "bench": ("--rays COUNT=4M", "--rounds", "--picture", "hybrid|gather|path|instant=hybrid"),
             "make-scene": ("maze", "office", "boxes", "two-rooms"),

@@ -232,7 +232,7 @@ TEST_P(SealedRoomsLightmap, LeaksNoLightWithHybridShading) {
     const Solution solution =
         solve(scene, RayCaster(scene), {.method = find_method("hsrr"), .limits = {.rays = 300'000}});
     ExportOptions options = at(10);
-    options.bake.shading = BakeShading::hybrid;
+    options.bake.shading = Shading::hybrid;
     const Lightmap lightmap = make_lightmap(scene, solution, options);
     const float radians = GetParam().turn * std::numbers::pi_v<float> / 180;
     const V3f across(std::cos(radians), std::sin(radians), 0);
@@ -254,7 +254,7 @@ INSTANTIATE_TEST_SUITE_P(Walls, SealedRoomsLightmap,
                          testing::Values(TwoRoomsOptions{}, TwoRoomsOptions{.turn = 30},
                                          TwoRoomsOptions{.turn = 30, .furniture = true}));
 
-class LightmapOfGroups : public testing::TestWithParam<std::tuple<BakeShading, LightmapContent>> {};
+class LightmapOfGroups : public testing::TestWithParam<std::tuple<Shading, LightmapContent>> {};
 
 TEST_P(LightmapOfGroups, SumsToTheTotal) {
     const auto [shading, content] = GetParam();
@@ -285,17 +285,16 @@ TEST_P(LightmapOfGroups, SumsToTheTotal) {
             difference += channel_sum(texel - total.images[page].pixels[i]);
             sum += channel_sum(total.images[page].pixels[i]);
         }
-    EXPECT_NEAR(difference / sum, 0, shading == BakeShading::smooth ? 1e-5 : 0.02);
+    EXPECT_NEAR(difference / sum, 0, shading == Shading::smooth ? 1e-5 : 0.02);
     EXPECT_GT(lightmap.groups[0][0].pixels[0].x, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LightmapOfGroups,
-                         testing::Combine(testing::Values(BakeShading::smooth, BakeShading::gather,
-                                                          BakeShading::hybrid),
+                         testing::Combine(testing::Values(Shading::smooth, Shading::gather, Shading::hybrid),
                                           testing::Values(LightmapContent::irradiance, LightmapContent::radiance)));
 
-class SampledLightmap : public testing::TestWithParam<BakeShading> {};
-INSTANTIATE_TEST_SUITE_P(Shading, SampledLightmap, testing::Values(BakeShading::gather, BakeShading::hybrid));
+class SampledLightmap : public testing::TestWithParam<Shading> {};
+INSTANTIATE_TEST_SUITE_P(Shading, SampledLightmap, testing::Values(Shading::gather, Shading::hybrid));
 
 // Closed box, exitance M and reflectance rho everywhere: H = M / (1 - rho) at every point. Every texel finds this
 // value, also in corners. Rays that started beyond a wall would escape, and those texels would lose half.
@@ -341,8 +340,8 @@ class FilteredTexels : public testing::Test {
         solution_ = uniform(scene_, 0);
     }
     std::vector<Rgb> bake(int samples, std::uint64_t seed, bool is_filtered) const {
-        const BakeOptions options{BakeShading::hybrid, samples, seed};
-        const BakedLight light(scene_, solution_, options, {16, 0.06, false});
+        const BakeOptions options{Shading::hybrid, samples, seed};
+        const BakedLight light(scene_, solution_, options, {&DefaultSamples::texel, 0.06, false});
         const std::span<const PointGrid> grids(&grid_, is_filtered ? 1 : 0);
         return light.irradiance(points_, grids, spacing, {});
     }

@@ -36,7 +36,7 @@ inline Solution uniform(const Scene& scene, float irradiance) {
 inline ExportOptions at(float texels_per_metre) {
     ExportOptions options;
     options.lightmap.emplace();
-    options.bake.shading = BakeShading::smooth;
+    options.bake.shading = Shading::smooth;
     options.lightmap->texels_per_metre = texels_per_metre;
     return options;
 }

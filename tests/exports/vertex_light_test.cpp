@@ -114,7 +114,7 @@ TEST(VertexLight, IsThatOfTheElementsWithSmoothShading) {
     const Solution solution =
         lightmap_testing::solution_of(scene, 3, [](const V3f& x) { return Rgb(exact_irradiance(x)); });
     ExportOptions options;
-    options.bake.shading = BakeShading::smooth;
+    options.bake.shading = Shading::smooth;
     VertexLight light = make_vertex_light(scene, solution, options);
     EXPECT_EQ(light.forest, solution.forest);
     EXPECT_EQ(triangles_of(light).size(), 2u * 8 * 8);
@@ -156,7 +156,7 @@ TEST(VertexLight, IsEvenInAFurnace) {
     constexpr float exact = 100;
     const Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0.5f), Rgb(exact / 2)}});
     const Solution solution = lightmap_testing::uniform(scene, exact);
-    for (const BakeShading shading : {BakeShading::hybrid, BakeShading::gather}) {
+    for (const Shading shading : {Shading::hybrid, Shading::gather}) {
         ExportOptions options;
         options.bake.shading = shading;
         options.vertices.max_edge = 0.5f;

@@ -130,7 +130,7 @@ TEST(RateGlare, PutsSourcesBeforeTheirBackground) {
     Scene scene = room();
     scene.luminaires.push_back(disk({4, 2, 2.7f}, {0, 0, -1}));
     const RayCaster ray_caster(scene);
-    const PathOptions options{.samples = 8192};
+    const MeasuringOptions options{.shading = Shading::path, .samples = 8192};
     const GlareRating rating = rate_glare(scene, nullptr, ray_caster, std::vector{observer}, options).at(0);
     const MeasuredIrradiance at_eye =
         measure_irradiance(scene, nullptr, ray_caster, std::vector<MeasuringPoint>{{{1, 2, 1.2}, {1, 0, 0}}}, options)
@@ -147,7 +147,8 @@ TEST(RateGlare, PutsSourcesBeforeTheirBackground) {
 
 TEST(RateGlare, RefusesWhatHasNoDirection) {
     const Scene scene = room();
-    EXPECT_THROW(rate_glare(scene, nullptr, RayCaster(scene), std::vector<Observer>{{{1, 1, 1}, {0, 0, 0}}}),
+    EXPECT_THROW(rate_glare(scene, nullptr, RayCaster(scene), std::vector<Observer>{{{1, 1, 1}, {0, 0, 0}}},
+                            {.shading = Shading::path}),
                  InputError);
 }
 

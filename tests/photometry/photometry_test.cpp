@@ -109,7 +109,8 @@ TEST(MeasuringGrid, MeasuresThePointLightOverIt) {
     std::vector<MeasuringPoint> points;
     for (const Imath::V3d& p : grid.points) points.push_back({p, grid.normal});
     points.push_back({{2, 3, 1}, -grid.normal});
-    const auto measured = measure_irradiance(scene, nullptr, RayCaster(scene), points, {.samples = 64});
+    const auto measured =
+        measure_irradiance(scene, nullptr, RayCaster(scene), points, {.shading = Shading::path, .samples = 64});
     for (std::size_t i = 0; i < grid.points.size(); ++i) {
         const double r = (grid.points[i] - Imath::V3d(2, 2, 2.5)).length(), expected = 1000 * 2.5 / (r * r * r);
         EXPECT_NEAR(static_cast<double>(measured[i].illuminance()), expected, 1e-3 * expected);
@@ -121,8 +122,9 @@ TEST(MeasuringGrid, MeasuresThePointLightOverIt) {
 TEST(MeasureIrradiance, TellsWhatAnInterruptionHasNotReached) {
     const Scene scene = closed_box({6, 5, 3}, 1, {Material{"", Rgb(0.5f), Rgb(10)}});
     const std::atomic<bool> stop = true;
-    const auto measured = measure_irradiance(scene, nullptr, RayCaster(scene), std::vector<MeasuringPoint>{{{1, 1, 1}}},
-                                             {.samples = 64}, {.on_progress = {}, .stop = &stop});
+    const auto measured =
+        measure_irradiance(scene, nullptr, RayCaster(scene), std::vector<MeasuringPoint>{{{1, 1, 1}}},
+                           {.shading = Shading::path, .samples = 64}, {.on_progress = {}, .stop = &stop});
     ASSERT_EQ(measured.size(), 1u);
     EXPECT_FALSE(measured.front().is_measured());
 }

@@ -36,6 +36,16 @@ class SameBits(unittest.TestCase):
         self.interflect("render", self.folder / "office.h5", "--view", "desk", "--size", "160x90", "-o", self.folder / "command.exr")
         np.testing.assert_array_equal(np.load(self.folder / "python.npy"), ifl.read_image(self.folder / "command.exr"))
 
+    def test_of_a_picture_without_options(self):
+        """Of small faces far away: most pixels are empty. tests/cli/default_picture_test.cpp compares with C++."""
+        scene = ifl.Scene([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (0, 1, 1), (1, 1, 1), (1, 0, 1)],
+                          [(0, 1, 2, 3), (4, 5, 6, 7)], materials=[ifl.Material("floor", 0.5), ifl.Material("lamp", 0.5, 100)],
+                          face_materials=[0, 1], views=[ifl.View("far", (20, -10, 8), (0.5, 0.5, 0.5))])
+        solution = ifl.solve(scene, rays=1e4)
+        solution.save(self.folder / "floor.h5")
+        self.interflect("render", self.folder / "floor.h5", "-o", self.folder / "command.exr")
+        np.testing.assert_array_equal(ifl.render(solution), ifl.read_image(self.folder / "command.exr"))
+
     def test_of_pictures_of_all_shadings(self):
         self.interflect("solve", "scenes/lights.mgf", "--rays", "100k", "-o", self.folder / "lights.h5")
         solution = ifl.Solution.open(self.folder / "lights.h5")

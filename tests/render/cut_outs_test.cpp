@@ -12,6 +12,7 @@
 #include "interflect/solution.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
+#include "tests/support/shadings.h"
 
 namespace interflect {
 
@@ -73,10 +74,10 @@ TEST(CutOuts, PicturesOfAFurnaceAreEven) {
     const Scene scene = divided_furnace();
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 500'000}});
-    const PathOptions options{.width = 6, .height = 4, .samples = 1024};
+    const PictureOptions options{.width = 6, .height = 4, .samples = 1024};
     for (const bool is_gathered : {false, true}) {
-        const PathTracing picture = is_gathered ? gather(scene, solution, ray_caster, along, options)
-                                                : trace_paths(scene, ray_caster, along, options);
+        const Rendering picture =
+            render(scene, solution, ray_caster, along, by(is_gathered ? Shading::gather : Shading::path, options));
         float errors = 0;
         for (std::size_t i = 0; i < picture.image.pixels.size(); ++i)
             for (int c = 0; c < 3; ++c) {
@@ -120,7 +121,8 @@ TEST(CutOuts, AreAsTheFacesThatTheyLeave) {
 
     const std::vector<MeasuringPoint> points{{{0.7, 2, 0}}, {{1.8, 1, 0}}, {{2.3, 2, 0}}, {{3.4, 3, 0}}};
     const auto measured = [&](const Scene& scene, const RayCaster& ray_caster, const Solution* solution) {
-        return measure_irradiance(scene, solution, ray_caster, points, {.samples = 4096});
+        return measure_irradiance(scene, solution, ray_caster, points,
+                                  {.shading = solution ? Shading::gather : Shading::path, .samples = 4096});
     };
     for (const bool is_gathered : {false, true}) {
         const auto found = measured(cut, of_cut, is_gathered ? &by_texture : nullptr);
@@ -139,7 +141,7 @@ TEST(CutOuts, AreSeenThrough) {
     const View down{"down", {2, 2.5, 2.5}, {2, 2.5, 0}, {0, 1, 0}, 40};
     const SolveOptions options{.method = find_method("srr"), .limits = {.rays = 2'000'000}};
     const Solution by_texture = solve(cut, of_cut, options), by_face = solve(whole, of_whole, options);
-    const RenderOptions size{.width = 8, .height = 4, .samples = 64, .shading = Shading::flat};
+    const PictureOptions size{.width = 8, .height = 4, .shading = Shading::flat, .samples = 64};
     const Image drawn = render(cut, by_texture, of_cut, down, size).image;
     const Image expected = render(whole, by_face, of_whole, down, size).image;
     for (std::size_t i = 0; i < drawn.pixels.size(); ++i)

@@ -24,9 +24,6 @@ namespace {
 
 using namespace testing_support;
 
-using Tracer = PathTracing (*)(const Scene&, const Solution&, const RayCaster&, const View&, const PathOptions&,
-                               const Monitor&);
-
 struct Place {
     std::string name;
     Scene scene;
@@ -105,11 +102,11 @@ double square_of_blocks(const Image& image, const Image& reference, int block) {
     return sum / static_cast<double>(a.pixels.size());
 }
 
-PathTracing draw(Tracer tracer, const Place& place, const Solution& solution, const RayCaster& ray_caster, int samples,
-                 std::uint64_t seed) {
-    PathOptions options{.width = width, .height = height, .samples = samples, .seed = seed};
+Rendering draw(Shading shading, const Place& place, const Solution& solution, const RayCaster& ray_caster, int samples,
+               std::uint64_t seed) {
+    PictureOptions options{.width = width, .height = height, .shading = shading, .samples = samples, .seed = seed};
     options.until = 1e-9, options.max_samples = samples;  // all samples in every pixel
-    return tracer(place.scene, solution, ray_caster, place.view, options, {});
+    return render(place.scene, solution, ray_caster, place.view, options);
 }
 
 /// Subtracts the light that is not filtered: from lamps, and interpolated.
@@ -125,14 +122,14 @@ constexpr std::array<int, 3> block_sizes{1, 5, 9};
 using Ratios = std::array<double, block_sizes.size()>;
 
 /// Returns the ratio of root mean square errors after and before filtering, for each size of blocks.
-Ratios error_ratios(Tracer tracer, const Place& place, const Solution& solution, const RayCaster& ray_caster) {
+Ratios error_ratios(Shading shading, const Place& place, const Solution& solution, const RayCaster& ray_caster) {
     constexpr int few = 8, many = 96;
     constexpr std::uint64_t pictures = 4;
-    const PathTracing reference = draw(tracer, place, solution, ray_caster, many, pictures);
+    const Rendering reference = draw(shading, place, solution, ray_caster, many, pictures);
     const Image expected = filtered_part(reference.image, reference.layers);
     Ratios before{}, after{}, ratios{};
     for (std::uint64_t seed = 0; seed < pictures; ++seed) {
-        const PathTracing noisy = draw(tracer, place, solution, ray_caster, few, seed);
+        const Rendering noisy = draw(shading, place, solution, ray_caster, few, seed);
         const Image light = filtered_part(noisy.image, noisy.layers);
         const Image filtered = filtered_part(denoise(noisy.layers), noisy.layers);
         for (std::size_t k = 0; k < block_sizes.size(); ++k) {
@@ -155,24 +152,25 @@ TEST(Denoise, DoesNotIncreaseTheErrorOfBlocks) {
     constexpr std::array<double, 2> largest_mean_of_pixels{0.7, 0.97};  // 0.61 and 0.92; without a filter 1
     const std::vector<Place> all = places();
     std::array<Ratios, 2> squares{};
-    constexpr std::array<Tracer, 2> tracers{gather, render_hybrid};
+    constexpr std::array shadings{Shading::gather, Shading::hybrid};
     for (const Place& place : all) {
         const RayCaster ray_caster(place.scene);
         const Solution solution =
             solve(place.scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 500'000}});
-        for (std::size_t t = 0; t < tracers.size(); ++t) {
-            const Ratios ratios = error_ratios(tracers[t], place, solution, ray_caster);
+        for (std::size_t t = 0; t < shadings.size(); ++t) {
+            const Ratios ratios = error_ratios(shadings[t], place, solution, ray_caster);
             for (std::size_t k = 0; k < ratios.size(); ++k) {
-                EXPECT_LT(ratios[k], largest) << place.name << ", tracer " << t << ", blocks of " << block_sizes[k];
+                EXPECT_LT(ratios[k], largest)
+                    << place.name << ", " << label(shadings[t]) << ", blocks of " << block_sizes[k];
                 squares[t][k] += ratios[k] * ratios[k];
             }
         }
     }
-    for (std::size_t t = 0; t < tracers.size(); ++t)
+    for (std::size_t t = 0; t < shadings.size(); ++t)
         for (std::size_t k = 0; k < block_sizes.size(); ++k) {
             const double mean = std::sqrt(squares[t][k] / static_cast<double>(all.size()));
             EXPECT_LT(mean, block_sizes[k] == 1 ? largest_mean_of_pixels[t] : largest_mean)
-                << "tracer " << t << ", blocks of " << block_sizes[k];
+                << label(shadings[t]) << ", blocks of " << block_sizes[k];
         }
 }
 

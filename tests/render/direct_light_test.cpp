@@ -19,6 +19,7 @@
 #include "interflect/render/lights/unoccluded_light.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
+#include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
@@ -81,7 +82,7 @@ TEST_P(BelowAPlate, DirectLightIsUnbiased) {
     const RayCaster ray_caster(scene);
     const TracedScene traced(scene, ray_caster);
     const std::vector<Gauge> gauges = gauges_on_floor(static_cast<std::size_t>(200'000 / samples));
-    const PathOptions options{.samples = samples, .until = target, .quantity = PathQuantity::irradiance};
+    const PictureOptions options{.samples = samples, .until = target, .quantity = PictureQuantity::irradiance};
     std::vector<double> ratios;
     double stated = 0, true_square = 0;
     const std::vector<SampledIrradiance> light = direct_irradiance(traced, gauges, options, {});
@@ -106,9 +107,10 @@ TEST(Hybrid, DirectLightOfPixelsIsUnbiasedBelowAPlate) {
     for (const int samples : {2, 4, 16}) {
         std::vector<double> ratios;
         for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-            const PathOptions options{
-                .width = 64, .height = 64, .samples = samples, .quantity = PathQuantity::irradiance, .seed = seed};
-            const Image seen = render_hybrid(scene, solution, ray_caster, view, options).layers.reflected.direct;
+            const PictureOptions options{
+                .width = 64, .height = 64, .samples = samples, .quantity = PictureQuantity::irradiance, .seed = seed};
+            const Image seen =
+                render(scene, solution, ray_caster, view, by(Shading::hybrid, options)).layers.reflected.direct;
             double sum = 0, exact = 0;
             for (int row = 0; row < 64; ++row)
                 for (int column = 0; column < 64; ++column) {
@@ -177,7 +179,7 @@ TEST(Hybrid, SunOutsideAddsNoNoise) {
             g.position += V3f(2.8f, 1.5f, 0.01f), g.patch = none;
             gauges.push_back(g);
         }
-        PathOptions options{.samples = 4, .quantity = PathQuantity::irradiance};
+        PictureOptions options{.samples = 4, .quantity = PictureQuantity::irradiance};
         double squares = 0;
         const auto a = direct_irradiance(traced, gauges, options, {});
         options.seed = 2;

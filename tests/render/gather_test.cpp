@@ -15,6 +15,7 @@
 #include "interflect/render/lights/known_light.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
+#include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
@@ -48,15 +49,15 @@ TEST(Gather, HasTheMeanOfPathTracing) {
     const Scene scene = furnished_room();
     const RayCaster ray_caster(scene);
     Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 2'000'000}});
-    PathOptions options{.width = 48, .height = 36, .samples = 256};
-    const PathTracing reference = trace_paths(scene, ray_caster, into_corner, options);
+    PictureOptions options{.width = 48, .height = 36, .samples = 256};
+    const Rendering reference = render(scene, ray_caster, into_corner, by(Shading::path, options));
     options.seed = 2;
-    const PathTracing gathered = gather(scene, solution, ray_caster, into_corner, options);
+    const Rendering gathered = render(scene, solution, ray_caster, into_corner, by(Shading::gather, options));
     EXPECT_NEAR(mean_of(gathered.image) / mean_of(reference.image), 1, 0.005);
     EXPECT_NEAR(mean_of(gathered.layers.reflected.direct) / mean_of(reference.layers.reflected.direct), 1, 0.005);
     EXPECT_EQ(gathered.non_finite_pixels, 0);
     for (Rgb& h : solution.irradiance) h *= 1.1f;
-    const PathTracing brighter = gather(scene, solution, ray_caster, into_corner, options);
+    const Rendering brighter = render(scene, solution, ray_caster, into_corner, by(Shading::gather, options));
     EXPECT_EQ(mean_of(brighter.layers.reflected.direct), mean_of(gathered.layers.reflected.direct));
     EXPECT_GT(mean_of(brighter.layers.reflected.indirect) / mean_of(gathered.layers.reflected.indirect),
               1.07);  // near light is traced, so the ratio is below 1.1
@@ -70,9 +71,11 @@ TEST(Gather, TracesPathsInCornersOfACoarseSolution) {
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 100'000}});
     const View view{"corner", {1, 1, 1}, {0, 0, 0}, {0, 0, 1}, 50};
-    const PathOptions options{.width = 32, .height = 24, .samples = 128};
-    const Image expected = box_downsample(trace_paths(scene, ray_caster, view, options).layers.reflected.indirect, 8);
-    const Image found = box_downsample(gather(scene, solution, ray_caster, view, options).layers.reflected.indirect, 8);
+    const PictureOptions options{.width = 32, .height = 24, .samples = 128};
+    const Image expected =
+        box_downsample(render(scene, ray_caster, view, by(Shading::path, options)).layers.reflected.indirect, 8);
+    const Image found = box_downsample(
+        render(scene, solution, ray_caster, view, by(Shading::gather, options)).layers.reflected.indirect, 8);
     for (std::size_t i = 0; i < expected.pixels.size(); ++i)
         EXPECT_NEAR(found.pixels[i].x / expected.pixels[i].x, 1, 0.05);
 }
@@ -82,38 +85,41 @@ TEST(Gather, SameSeedSameBits) {
     const Scene scene = furnished_room();
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 100'000}});
-    const PathOptions options{.width = 40, .height = 30, .samples = 16};
-    const PathTracing a = gather(scene, solution, ray_caster, into_corner, options);
-    const PathTracing b = gather(scene, solution, ray_caster, into_corner, options);
+    const PictureOptions options{.width = 40, .height = 30, .samples = 16};
+    const Rendering a = render(scene, solution, ray_caster, into_corner, by(Shading::gather, options));
+    const Rendering b = render(scene, solution, ray_caster, into_corner, by(Shading::gather, options));
     EXPECT_EQ(a.image.pixels, b.image.pixels);
 }
 
 /// Two batches of two samples for each pixel, however short the time is; with a long time, all samples.
-TEST(PathOptions, TimeLimitsAllButTwoBatches) {
+TEST(PictureOptions, TimeLimitsAllButTwoBatches) {
     const Scene scene = furnished_room();
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 100'000}});
-    const auto paths = [](const Scene& s, const Solution&, const RayCaster& r, const View& v, const PathOptions& o,
-                          const Monitor& m) { return trace_paths(s, r, v, o, m); };
-    const auto least = [](const PathTracing& p) { return *std::min_element(p.batches.begin(), p.batches.end()); };
-    const auto most = [](const PathTracing& p) { return *std::max_element(p.batches.begin(), p.batches.end()); };
-    for (const auto tracer : {+paths, &gather, &render_hybrid}) {
+    const auto least = [](const Rendering& p) { return *std::min_element(p.batches.begin(), p.batches.end()); };
+    const auto most = [](const Rendering& p) { return *std::max_element(p.batches.begin(), p.batches.end()); };
+    for (const Shading shading : {Shading::path, Shading::gather, Shading::hybrid}) {
         constexpr double unreachable = 1e-4;  // error; pixels get all samples
-        PathOptions options{
-            .width = 20, .height = 15, .samples = 64, .max_samples = 64, .until = unreachable, .time = 1e-9};
-        const PathTracing shortest = tracer(scene, solution, ray_caster, into_corner, options, {});
+        PictureOptions options{.width = 20,
+                               .height = 15,
+                               .shading = shading,
+                               .samples = 64,
+                               .max_samples = 64,
+                               .until = unreachable,
+                               .time = 1e-9};
+        const Rendering shortest = render(scene, solution, ray_caster, into_corner, options);
         EXPECT_EQ(least(shortest), 2u);
         EXPECT_EQ(most(shortest), 2u);
         EXPECT_EQ(shortest.paths, 20 * 15 * 4);
         EXPECT_FALSE(shortest.interrupted);
         options.time = 1e6;
-        const PathTracing longest = tracer(scene, solution, ray_caster, into_corner, options, {});
-        options.time = PathOptions().time;
-        const PathTracing unlimited = tracer(scene, solution, ray_caster, into_corner, options, {});
+        const Rendering longest = render(scene, solution, ray_caster, into_corner, options);
+        options.time = PictureOptions().time;
+        const Rendering unlimited = render(scene, solution, ray_caster, into_corner, options);
         EXPECT_EQ(most(longest), 32u);
         EXPECT_NEAR(mean_of(longest.image) / mean_of(unlimited.image), 1, 0.01);
         options.time = 0;
-        EXPECT_THROW(tracer(scene, solution, ray_caster, into_corner, options, {}), InputError);
+        EXPECT_THROW(render(scene, solution, ray_caster, into_corner, options), InputError);
     }
 }
 

@@ -13,6 +13,7 @@
 #include "interflect/render.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
+#include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
@@ -99,13 +100,13 @@ TEST(Glass, PicturesOfAFurnaceAreEven) {
     const Scene scene = divided_furnace();
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 500'000}});
-    const PathOptions options{.width = 6, .height = 4, .samples = 1024};
+    const PictureOptions options{.width = 6, .height = 4, .samples = 1024};
     RgbD expected;
     for (int c = 0; c < 3; ++c)
         expected[c] = 30 / (1 - static_cast<double>(scene.materials[0].reflectance[c])) / std::numbers::pi;
     for (const bool is_gathered : {false, true}) {
-        const PathTracing picture = is_gathered ? gather(scene, solution, ray_caster, along, options)
-                                                : trace_paths(scene, ray_caster, along, options);
+        const Rendering picture =
+            render(scene, solution, ray_caster, along, by(is_gathered ? Shading::gather : Shading::path, options));
         double errors = 0;
         for (std::size_t i = 0; i < picture.image.pixels.size(); ++i)
             for (int c = 0; c < 3; ++c) {
@@ -115,7 +116,8 @@ TEST(Glass, PicturesOfAFurnaceAreEven) {
             }
         EXPECT_LT(errors, is_gathered ? 0.05 : 0.15);  // noisier pixels would be no test
     }
-    const Rendering drawn = render(scene, solution, ray_caster, along, {.width = 6, .height = 4});
+    const Rendering drawn =
+        render(scene, solution, ray_caster, along, {.width = 6, .height = 4, .shading = Shading::smooth});
     for (const Rgb& pixel : drawn.image.pixels)
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c] / expected[c], 1, 0.04);
 }
@@ -138,7 +140,7 @@ struct LampBehindGlass {
     MeasuredIrradiance measured(const Solution* solution) const {
         const RayCaster ray_caster(scene);
         return measure_irradiance(scene, solution, ray_caster, std::vector<MeasuringPoint>{{Imath::V3d(x)}},
-                                  {.samples = 4096})
+                                  {.shading = solution ? Shading::gather : Shading::path, .samples = 4096})
             .front();
     }
 };
@@ -178,7 +180,8 @@ TEST(Depth, IsThatFromTheCameraBehindPanesAndInMirrors) {
     add_rectangle(scene, {-3, -2, -2}, y, z, wall);   // 4 m to the mirror, 7 m back
     const View ahead{"ahead", {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 1};
     const PictureLayers layers =
-        trace_paths(scene, RayCaster(scene), ahead, {.width = 1, .height = 1, .samples = 64}).layers;
+        render(scene, RayCaster(scene), ahead, {.width = 1, .height = 1, .shading = Shading::path, .samples = 64})
+            .layers;
     EXPECT_NEAR(layers.depth[0], 11, 0.01);
 }
 
@@ -191,21 +194,23 @@ TEST(Mirror, ShowsWhatIsBehindTheCamera) {
     add_rectangle(scene, {0.05f, 0, 0}, {0, 1, 0}, {0, 0, 1}, lamp);
     const RayCaster ray_caster(scene);
     const View view{"mirror", {1, 0.5, 0.5}, {2, 0.5, 0.5}, {0, 0, 1}, 10};
-    PathOptions options{.width = 4, .height = 4, .samples = 16};
-    const Image seen = trace_paths(scene, ray_caster, view, options).image;
+    PictureOptions options{.width = 4, .height = 4, .samples = 16};
+    const Image seen = render(scene, ray_caster, view, by(Shading::path, options)).image;
     for (const Rgb& pixel : seen.pixels)
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(pixel[c], scene.materials[mirror].specular_reflectance[c] * 7 / std::numbers::pi_v<float>,
                         1e-4);
     options.mirrors = false;
-    for (const Rgb& pixel : trace_paths(scene, ray_caster, view, options).image.pixels) EXPECT_EQ(pixel, Rgb(0));
+    for (const Rgb& pixel : render(scene, ray_caster, view, by(Shading::path, options)).image.pixels)
+        EXPECT_EQ(pixel, Rgb(0));
 }
 
 TEST(Mirror, FacingAnotherEnds) {
     Scene scene = closed_box({2, 1, 1}, 1, {Material{"", Rgb(0), Rgb(1)}});
     scene.materials[0].specular_reflectance = Rgb(0.9f);
     const RayCaster ray_caster(scene);
-    const PathTracing traced = trace_paths(scene, ray_caster, along, {.width = 4, .height = 4, .samples = 16});
+    const Rendering traced =
+        render(scene, ray_caster, along, {.width = 4, .height = 4, .shading = Shading::path, .samples = 16});
     // 1 + s + s^2 + ..., truncated below a thousandth and after 32 mirrors.
     EXPECT_NEAR(traced.image.pixels[5].x * std::numbers::pi_v<float>, (1 - std::pow(0.9, 33)) / (1 - 0.9), 0.01);
 }

@@ -18,6 +18,7 @@
 #include "interflect/render/lights/unoccluded_light.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
+#include "tests/support/shadings.h"
 #include "tests/support/skies.h"
 #include "tests/support/textured_scenes.h"
 
@@ -145,15 +146,15 @@ TEST_P(HybridScene, HasTheMeanOfPathTracing) {
     constexpr std::uint64_t seeds = 4;
     const Scene& scene = GetParam().scene;
     const RayCaster ray_caster(scene);
-    PathOptions options{.width = 64, .height = 48, .samples = 512};
-    const PathTracing reference = trace_paths(scene, ray_caster, GetParam().view, options);
+    PictureOptions options{.width = 64, .height = 48, .samples = 512};
+    const Rendering reference = render(scene, ray_caster, GetParam().view, by(Shading::path, options));
     options.samples = 16;
     double direct = 0, indirect = 0;
     for (options.seed = 2; options.seed < 2 + seeds; ++options.seed) {
         SolveOptions solving{.method = find_method("hsrr"), .limits = {.rays = 1'000'000}};
         solving.seed = options.seed;
         const Solution solution = solve(scene, ray_caster, solving);
-        const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, GetParam().view, options);
+        const Rendering hybrid = render(scene, solution, ray_caster, GetParam().view, by(Shading::hybrid, options));
         direct += mean_of(hybrid.layers.reflected.direct) / seeds;
         indirect += mean_of(hybrid.layers.reflected.indirect) / seeds;
         EXPECT_EQ(hybrid.non_finite_pixels, 0);
@@ -176,9 +177,9 @@ TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
     const Scene scene = closed_box({4, 3, 2.5f}, 3, {Material{"", Rgb(0.6f), Rgb(40)}});
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1'000'000}});
-    PathOptions options{.width = 40, .height = 30, .samples = 16, .quantity = PathQuantity::irradiance};
+    PictureOptions options{.width = 40, .height = 30, .samples = 16, .quantity = PictureQuantity::irradiance};
     for (options.seed = 1; options.seed <= 4; ++options.seed) {
-        const PathTracing hybrid = render_hybrid(scene, solution, ray_caster, into_corner, options);
+        const Rendering hybrid = render(scene, solution, ray_caster, into_corner, by(Shading::hybrid, options));
         double squares = 0;
         for (const Rgb& direct : hybrid.layers.reflected.direct.pixels) EXPECT_NEAR(direct.x, 40, 0.1);
         for (const Rgb& indirect : hybrid.layers.reflected.indirect.pixels) {
@@ -218,7 +219,7 @@ TEST(Hybrid, FindsTheIndirectLightOfABrightSpot) {
     double ratio = 0;
     constexpr int seeds = 4;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-        PathOptions options{.samples = 16, .quantity = PathQuantity::irradiance};
+        PictureOptions options{.samples = 16, .quantity = PictureQuantity::irradiance};
         options.seed = seed;
         const std::vector<GaugeLight> found = hybrid_irradiance(traced, known, gauges, options, {});
         for (std::size_t i = 0; i < found.size(); ++i) {
@@ -254,7 +255,7 @@ TEST(Hybrid, HasEqualNoiseInARoomWithSunlitGroundOutside) {
     const auto noise_inside = [&](const std::vector<Gauge>& gauges) {
         std::vector<GaugeLight> found[2];
         for (std::uint64_t seed = 0; seed < 2; ++seed) {
-            PathOptions options{.samples = 16, .quantity = PathQuantity::irradiance};
+            PictureOptions options{.samples = 16, .quantity = PictureQuantity::irradiance};
             options.seed = seed;
             found[seed] = hybrid_irradiance(traced, known, gauges, options, {});
         }
@@ -295,8 +296,9 @@ TEST(Hybrid, FindsTheIndirectLightInTheShadowOfACrate) {
     const KnownIrradiance known{*solution.forest, solution.irradiance, true};
     const TracedScene traced(scene, ray_caster);
     const auto found =
-        hybrid_irradiance(traced, known, gauges, {.samples = 16, .quantity = PathQuantity::irradiance}, {});
-    const auto expected = measure_irradiance(scene, nullptr, ray_caster, points, {.samples = 1 << 14});
+        hybrid_irradiance(traced, known, gauges, {.samples = 16, .quantity = PictureQuantity::irradiance}, {});
+    const auto expected =
+        measure_irradiance(scene, nullptr, ray_caster, points, {.shading = Shading::path, .samples = 1 << 14});
     double mean = 0;
     for (const MeasuredIrradiance& e : expected) mean += static_cast<double>(e.indirect.x) / 12;
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -321,10 +323,10 @@ TEST(Hybrid, StatesTheErrorOfRareLight) {
     double stated = 0, actual = 0;
     constexpr std::uint64_t pairs = 4;
     for (std::uint64_t pair = 0; pair < pairs; ++pair) {
-        PathOptions options{.width = 96, .height = 54, .samples = 16, .seed = 2 * pair + 1};
-        const PathTracing a = render_hybrid(scene, solution, ray_caster, view, options);
+        PictureOptions options{.width = 96, .height = 54, .samples = 16, .seed = 2 * pair + 1};
+        const Rendering a = render(scene, solution, ray_caster, view, by(Shading::hybrid, options));
         ++options.seed;
-        const PathTracing b = render_hybrid(scene, solution, ray_caster, view, options);
+        const Rendering b = render(scene, solution, ray_caster, view, by(Shading::hybrid, options));
         const double mean = (mean_of(a.image) + mean_of(b.image)) / 2;
         double squares = 0;
         for (std::size_t i = 0; i < a.image.pixels.size(); ++i)
@@ -344,10 +346,10 @@ TEST(Hybrid, HasNoNoiseInDirectLightWithoutShadows) {
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 100'000}});
     const View down{"down", {2, 1.5, 2}, {2, 1.5, 0}, {0, 1, 0}, 50};
-    PathOptions options{.width = 32, .height = 24, .samples = 4, .quantity = PathQuantity::irradiance};
-    const PathTracing few = render_hybrid(scene, solution, ray_caster, down, options);
+    PictureOptions options{.width = 32, .height = 24, .samples = 4, .quantity = PictureQuantity::irradiance};
+    const Rendering few = render(scene, solution, ray_caster, down, by(Shading::hybrid, options));
     options.samples = 256;
-    const PathTracing many = trace_paths(scene, ray_caster, down, options);
+    const Rendering many = render(scene, ray_caster, down, by(Shading::path, options));
     for (std::size_t i = 0; i < few.image.pixels.size(); ++i) {
         EXPECT_LT(few.layers.reflected.direct_variance[i], std::pow(0.02f * few.image.pixels[i].x, 2.0f));
         EXPECT_NEAR(few.layers.reflected.direct.pixels[i].x / many.layers.reflected.direct.pixels[i].x, 1, 0.1);
@@ -360,9 +362,9 @@ TEST(Hybrid, SameSeedSameBits) {
     add_lamp(scene, 0.6f);
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 100'000}});
-    const PathOptions options{.width = 80, .height = 60, .samples = 16};
-    const PathTracing a = render_hybrid(scene, solution, ray_caster, into_corner, options);
-    const PathTracing b = render_hybrid(scene, solution, ray_caster, into_corner, options);
+    const PictureOptions options{.width = 80, .height = 60, .samples = 16};
+    const Rendering a = render(scene, solution, ray_caster, into_corner, by(Shading::hybrid, options));
+    const Rendering b = render(scene, solution, ray_caster, into_corner, by(Shading::hybrid, options));
     EXPECT_EQ(a.image.pixels, b.image.pixels);
 }
 

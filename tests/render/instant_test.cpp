@@ -37,28 +37,28 @@ constexpr double pi = std::numbers::pi;
 
 const View corner{"corner", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2.8f), V3f(0, 0, 1), 80};
 
-using Draw = PathTracing (*)(const Scene&, const RayCaster&, const View&, const PathOptions&, const Monitor&);
-
-std::vector<PathTracing> pictures(Draw draw, const Scene& scene, const View& view, PathOptions options, int count) {
+std::vector<Rendering> pictures(Shading shading, const Scene& scene, const View& view, PictureOptions options,
+                                int count) {
     const RayCaster ray_caster(scene);
-    std::vector<PathTracing> runs;
+    std::vector<Rendering> runs;
+    options.shading = shading;
     for (int i = 0; i < count; ++i) {
         options.seed = static_cast<std::uint64_t>(i) + 1;
-        runs.push_back(draw(scene, ray_caster, view, options, {}));
+        runs.push_back(render(scene, ray_caster, view, options));
         EXPECT_EQ(runs.back().non_finite_pixels, 0);
     }
     return runs;
 }
 
-std::vector<double> values(const std::vector<PathTracing>& runs, std::size_t pixel, int channel) {
+std::vector<double> values(const std::vector<Rendering>& runs, std::size_t pixel, int channel) {
     std::vector<double> result;
-    for (const PathTracing& run : runs) result.push_back(run.image.pixels[pixel][channel]);
+    for (const Rendering& run : runs) result.push_back(run.image.pixels[pixel][channel]);
     return result;
 }
 
-std::vector<double> means(const std::vector<PathTracing>& runs, int channel) {
+std::vector<double> means(const std::vector<Rendering>& runs, int channel) {
     std::vector<double> result;
-    for (const PathTracing& run : runs) {
+    for (const Rendering& run : runs) {
         double sum = 0;
         for (const Rgb& pixel : run.image.pixels) sum += pixel[channel];
         result.push_back(sum / static_cast<double>(run.image.pixels.size()));
@@ -67,7 +67,7 @@ std::vector<double> means(const std::vector<PathTracing>& runs, int channel) {
 }
 
 /// Computes the p-value of all pixels and their mean having this value.
-double p_value(const std::vector<PathTracing>& runs, const RgbD& expected) {
+double p_value(const std::vector<Rendering>& runs, const RgbD& expected) {
     std::vector<double> p, of_mean;
     for (int c = 0; c < 3; ++c) {
         for (std::size_t i = 0; i < runs[0].image.pixels.size(); ++i)
@@ -78,7 +78,7 @@ double p_value(const std::vector<PathTracing>& runs, const RgbD& expected) {
 }
 
 /// Computes the p-value of the means of two sets of pictures being equal, once the second is scaled.
-double p_value(const std::vector<PathTracing>& runs, const std::vector<PathTracing>& reference, double factor = 1) {
+double p_value(const std::vector<Rendering>& runs, const std::vector<Rendering>& reference, double factor = 1) {
     std::vector<double> p;
     for (int c = 0; c < 3; ++c) {
         const std::vector<double> of_reference = means(reference, c);
@@ -102,10 +102,10 @@ TEST_P(InstantFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
     const RgbD expected = RgbD(exitance) / (RgbD(1, 1, 1) - RgbD(rho)) / pi;
     for (const int walks : {16, 1024}) {
         const auto seen =
-            pictures(render_instant, box, corner, {.width = 6, .height = 4, .samples = 64, .light_walks = walks}, 24);
+            pictures(Shading::instant, box, corner, {.width = 6, .height = 4, .samples = 64, .light_walks = walks}, 24);
         EXPECT_GT(p_value(seen, expected), false_alarm) << walks;
         EXPECT_LT(p_value(seen, expected * 1.02), false_alarm) << walks;
-        for (const PathTracing& run : seen) EXPECT_EQ(run.escaped_rays, 0);
+        for (const Rendering& run : seen) EXPECT_EQ(run.escaped_rays, 0);
     }
 }
 
@@ -113,7 +113,7 @@ TEST(Instant, IsUnbiasedWithTextures) {
     const Rgb radiosity(3, 2, 1);
     const Scene box = testing_support::textured_furnace(radiosity);
     const auto seen =
-        pictures(render_instant, box, corner, {.width = 6, .height = 4, .samples = 64, .light_walks = 256}, 24);
+        pictures(Shading::instant, box, corner, {.width = 6, .height = 4, .samples = 64, .light_walks = 256}, 24);
     EXPECT_GT(p_value(seen, RgbD(radiosity) / pi), false_alarm);
     EXPECT_LT(p_value(seen, RgbD(radiosity) * (1.02 / pi)), false_alarm);
 }
@@ -125,7 +125,7 @@ TEST(Instant, IsUnbiasedThroughPanes) {
     box.materials[glass].transmittance = Rgb(0.5f);
     add_rectangle(box, V3f(0.1f, 1.9f, 0.1f), V3f(0, 0, 2.8f), V3f(0.8f, 0, 0), glass, 1, 1, true);
     const auto seen =
-        pictures(render_instant, box, corner, {.width = 6, .height = 4, .samples = 64, .light_walks = 64}, 24);
+        pictures(Shading::instant, box, corner, {.width = 6, .height = 4, .samples = 64, .light_walks = 64}, 24);
     EXPECT_GT(p_value(seen, RgbD(2 / pi)), false_alarm);
     EXPECT_LT(p_value(seen, RgbD(1.02 * 2 / pi)), false_alarm);
 }
@@ -192,11 +192,11 @@ struct House {
 
 TEST(Instant, AgreesWithPathTracing) {
     const House house;
-    PathOptions options{.width = 16, .height = 9, .samples = 128, .light_walks = 1024};
+    PictureOptions options{.width = 16, .height = 9, .samples = 128, .light_walks = 1024};
     for (const bool mirrors : {true, false}) {
         options.mirrors = mirrors;
-        const auto reference = pictures(trace_paths, house.scene, house.view, options, 16);
-        const auto seen = pictures(render_instant, house.scene, house.view, options, 16);
+        const auto reference = pictures(Shading::path, house.scene, house.view, options, 16);
+        const auto seen = pictures(Shading::instant, house.scene, house.view, options, 16);
         EXPECT_GT(p_value(seen, reference), false_alarm);
         EXPECT_LT(p_value(seen, reference, 1.03), false_alarm);
     }
@@ -206,7 +206,7 @@ TEST(Instant, AgreesWithPathTracing) {
 TEST(Instant, StandardErrorIncludesThatOfTheLights) {
     const Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.8f), Rgb(1)}});
     const auto seen =
-        pictures(render_instant, box, corner, {.width = 16, .height = 9, .samples = 64, .light_walks = 64}, 48);
+        pictures(Shading::instant, box, corner, {.width = 16, .height = 9, .samples = 64, .light_walks = 64}, 48);
     const auto runs = static_cast<double>(seen.size());
     const auto p = [&](double factor) {
         std::vector<double> excess(seen.size(), 0.0);
@@ -229,14 +229,19 @@ TEST(Instant, StandardErrorIncludesThatOfTheLights) {
 
 TEST(Instant, SameBitsForAnyNumberOfThreads) {
     const House house;
-    std::vector<PathTracing> runs;
+    std::vector<Rendering> runs;
     for (const std::size_t threads : {1, 2, 5}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        runs.push_back(render_instant(
-            house.scene, RayCaster(house.scene), house.view,
-            {.width = 32, .height = 18, .samples = 16, .max_samples = 64, .until = 0.1, .light_walks = 2000}));
+        runs.push_back(render(house.scene, RayCaster(house.scene), house.view,
+                              {.width = 32,
+                               .height = 18,
+                               .shading = Shading::instant,
+                               .samples = 16,
+                               .max_samples = 64,
+                               .until = 0.1,
+                               .light_walks = 2000}));
     }
-    for (const PathTracing& run : runs) {
+    for (const Rendering& run : runs) {
         EXPECT_EQ(run.image.pixels, runs[0].image.pixels);
         EXPECT_EQ(run.standard_error.pixels, runs[0].standard_error.pixels);
         EXPECT_EQ(run.rays, runs[0].rays);
@@ -246,7 +251,7 @@ TEST(Instant, SameBitsForAnyNumberOfThreads) {
 
 TEST(Instant, WithoutLightIsBlack) {
     const Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.9f), Rgb(0)}});
-    const PathTracing seen = render_instant(box, RayCaster(box), corner, {.width = 8, .height = 4});
+    const Rendering seen = render(box, RayCaster(box), corner, {.width = 8, .height = 4, .shading = Shading::instant});
     for (const Rgb& pixel : seen.image.pixels) EXPECT_EQ(pixel, Rgb(0));
     EXPECT_EQ(seen.shadow_rays, 0);
 }
@@ -255,15 +260,18 @@ TEST(Instant, StopsOnRequest) {
     const House house;
     std::atomic<bool> stop{false};
     const Monitor monitor{[&](const Progress&) { stop = true; }, &stop};
-    const PathTracing seen = render_instant(house.scene, RayCaster(house.scene), house.view,
-                                            {.width = 64, .height = 64, .samples = 1 << 20}, monitor);
+    const Rendering seen =
+        render(house.scene, RayCaster(house.scene), house.view,
+               {.width = 64, .height = 64, .shading = Shading::instant, .samples = 1 << 20}, monitor);
     EXPECT_TRUE(seen.interrupted);
     for (const Rgb& pixel : seen.image.pixels) EXPECT_GT(channel_sum(pixel), 0);
 }
 
 TEST(Instant, NeedsWalks) {
     const House house;
-    EXPECT_THROW(render_instant(house.scene, RayCaster(house.scene), house.view, {.light_walks = 0}), InputError);
+    EXPECT_THROW(
+        render(house.scene, RayCaster(house.scene), house.view, {.shading = Shading::instant, .light_walks = 0}),
+        InputError);
 }
 
 }  // namespace

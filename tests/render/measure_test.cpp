@@ -30,7 +30,9 @@ const Luminaire lamp{"lamp", 0, PointLight{{3, 3, 2.9f}, Rgb(1000)}};
 
 MeasuredIrradiance measured(const Scene& scene, const MeasuringPoint& point, int samples = 4096) {
     const RayCaster ray_caster(scene);
-    return measure_irradiance(scene, nullptr, ray_caster, std::vector{point}, {.samples = samples}).front();
+    return measure_irradiance(scene, nullptr, ray_caster, std::vector{point},
+                              {.shading = Shading::path, .samples = samples})
+        .front();
 }
 
 /// Light from one direction: I/d^2 on the facing plane; on cylinders this times sin(epsilon)/pi, on semicylinders times
@@ -76,7 +78,8 @@ TEST(MeasureIrradiance, OfAFurnaceIsTheSameEverywhere) {
                                              {middle, {}, Receiver::cylindrical, {1, 1, 0}}};
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 200'000}});
     for (const Solution* known : {static_cast<const Solution*>(nullptr), &solution}) {
-        const auto found = measure_irradiance(scene, known, ray_caster, points, {.samples = 8192});
+        const auto found = measure_irradiance(scene, known, ray_caster, points,
+                                              {.shading = known ? Shading::gather : Shading::path, .samples = 8192});
         ASSERT_EQ(found.size(), points.size());
         const double of_solution = known ? 0.01 * static_cast<double>(exitance) : 0;
         for (const MeasuredIrradiance& e : found) {
@@ -93,16 +96,18 @@ TEST(PathTracer, DrawsIrradianceOfWhatIsSeen) {
     const Scene scene = black_room(lamp);
     const RayCaster ray_caster(scene);
     const View down{"down", {2, 3, 2.5}, {2, 3, 0}, {0, 1, 0}, 1};
-    const PathTracing traced = trace_paths(
-        scene, ray_caster, down, {.width = 3, .height = 3, .samples = 64, .quantity = PathQuantity::irradiance});
+    const Rendering traced = render(
+        scene, ray_caster, down,
+        {.width = 3, .height = 3, .shading = Shading::path, .samples = 64, .quantity = PictureQuantity::irradiance});
     const double expected = measured(scene, {{2, 3, 0}}).sum().x;
     EXPECT_NEAR(expected, 1000 * 2.9 / std::pow(2.9 * 2.9 + 1, 1.5), 0.05);
     EXPECT_NEAR(traced.image.at(1, 1).x, expected, 0.001 * expected);
 
     const Scene furnace = closed_box({6, 6, 3}, 1, {Material{"", Rgb(0.5f), Rgb(10)}});
     const RayCaster of_furnace(furnace);
-    const PathTracing even = trace_paths(
-        furnace, of_furnace, down, {.width = 2, .height = 2, .samples = 1024, .quantity = PathQuantity::irradiance});
+    const Rendering even = render(
+        furnace, of_furnace, down,
+        {.width = 2, .height = 2, .shading = Shading::path, .samples = 1024, .quantity = PictureQuantity::irradiance});
     EXPECT_NEAR(even.image.at(0, 0).x, 20, 6 * static_cast<double>(even.standard_error.at(0, 0).x));
     EXPECT_EQ(even.layers.emitted.at(0, 0), Rgb(0));
 }
@@ -112,14 +117,14 @@ TEST(MeasureIrradiance, RefusesWhatHasNoDirection) {
     const RayCaster ray_caster(scene);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const auto measure = [&](const MeasuringPoint& point) {
-        return measure_irradiance(scene, nullptr, ray_caster, std::vector{point});
+        return measure_irradiance(scene, nullptr, ray_caster, std::vector{point}, {.shading = Shading::path});
     };
     EXPECT_THROW(measure({{1, 1, 1}, {0, 0, 0}}), InputError);
     EXPECT_THROW(measure({{1, 1, 1}, {nan, 0, 1}}), InputError);
     EXPECT_THROW(measure({{1, std::numeric_limits<double>::infinity(), 1}}), InputError);
     EXPECT_THROW(measure({{1, 1, 1}, {0, 0, 2}, Receiver::semicylindrical}), InputError);
     EXPECT_THROW(measure({{1, 1, 1}, {1, 0, 0}, Receiver::cylindrical, {0, 0, 0}}), InputError);
-    EXPECT_TRUE(measure_irradiance(scene, nullptr, ray_caster, {}).empty());
+    EXPECT_TRUE(measure_irradiance(scene, nullptr, ray_caster, {}, {.shading = Shading::path}).empty());
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "interflect/core.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/scenes.h"
+#include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
@@ -30,6 +31,7 @@ namespace {
 using testing_support::add_material;
 using testing_support::add_rectangle;
 using testing_support::bonferroni;
+using testing_support::by;
 using testing_support::closed_box;
 using testing_support::false_alarm;
 using testing_support::Rectangle;
@@ -39,25 +41,25 @@ using testing_support::V3d;
 constexpr double pi = std::numbers::pi;
 
 struct Pictures {
-    std::vector<PathTracing> runs;
+    std::vector<Rendering> runs;
 
-    Pictures(const Scene& scene, const View& view, PathOptions options, int count) {
+    Pictures(const Scene& scene, const View& view, PictureOptions options, int count) {
         const RayCaster ray_caster(scene);
         for (int i = 0; i < count; ++i) {
             options.seed = static_cast<std::uint64_t>(i) + 1;
-            runs.push_back(trace_paths(scene, ray_caster, view, options));
+            runs.push_back(render(scene, ray_caster, view, by(Shading::path, options)));
             EXPECT_EQ(runs.back().non_finite_pixels, 0);
         }
     }
 
     std::vector<double> values(std::size_t pixel, int channel) const {
         std::vector<double> result;
-        for (const PathTracing& run : runs) result.push_back(run.image.pixels[pixel][channel]);
+        for (const Rendering& run : runs) result.push_back(run.image.pixels[pixel][channel]);
         return result;
     }
     std::vector<double> means() const {
         std::vector<double> result;
-        for (const PathTracing& run : runs) {
+        for (const Rendering& run : runs) {
             double sum = 0;
             for (const Rgb& pixel : run.image.pixels) sum += channel_sum(pixel) / 3;
             result.push_back(sum / static_cast<double>(run.image.pixels.size()));
@@ -87,7 +89,7 @@ class PathFurnace : public testing::TestWithParam<float> {
     Pictures pictures() const {
         const Scene box = closed_box(V3f(1, 2, 3), 2, {{"wall", rho(), exitance}});
         const View view{"corner", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2.8f), V3f(0, 0, 1), 80};
-        const PathOptions options{.width = 6, .height = 4, .samples = 64};
+        const PictureOptions options{.width = 6, .height = 4, .samples = 64};
         return Pictures(box, view, options, 24);
     }
     std::vector<RgbD> expected() const {
@@ -102,7 +104,7 @@ TEST_P(PathFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
     const Pictures seen = pictures();
     EXPECT_GT(seen.p_value(expected()), false_alarm);
     EXPECT_LT(seen.p_value(expected(), 1.02), false_alarm);
-    for (const PathTracing& run : seen.runs) EXPECT_EQ(run.escaped_rays, 0);
+    for (const Rendering& run : seen.runs) EXPECT_EQ(run.escaped_rays, 0);
 }
 
 /// The two-sided box, rotated and 50 m from the origin. A ray that starts on or below its surface would leave it.
@@ -124,7 +126,7 @@ TEST(PathTracer, NoRayLeavesAClosedBox) {
     }
     const View view{"corner", move(V3f(0.1f, 0.2f, 0.3f)), move(V3f(0.9f, 1.8f, 2.8f)), z, 80};
     const Pictures seen(moved, view, {.width = 6, .height = 4, .samples = 64}, 24);
-    for (const PathTracing& run : seen.runs) EXPECT_EQ(run.escaped_rays, 0);
+    for (const Rendering& run : seen.runs) EXPECT_EQ(run.escaped_rays, 0);
     const std::vector<RgbD> expected(6 * 4, RgbD(1, 1, 1) / (1 - static_cast<double>(0.7f)) / pi);
     EXPECT_GT(seen.p_value(expected), false_alarm);
 }
@@ -203,7 +205,7 @@ TEST(PathTracer, TinyBrightLampLightsByFormFactors) {
     const Pictures seen = setup.pictures();
     EXPECT_GT(seen.p_value(expected), false_alarm);
     EXPECT_LT(seen.p_value(expected, 1.001), false_alarm) << "little noise but that of the pixel's square";
-    for (const PathTracing& run : seen.runs) EXPECT_LT(run.relative_error, 0.05);
+    for (const Rendering& run : seen.runs) EXPECT_LT(run.relative_error, 0.05);
 }
 
 /// A thousand lamps; all but one are under the floor or face away from it.
@@ -261,8 +263,8 @@ TEST(PathTracer, ShowsLampsAsTheyEmit) {
             add_rectangle(scene, V3f(-9, -9, 0), V3f(18, 0, 0), V3f(0, 18, 0),
                           add_material(scene, Rgb(0, 0, 0), Rgb(3, 2, 1)), 1, 1, two_sided);
             const View view{"lamp", V3f(0, 0, height), V3f(0, 0, 0), V3f(0, 1, 0), 60};
-            const PathTracing seen =
-                trace_paths(scene, RayCaster(scene), view, {.width = 3, .height = 2, .samples = 8});
+            const Rendering seen = render(scene, RayCaster(scene), view,
+                                          {.width = 3, .height = 2, .shading = Shading::path, .samples = 8});
             const bool is_seen = two_sided || height > 0;
             for (const Rgb& pixel : seen.image.pixels)
                 for (int c = 0; c < 3; ++c)
@@ -275,7 +277,8 @@ TEST(PathTracer, ShowsLampsAsTheyEmit) {
 TEST(PathTracer, WithoutLightIsBlack) {
     const Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.9f, 0.9f, 0.9f), Rgb(0, 0, 0)}});
     const View view{"inside", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2), V3f(0, 0, 1), 80};
-    const PathTracing seen = trace_paths(box, RayCaster(box), view, {.width = 8, .height = 4, .until = 0.01});
+    const Rendering seen =
+        render(box, RayCaster(box), view, {.width = 8, .height = 4, .shading = Shading::path, .until = 0.01});
     for (const Rgb& pixel : seen.image.pixels) EXPECT_EQ(pixel, Rgb(0, 0, 0));
     EXPECT_EQ(seen.relative_error, 0);
     EXPECT_EQ(seen.paths, 8 * 4 * 64);
@@ -302,13 +305,18 @@ struct Room {
 TEST(PathTracer, SameBitsForAnyNumberOfThreads) {
     const Room room;
     for (const double until : {0.0, 0.05}) {
-        std::vector<PathTracing> runs;
+        std::vector<Rendering> runs;
         for (const std::size_t threads : {1, 2, 5}) {
             const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-            runs.push_back(trace_paths(room.scene, RayCaster(room.scene), room.view,
-                                       {.width = 48, .height = 27, .samples = 16, .max_samples = 64, .until = until}));
+            runs.push_back(render(room.scene, RayCaster(room.scene), room.view,
+                                  {.width = 48,
+                                   .height = 27,
+                                   .shading = Shading::path,
+                                   .samples = 16,
+                                   .max_samples = 64,
+                                   .until = until}));
         }
-        for (const PathTracing& run : runs) {
+        for (const Rendering& run : runs) {
             EXPECT_EQ(run.image.pixels, runs[0].image.pixels);
             EXPECT_EQ(run.standard_error.pixels, runs[0].standard_error.pixels);
             EXPECT_EQ(run.rays, runs[0].rays);
@@ -346,8 +354,8 @@ TEST(PathTracer, StandardErrorIsHonest) {
 
 TEST(PathTracer, ReachesItsTargetWithoutBias) {
     const Room room;
-    const PathOptions fixed{.width = 16, .height = 9, .samples = 512};
-    PathOptions adaptive = fixed;
+    const PictureOptions fixed{.width = 16, .height = 9, .samples = 512};
+    PictureOptions adaptive = fixed;
     adaptive.samples = 32;
     adaptive.until = 0.08;
     const Pictures reference(room.scene, room.view, fixed, 8), seen(room.scene, room.view, adaptive, 24);
@@ -359,7 +367,7 @@ TEST(PathTracer, ReachesItsTargetWithoutBias) {
     const double expected_error = std::sqrt(variance / static_cast<double>(means.size()));
     EXPECT_GT(t_test(seen.means(), expected, expected_error), false_alarm);
     EXPECT_LT(t_test(seen.means(), 1.02 * expected, expected_error), false_alarm);
-    for (const PathTracing& run : seen.runs) {
+    for (const Rendering& run : seen.runs) {
         EXPECT_LT(run.relative_error, 1.1 * adaptive.until);
         EXPECT_GT(run.relative_error, 0.3 * adaptive.until);
         EXPECT_GT(run.paths, 16 * 9 * 32);
@@ -368,8 +376,9 @@ TEST(PathTracer, ReachesItsTargetWithoutBias) {
 
 TEST(PathTracer, CountsRaysAndStopsAtMaxSamples) {
     const Room room;
-    const PathTracing seen = trace_paths(room.scene, RayCaster(room.scene), room.view,
-                                         {.width = 4, .height = 3, .samples = 20, .max_samples = 50, .until = 1e-6});
+    const Rendering seen =
+        render(room.scene, RayCaster(room.scene), room.view,
+               {.width = 4, .height = 3, .shading = Shading::path, .samples = 20, .max_samples = 50, .until = 1e-6});
     // Half batches are of 2 paths, the largest power of two that gives at least 8 of them: 12 whole batches.
     EXPECT_EQ(seen.paths, 4 * 3 * 48);
     EXPECT_GT(seen.rays, seen.paths + seen.shadow_rays);
@@ -385,8 +394,8 @@ TEST(PathTracer, ErrorIsUnknownUntilEveryPixelHasASpread) {
     std::vector<double> errors;
     const Monitor monitor{[&](const Progress& progress) { errors.push_back(progress.relative_error); }};
     // Two batches of one path: 320,000 paths, more than the interval between two reports.
-    const PathTracing seen =
-        trace_paths(scene, RayCaster(scene), view, {.width = 400, .height = 400, .samples = 2}, monitor);
+    const Rendering seen = render(scene, RayCaster(scene), view,
+                                  {.width = 400, .height = 400, .shading = Shading::path, .samples = 2}, monitor);
     ASSERT_EQ(errors.size(), 2u);
     EXPECT_TRUE(std::isinf(errors[0]));
     EXPECT_EQ(errors[1], 0);
@@ -403,8 +412,8 @@ TEST(PathTracer, StopsOnRequest) {
                               stop = true;
                           },
                           &stop};
-    const PathTracing seen = trace_paths(room.scene, RayCaster(room.scene), room.view,
-                                         {.width = 64, .height = 64, .samples = 1 << 20}, monitor);
+    const Rendering seen = render(room.scene, RayCaster(room.scene), room.view,
+                                  {.width = 64, .height = 64, .shading = Shading::path, .samples = 1 << 20}, monitor);
     EXPECT_EQ(reports, 1);
     EXPECT_TRUE(seen.interrupted);
     EXPECT_GT(seen.paths, 64 * 64);
@@ -414,8 +423,8 @@ TEST(PathTracer, StopsOnRequest) {
 TEST(PathTracer, RefusesWhatMakesNoPicture) {
     const Room room;
     const RayCaster ray_caster(room.scene);
-    const auto trace = [&](const PathOptions& options) {
-        return trace_paths(room.scene, ray_caster, room.view, options);
+    const auto trace = [&](const PictureOptions& options) {
+        return render(room.scene, ray_caster, room.view, by(Shading::path, options));
     };
     EXPECT_THROW(trace({.width = 0}), InputError);
     EXPECT_THROW(trace({.samples = 1}), InputError);

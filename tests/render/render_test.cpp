@@ -1,4 +1,4 @@
-#include "interflect/render/pictures/render_elements.h"
+#include "interflect/render/render_elements.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -37,12 +37,12 @@ void add_facing(Scene& scene, float left, float right, float bottom, float top, 
 }
 
 /// Undivided patches: element i is patch i.
-Rendering rendering(const Scene& scene, const std::vector<Rgb>& h, const RenderOptions& options,
+Rendering rendering(const Scene& scene, const std::vector<Rgb>& h, const PictureOptions& options,
                     const View& view = view_of_plane()) {
     return render(scene, ElementForest(scene, scene.patches.size()), RayCaster(scene), view, h, options);
 }
 
-Image picture(const Scene& scene, const std::vector<Rgb>& h, const RenderOptions& options,
+Image picture(const Scene& scene, const std::vector<Rgb>& h, const PictureOptions& options,
               const View& view = view_of_plane()) {
     return rendering(scene, h, options, view).image;
 }
@@ -62,8 +62,8 @@ TEST_P(FlatAndSmooth, IrradianceIsThatOfTheElements) {
     Scene scene;
     add_facing(scene, -9, 0, -9, 9, add_material(scene, reflectance, exitance));
     scene.luminaires.push_back({"sky", 0, UniformSky{Rgb(7)}});
-    const Image image =
-        picture(scene, {irradiance}, {.width = 4, .height = 2, .shading = GetParam(), .irradiance = true});
+    const Image image = picture(
+        scene, {irradiance}, {.width = 4, .height = 2, .shading = GetParam(), .quantity = PictureQuantity::irradiance});
     for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(image.at(1, 1)[c], irradiance[c]);
     EXPECT_EQ(image.at(2, 1), Rgb(0));
 }
@@ -76,8 +76,9 @@ TEST_P(FlatAndSmooth, OrthographicPicturesAreToScaleAndCutOpen) {
     View view = view_of_plane();
     view.eye = V3f(0, -0.5f, 0);
     view.extent = 4;
-    const Image image = picture(scene, {irradiance, Rgb(0)},
-                                {.width = 8, .height = 8, .shading = GetParam(), .irradiance = true}, view);
+    const Image image =
+        picture(scene, {irradiance, Rgb(0)},
+                {.width = 8, .height = 8, .shading = GetParam(), .quantity = PictureQuantity::irradiance}, view);
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x) {
             const bool is_inside = x >= 2 && x < 6 && y >= 2 && y < 6;
@@ -115,7 +116,8 @@ TEST(Render, UpIsUpAndLeftIsLeft) {
     Scene scene;
     add_facing(scene, -9, 0, 0, 9, add_material(scene, Rgb(0, 0, 0), Rgb(pi, 0, 0)));
     add_facing(scene, 0, 9, -9, 0, add_material(scene, Rgb(0, 0, 0), Rgb(0, pi, 0)));
-    const Image image = picture(scene, {Rgb(0, 0, 0), Rgb(0, 0, 0)}, {.width = 2, .height = 2});
+    const Image image =
+        picture(scene, {Rgb(0, 0, 0), Rgb(0, 0, 0)}, {.width = 2, .height = 2, .shading = Shading::smooth});
     EXPECT_EQ(image.at(0, 0), Rgb(1, 0, 0));
     EXPECT_EQ(image.at(1, 1), Rgb(0, 1, 0));
     EXPECT_EQ(image.at(1, 0), Rgb(0, 0, 0));
@@ -127,7 +129,7 @@ TEST(Render, EdgesAreSmoothedByCoverage) {
     Scene left, top;
     add_facing(left, -9, 0.3f, -9, 9, add_material(left, Rgb(0, 0, 0), Rgb(pi, pi, pi)));
     add_facing(top, -9, 9, -0.3f, 9, add_material(top, Rgb(0, 0, 0), Rgb(pi, pi, pi)));
-    const RenderOptions options{.width = 4, .height = 4, .samples = 64};
+    const PictureOptions options{.width = 4, .height = 4, .shading = Shading::smooth, .samples = 64};
     const Image upright = picture(left, {Rgb(0, 0, 0)}, options), level = picture(top, {Rgb(0, 0, 0)}, options);
     for (int i = 0; i < 4; ++i) {
         EXPECT_EQ(upright.at(1, i), Rgb(1, 1, 1));
@@ -142,7 +144,7 @@ TEST(Render, EdgesAreSmoothedByCoverage) {
 TEST(Render, CountsRaysThatEscape) {
     Scene scene;
     add_facing(scene, -9, 0, -9, 9, add_material(scene, reflectance, exitance));
-    const Rendering half = rendering(scene, {irradiance}, {.width = 8, .height = 4});
+    const Rendering half = rendering(scene, {irradiance}, {.width = 8, .height = 4, .shading = Shading::smooth});
     EXPECT_EQ(half.rays, 8 * 4 * 16);
     EXPECT_EQ(half.escaped_rays, half.rays / 2);
     EXPECT_EQ(half.non_finite_pixels, 0);
@@ -181,7 +183,7 @@ TEST_P(FlatAndSmooth, SameBitsForAnyNumberOfThreads) {
     std::vector<std::vector<Rgb>> pictures;
     for (const std::size_t threads : {1, 2, 5}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        const RenderOptions options{.width = 160, .height = 90, .shading = GetParam()};
+        const PictureOptions options{.width = 160, .height = 90, .shading = GetParam()};
         pictures.push_back(render(box.scene, forest, RayCaster(box.scene), box.view, h, options).image.pixels);
     }
     EXPECT_EQ(pictures[0], pictures[1]);
@@ -205,20 +207,22 @@ TEST(Render, ManySamplesAPixelAreStillOneMean) {
     Scene scene;
     add_facing(scene, -9, 9, -9, 9, add_material(scene, reflectance, exitance));
     const Image image =
-        picture(scene, {irradiance}, {.width = 1, .height = 1, .samples = 3000, .shading = Shading::flat});
+        picture(scene, {irradiance}, {.width = 1, .height = 1, .shading = Shading::flat, .samples = 3000});
     EXPECT_EQ(image.at(0, 0), luminance_of_quad);
 }
 
 TEST(Render, RefusesWhatDoesNotFitTogether) {
     Scene scene;
     add_facing(scene, -1, 1, -1, 1, add_material(scene, reflectance, exitance));
-    EXPECT_THROW(picture(scene, {}, {}), InputError);
-    EXPECT_THROW(picture(scene, {irradiance}, {.samples = 0}), InputError);
-    EXPECT_THROW(picture(scene, {irradiance}, {.width = 0}), InputError);
+    constexpr PictureOptions smooth{.shading = Shading::smooth};
+    EXPECT_THROW(picture(scene, {}, smooth), InputError);
+    EXPECT_THROW(picture(scene, {irradiance}, {.shading = Shading::smooth, .samples = -1}), InputError);
+    EXPECT_THROW(picture(scene, {irradiance}, {.width = 0, .shading = Shading::smooth}), InputError);
     ElementForest refined(scene, 5);
     refined.subdivide(0);
-    EXPECT_THROW(render(scene, refined, RayCaster(scene), view_of_plane(), std::vector{irradiance}), InputError);
-    EXPECT_THROW(render(scene, ElementForest(Scene{}, 0), RayCaster(scene), view_of_plane(), {}), InputError);
+    EXPECT_THROW(render(scene, refined, RayCaster(scene), view_of_plane(), std::vector{irradiance}, smooth),
+                 InputError);
+    EXPECT_THROW(render(scene, ElementForest(Scene{}, 0), RayCaster(scene), view_of_plane(), {}, smooth), InputError);
 }
 
 /// The same number of patches at other positions.
@@ -240,11 +244,13 @@ TEST(Render, RefusesAForestOrARayCasterOfAnotherScene) {
     const std::vector<float> values{1};
     const View view = view_of_plane();
     for (const auto& [f, caster] : {std::pair(&forest, &other_ray_caster), std::pair(&other_forest, &ray_caster)}) {
-        EXPECT_THROW(render(made.scene, *f, *caster, view, h), InputError);
+        for (const Shading shading : {Shading::smooth, Shading::hybrid})
+            EXPECT_THROW(render(made.scene, *f, *caster, view, h, {.shading = shading}), InputError);
         EXPECT_THROW(render_quantity(made.scene, *f, *caster, view, {"level", "", values}, {}), InputError);
         EXPECT_THROW(draw_outlines(Image(4, 2), made.scene, *f, *caster, view, 1, 1), InputError);
     }
-    EXPECT_THROW(trace_paths(made.scene, other_ray_caster, view, {.width = 4, .height = 2}), InputError);
+    EXPECT_THROW(render(made.scene, other_ray_caster, view, {.width = 4, .height = 2, .shading = Shading::path}),
+                 InputError);
     EXPECT_THROW(ElementVertices(made.scene, other_forest), InputError);
 }
 
@@ -253,7 +259,7 @@ TEST(Render, RefusesAForestOrARayCasterOfAnotherScene) {
 TEST(Render, ReportsItsProgress) {
     const OtherScene made;
     std::vector<Progress> reports;
-    const RenderOptions options{.width = 1024, .height = 600, .samples = 4, .shading = Shading::flat};
+    const PictureOptions options{.width = 1024, .height = 600, .shading = Shading::flat, .samples = 4};
     const Rendering whole =
         render(made.scene, ElementForest(made.scene, 1), RayCaster(made.scene), view_of_plane(),
                std::vector{irradiance}, options, {[&](const Progress& p) { reports.push_back(p); }});
@@ -269,7 +275,7 @@ TEST(Render, StopsOnRequest) {
     const OtherScene made;
     std::atomic<bool> stop{false};
     int reports = 0;
-    const RenderOptions options{.width = 1024, .height = 600, .samples = 4, .shading = Shading::flat};
+    const PictureOptions options{.width = 1024, .height = 600, .shading = Shading::flat, .samples = 4};
     const Rendering part = render(made.scene, ElementForest(made.scene, 1), RayCaster(made.scene), view_of_plane(),
                                   std::vector{irradiance}, options,
                                   {[&](const Progress&) {

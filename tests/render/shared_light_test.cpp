@@ -71,7 +71,7 @@ void expect_equal(const SampledLight& a, const SampledLight& b) {
     EXPECT_EQ(a.indirect_variance, b.indirect_variance);
 }
 
-void expect_equal(const PathTracing& a, const PathTracing& b) {
+void expect_equal(const Rendering& a, const Rendering& b) {
     EXPECT_EQ(a.image.pixels, b.image.pixels);
     EXPECT_EQ(a.standard_error.pixels, b.standard_error.pixels);
     EXPECT_EQ(a.layers.normal.pixels, b.layers.normal.pixels);
@@ -87,54 +87,45 @@ void expect_equal(const PathTracing& a, const PathTracing& b) {
 
 struct Picture {
     const char* name;
-    std::function<PathTracing(const PathOptions&, const Monitor&)> draw;
+    Shading shading;
     int samples;
     double until = 0;
     friend void PrintTo(const Picture& p, std::ostream* out) { *out << p.name; }
 };
 
-PathTracing by_paths(const PathOptions& options, const Monitor& monitor) {
-    return trace_paths(lit().scene, lit().ray_caster, lit().view, options, monitor);
-}
-PathTracing by_virtual_lights(const PathOptions& options, const Monitor& monitor) {
-    return render_instant(lit().scene, lit().ray_caster, lit().view, options, monitor);
-}
-PathTracing by_gathering(const PathOptions& options, const Monitor& monitor) {
-    return gather(lit().scene, lit().solution, lit().ray_caster, lit().view, options, monitor);
-}
-PathTracing by_records(const PathOptions& options, const Monitor& monitor) {
-    return render_hybrid(lit().scene, lit().solution, lit().ray_caster, lit().view, options, monitor);
-}
-
 class SharedPicture : public testing::TestWithParam<Picture> {};
-INSTANTIATE_TEST_SUITE_P(Shadings, SharedPicture,
-                         testing::Values(Picture{"path", by_paths, 16}, Picture{"path_to_a_target", by_paths, 8, 0.3},
-                                         Picture{"path_in_several_chunks", by_paths, 64},
-                                         Picture{"instant", by_virtual_lights, 8}, Picture{"gather", by_gathering, 16},
-                                         Picture{"hybrid", by_records, 16}),
-                         [](const auto& picture) { return std::string(picture.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Shadings, SharedPicture,
+    testing::Values(Picture{"path", Shading::path, 16}, Picture{"path_to_a_target", Shading::path, 8, 0.3},
+                    Picture{"path_in_several_chunks", Shading::path, 64}, Picture{"instant", Shading::instant, 8},
+                    Picture{"gather", Shading::gather, 16}, Picture{"hybrid", Shading::hybrid, 16}),
+    [](const auto& picture) { return std::string(picture.param.name); });
+
+Rendering draw(const PictureOptions& options, const Monitor& monitor) {
+    return render(lit().scene, lit().solution, lit().ray_caster, lit().view, options, monitor);
+}
 
 TEST_P(SharedPicture, HasTheBitsOfOneProcess) {
-    PathOptions options;
-    options.width = 80, options.height = 64;  // three tiles of a path a pixel
-    options.samples = GetParam().samples;
-    options.until = GetParam().until;
-    options.max_samples = 128;
-    options.light_walks = 1000;
-    const PathTracing alone = GetParam().draw(options, {});
-    with_helpers(3, [&](const Monitor& monitor) { expect_equal(GetParam().draw(options, monitor), alone); });
+    const PictureOptions options{.width = 80,
+                                 .height = 64,  // three tiles of a path a pixel
+                                 .shading = GetParam().shading,
+                                 .samples = GetParam().samples,
+                                 .max_samples = 128,
+                                 .until = GetParam().until,
+                                 .light_walks = 1000};
+    const Rendering alone = draw(options, {});
+    with_helpers(3, [&](const Monitor& monitor) { expect_equal(draw(options, monitor), alone); });
 }
 
 TEST(SharedMeasurement, HasTheBitsOfOneProcess) {
     std::vector<MeasuringPoint> points;
     for (int i = 0; i < 200; ++i) points.push_back({{0.1 + 0.018 * i, 1.3, 0.9}, {0, 0, 1}});
-    PathOptions options;
-    options.samples = 64;
     const auto measured = [&](const Monitor& monitor) {
         std::vector<Rgb> values;
-        for (const Solution* solution : {&lit().solution, static_cast<const Solution*>(nullptr)})
+        for (const Shading shading : {Shading::gather, Shading::path})
             for (const MeasuredIrradiance& e :
-                 measure_irradiance(lit().scene, solution, lit().ray_caster, points, options, monitor)) {
+                 measure_irradiance(lit().scene, &lit().solution, lit().ray_caster, points,
+                                    {.shading = shading, .samples = 64}, monitor)) {
                 values.push_back(e.direct);
                 values.push_back(e.indirect);
                 values.push_back(e.standard_error);
@@ -166,12 +157,11 @@ TEST(SharedPicture, OfALightGroupHasTheBitsOfOneProcess) {
     const LightOfGroup lamps = light_of_group(all.scene, all.solution, 0);
     EXPECT_NE(lamps.solution.irradiance, all.solution.irradiance);
     const RayCaster ray_caster(lamps.scene);
-    PathOptions options;
-    options.width = 48, options.height = 32;
+    const PictureOptions options{.width = 48, .height = 32, .shading = Shading::gather, .samples = 64};
     const auto drawn = [&](const Monitor& monitor) {
-        return gather(lamps.scene, lamps.solution, ray_caster, all.view, options, monitor);
+        return render(lamps.scene, lamps.solution, ray_caster, all.view, options, monitor);
     };
-    const PathTracing alone = drawn({});
+    const Rendering alone = drawn({});
     with_helpers(2, [&](const Monitor& monitor) {
         give_order(monitor.ranks, {.kind = LightOrder::Kind::group, .group = 0});
         expect_equal(drawn(monitor), alone);
@@ -182,11 +172,9 @@ TEST(SharedPicture, OfALightGroupHasTheBitsOfOneProcess) {
 /// The helpers wait for the next order afterwards.
 TEST(SharedPicture, OfAStoppedFirstRankEnds) {
     const std::atomic<bool> stop{true};
-    PathOptions options;
-    options.width = 48, options.height = 32;
     const auto draw_and_measure = [&](const Monitor& monitor) {
-        for (const auto& draw : {by_paths, by_virtual_lights, by_gathering, by_records}) {
-            const PathTracing stopped = draw(options, monitor);
+        for (const Shading shading : {Shading::path, Shading::instant, Shading::gather, Shading::hybrid}) {
+            const Rendering stopped = draw({.width = 48, .height = 32, .shading = shading, .samples = 64}, monitor);
             EXPECT_TRUE(stopped.interrupted);
             EXPECT_EQ(stopped.paths, 0);
         }

@@ -42,13 +42,15 @@ Scene under(const std::vector<Luminaire>& luminaires) {
 
 const std::vector<V3f> normals{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-0.5f, -0.6f, 0.3f}, {0.1f, 0.2f, -1}};
 
-std::vector<MeasuredIrradiance> measured(const Scene& scene, int samples, bool is_gathered = false) {
+std::vector<MeasuredIrradiance> measured(const Scene& scene, int samples, Shading shading = Shading::path) {
     const RayCaster ray_caster(scene);
     std::optional<Solution> solution;
-    if (is_gathered) solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1000}});
+    if (needs_solution(shading))
+        solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1000}});
     std::vector<MeasuringPoint> points;
     for (const V3f& n : normals) points.push_back({{0, 0, 0}, n});
-    return measure_irradiance(scene, solution ? &*solution : nullptr, ray_caster, points, {.samples = samples});
+    return measure_irradiance(scene, solution ? &*solution : nullptr, ray_caster, points,
+                              {.shading = shading, .samples = samples});
 }
 
 class EverySky : public testing::TestWithParam<KnownSky> {};
@@ -62,11 +64,11 @@ TEST_P(EverySky, CausesItsIrradiance) {
     const Scene scene = under({sky.luminaire});
     std::vector<double> irradiance;
     for (const V3f& n : normals) irradiance.push_back(sky.irradiance(V3d(n.normalized())));
-    for (const bool is_gathered : {false, true}) {
-        const auto found = measured(scene, 1 << 14, is_gathered);
+    for (const Shading shading : {Shading::path, Shading::gather}) {
+        const auto found = measured(scene, 1 << 14, shading);
         for (std::size_t i = 0; i < normals.size(); ++i) {
             const double expected = irradiance[i], error = static_cast<double>(found[i].standard_error.x);
-            EXPECT_NEAR(found[i].sum().x, expected, 5 * error + 3e-4 * expected + 1e-3) << i;
+            EXPECT_NEAR(found[i].sum().x, expected, 5 * error + 3e-4 * expected + 1e-3) << i << " " << label(shading);
             EXPECT_LT(error, 0.03 * expected + 1e-3) << i;
         }
     }
@@ -90,10 +92,12 @@ TEST_P(EverySky, IsSeenAsItIs) {
     }
     const View view{"up", {0, 0, 0}, {0.3, -0.4, 1.1}, {0, 1, 0}, 0.01f};
     const double expected = GetParam().radiance(V3d(0.3, -0.4, 1.1).normalized());
-    const Image traced = trace_paths(scene, ray_caster, view, {.width = 1, .height = 1, .samples = 8}).image;
+    const Image traced =
+        render(scene, ray_caster, view, {.width = 1, .height = 1, .shading = Shading::path, .samples = 8}).image;
     EXPECT_NEAR(traced.pixels[0].x, expected, 1e-3 * expected);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1000}});
-    const Image drawn = render(scene, solution, ray_caster, view, {.width = 1, .height = 1}).image;
+    const Image drawn =
+        render(scene, solution, ray_caster, view, {.width = 1, .height = 1, .shading = Shading::smooth}).image;
     EXPECT_NEAR(drawn.pixels[0].x, expected, 1e-3 * expected);
 }
 
@@ -207,7 +211,8 @@ TEST(Sun, HasAPenumbra) {
     std::vector<MeasuringPoint> points;
     const std::vector<double> offsets{-1.2, -0.95, -0.7, -0.3, 0, 0.5, 0.9, 1.2};  // in radii; the edge is at 0
     for (const double offset : offsets) points.push_back({{offset * radius, 0, 0}});
-    const auto found = measure_irradiance(scene, nullptr, ray_caster, points, {.samples = 1 << 14});
+    const auto found =
+        measure_irradiance(scene, nullptr, ray_caster, points, {.shading = Shading::path, .samples = 1 << 14});
     for (std::size_t i = 0; i < offsets.size(); ++i) {
         // The disc's part beyond a chord: directions that lead to x > 0 at the edge's height pass the edge.
         const double t = std::clamp(offsets[i], -1.0, 1.0),
@@ -241,8 +246,8 @@ TEST(SkyThroughAnOpening, IsTheIntegralOverIt) {
                 const V3d d = V3d(-2 + 4 * (i + 0.5) / nx, -1 + 2 * (k + 0.5) / ny, 3) - x;
                 expected += sky.radiance(d.normalized()) * 9 / std::pow(d.length2(), 2) * (8.0 / (nx * ny));
             }
-        const auto found =
-            measure_irradiance(scene, nullptr, ray_caster, std::vector<MeasuringPoint>{{x}}, {.samples = 1 << 15});
+        const auto found = measure_irradiance(scene, nullptr, ray_caster, std::vector<MeasuringPoint>{{x}},
+                                              {.shading = Shading::path, .samples = 1 << 15});
         const double error = static_cast<double>(found[0].standard_error.x);
         EXPECT_NEAR(found[0].direct.x, expected, 5 * error + 2e-3 * expected + 0.05) << sky.name;
         EXPECT_LT(error, 0.02 * expected + 0.05) << sky.name;

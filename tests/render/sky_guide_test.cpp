@@ -79,8 +79,8 @@ std::vector<double> errors_below(const KnownSky& sky, bool has_glass, std::uint6
         gauges.push_back(
             {.position = place, .normal = {0, 0, 1}, .patch = 0, .side_u = {0.05f, 0, 0}, .side_v = {0, 0.05f, 0}});
     }
-    PathOptions options;
-    options.samples = samples, options.seed = seed, options.quantity = PathQuantity::irradiance;
+    PictureOptions options;
+    options.samples = samples, options.seed = seed, options.quantity = PictureQuantity::irradiance;
     const std::vector<GaugeLight> found = hybrid_irradiance(traced, known, gauges, options, {});
     std::vector<double> exact;
     double mean = 0;
@@ -139,8 +139,8 @@ TEST(UniformSky, IsUnbiasedForAnyNumberOfSamples) {
     const TracedScene traced(scene, ray_caster);
     std::vector<Gauge> gauges(20'000, {.normal = {0, 0, 1}, .patch = 0});
     for (const int count : {2, 6, 10, 16}) {
-        PathOptions options;
-        options.samples = count, options.quantity = PathQuantity::irradiance;
+        PictureOptions options;
+        options.samples = count, options.quantity = PictureQuantity::irradiance;
         double sum = 0, squares = 0;
         for (const SampledIrradiance& light : direct_irradiance(traced, gauges, options, {})) {
             const double relative = static_cast<double>(light.irradiance.x) / (pi * 100) - 1;

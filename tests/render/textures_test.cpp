@@ -11,9 +11,10 @@
 #include "interflect/elements/forest.h"
 #include "interflect/generators/boxes.h"
 #include "interflect/metrics/metrics.h"
-#include "interflect/render/pictures/render_elements.h"
+#include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
+#include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
 #include "tests/support/textured_scenes.h"
 
@@ -26,13 +27,13 @@ using namespace testing_support;
 
 constexpr double pi = std::numbers::pi;
 
-std::vector<double> means(const Scene& scene, const View& view, PathOptions options, int runs) {
+std::vector<double> means(const Scene& scene, const View& view, PictureOptions options, int runs) {
     const RayCaster ray_caster(scene);
     std::vector<double> result;
     for (int i = 1; i <= runs; ++i) {
         options.seed = static_cast<std::uint64_t>(i);
         double sum = 0;
-        const Image image = trace_paths(scene, ray_caster, view, options).image;
+        const Image image = render(scene, ray_caster, view, by(Shading::path, options)).image;
         for (const Rgb& pixel : image.pixels) sum += static_cast<double>(channel_sum(pixel)) / 3;
         result.push_back(sum / static_cast<double>(image.pixels.size()));
     }
@@ -42,7 +43,7 @@ std::vector<double> means(const Scene& scene, const View& view, PathOptions opti
 TEST(PathTracedTextures, FurnaceIsAsBrightEverywhere) {
     const Scene scene = textured_furnace(Rgb(2, 2, 2));
     const View view{"corner", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2.8f), V3f(0, 0, 1), 80};
-    const PathOptions options{.width = 6, .height = 4, .samples = 64};
+    const PictureOptions options{.width = 6, .height = 4, .samples = 64};
     const std::vector<double> seen = means(scene, view, options, 24);
     EXPECT_GT(t_test(seen, 2 / pi), false_alarm);
     EXPECT_LT(t_test(seen, 2.02 / pi), false_alarm);
@@ -78,7 +79,7 @@ TEST_P(Ramp, TexelsAreWhereTheyBelong) {
         const Scene scene = ramp(emits);
         const ElementForest forest(scene, 1);
         const std::vector<Rgb> irradiance(1, Rgb(emits ? 0 : 100));  // times 0.01
-        const RenderOptions options{.width = side, .height = side, .samples = 64, .shading = GetParam()};
+        const PictureOptions options{.width = side, .height = side, .shading = GetParam(), .samples = 64};
         const Rendering picture = render(scene, forest, RayCaster(scene), in_front, irradiance, options);
         for (int row = 0; row < side; ++row)
             for (int column = 0; column < side; ++column)
@@ -90,18 +91,18 @@ TEST_P(Ramp, TexelsAreWhereTheyBelong) {
 TEST(PathTracedRamp, TexelsAreWhereTheyBelong) {
     constexpr int side = 8;
     const Scene scene = ramp(true);
-    const PathTracing picture =
-        trace_paths(scene, RayCaster(scene), in_front, {.width = side, .height = side, .samples = 64});
+    const Rendering picture = render(scene, RayCaster(scene), in_front,
+                                     {.width = side, .height = side, .shading = Shading::path, .samples = 64});
     for (int row = 0; row < side; ++row)
         for (int column = 0; column < side; ++column)
             EXPECT_NEAR(pi * static_cast<double>(picture.image.at(column, row).x), ramp_at(column, row, side), 0.05);
 }
 
-/// A lamp with a bright and a dark half, close to the floor, so the half of a sampled point matters: as two lamps without
-/// texture, but for 0.3% by the interpolation between the two texels. Noise 0.05%.
+/// A lamp with a bright and a dark half, close to the floor, so the half of a sampled point matters: as two lamps
+/// without texture, but for 0.3% by the interpolation between the two texels. Noise 0.05%.
 TEST(PathTracedLamp, IsAsTwoLamps) {
     const View view{"ceiling", V3f(3, 1, 0.5f), V3f(3.5f, 1, 2), V3f(1, 0, 0), 40};
-    const PathOptions options{.width = 8, .height = 8, .samples = 256};
+    const PictureOptions options{.width = 8, .height = 8, .samples = 256};
     const auto mean_of_runs = [&](const Scene& scene) {
         const std::vector<double> seen = means(scene, view, options, 32);
         return std::accumulate(seen.begin(), seen.end(), 0.0) / 32;
@@ -131,8 +132,9 @@ TEST(TexturedRoom, IsAsThePathTracerSeesIt) {
     SolveOptions options{.method = find_method("hsrr")};
     options.limits.rays = 4'000'000;
     const Solution solution = solve(scene, ray_caster, options);
-    const RenderOptions size{.width = 96, .height = 64, .samples = 64};
-    const Image reference = trace_paths(scene, ray_caster, view, {.width = 96, .height = 64, .samples = 128}).image;
+    const PictureOptions size{.width = 96, .height = 64, .shading = Shading::smooth, .samples = 64};
+    const Image reference =
+        render(scene, ray_caster, view, {.width = 96, .height = 64, .shading = Shading::path, .samples = 128}).image;
     const auto picture = [&] {
         return render(scene, *solution.forest, ray_caster, view, solution.irradiance, size).image;
     };

@@ -94,7 +94,8 @@ TEST_P(WarpedWall, LeavesTheOtherRoomDark) {
     }
     const std::array points{MeasuringPoint{in_lit_room}, MeasuringPoint{in_dark_room}};
     const auto measured = [&](const Solution* known) {
-        return measure_irradiance(scene, known, ray_caster, points, {.samples = 2048});
+        return measure_irradiance(scene, known, ray_caster, points,
+                                  {.shading = known ? Shading::gather : Shading::path, .samples = 2048});
     };
     const std::vector<MeasuredIrradiance> traced = measured(nullptr), gathered = measured(&solution);
     EXPECT_GT(traced[0].sum().x, 10);

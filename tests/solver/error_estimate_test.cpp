@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
-#include "interflect/render/pictures/render_elements.h"
+#include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 
@@ -51,7 +51,7 @@ SolveOptions options_for(const char* method, bool shows_lamp, std::int64_t rays,
 }
 
 Image picture(const Scene& scene, const RayCaster& ray_caster, const Solution& s, const std::vector<Rgb>& irradiance) {
-    const RenderOptions options{.width = width, .height = height, .samples = 64, .shading = Shading::flat};
+    const PictureOptions options{.width = width, .height = height, .shading = Shading::flat, .samples = 64};
     return render(scene, *s.forest, ray_caster, s.options.views[0].view, irradiance, options).image;
 }
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "interflect/render/pictures/render_elements.h"
+#include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/solver/room_with_window.h"
 
@@ -48,14 +48,10 @@ TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
     options.views = {{view, 1, 1.5f, 48}};
     options.limits.rays = 4'000'000;
     const Solution solution = solve(scene, ray_caster, options);
-    RenderOptions picture;
-    picture.width = 72, picture.height = 48;
-    picture.shading = Shading::flat;
+    const PictureOptions picture{.width = 72, .height = 48, .shading = Shading::flat};
     const Image found = render(scene, *solution.forest, ray_caster, view, solution.irradiance, picture).image;
-    PathOptions paths;
-    paths.width = 72, paths.height = 48;
-    paths.samples = 512;
-    const PathTracing traced = trace_paths(scene, ray_caster, view, paths, {});
+    const PictureOptions paths{.width = 72, .height = 48, .shading = Shading::path, .samples = 512};
+    const Rendering traced = render(scene, ray_caster, view, paths);
     constexpr int blocks = 6;
     std::vector<double> mine(blocks * blocks, 0), reference(blocks * blocks, 0);
     for (int y = 0; y < 48; ++y)

@@ -16,7 +16,7 @@
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/formats/mgf.h"
-#include "interflect/render/pictures/render_elements.h"
+#include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
 #include "tests/support/statistics.h"
@@ -99,7 +99,7 @@ Measured measure(const Placement& place, std::uint64_t seed) {
                            solution.emitted_power.x;
     View view{"room", place({0.2, 0.2, 1.6}), place({3, 2.5, 0.8}), V3f(place({0, 0, 1}) - place({0, 0, 0})), 70};
     const Image image = render(scene, *solution.forest, ray_caster, view, solution.irradiance,
-                               {.width = 32, .height = 24, .samples = 4, .shading = Shading::flat, .seed = seed})
+                               {.width = 32, .height = 24, .shading = Shading::flat, .samples = 4, .seed = seed})
                             .image;
     for (const Rgb& pixel : image.pixels)
         result.seen += static_cast<double>(pixel.x) / static_cast<double>(image.pixels.size());

@@ -196,7 +196,8 @@ TEST(Daylight, IsTheSameToSolverAndPathTracer) {
                           patches[i].v * static_cast<double>(unit_float(a[1]));
             points.push_back({x, V3f(patches[i].normal())});
         }
-    const auto traced = measure_irradiance(scene, nullptr, ray_caster, points, {.samples = 1024});
+    const auto traced =
+        measure_irradiance(scene, nullptr, ray_caster, points, {.shading = Shading::path, .samples = 1024});
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         double sum = 0, squares = 0;
         for (int k = 0; k < places; ++k) {

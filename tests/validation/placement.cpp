@@ -55,7 +55,8 @@ std::vector<Estimate> measured(const Scene& scene, const std::vector<MeasuringPo
 std::vector<Estimate> traced(const Scene& scene, const std::vector<MeasuringPoint>& points, int samples) {
     std::vector<MeasuringPoint> repeated;
     for (int run = 0; run < runs; ++run) repeated.insert(repeated.end(), points.begin(), points.end());
-    const auto found = measure_irradiance(scene, nullptr, RayCaster(scene), repeated, {.samples = samples});
+    const auto found =
+        measure_irradiance(scene, nullptr, RayCaster(scene), repeated, {.shading = Shading::path, .samples = samples});
     return means_of_runs(points.size(), [&](std::uint64_t seed) {
         std::vector<double> illuminances;
         for (std::size_t i = 0; i < points.size(); ++i)

@@ -64,7 +64,8 @@ void require_usable(const ExportFormat& format, const ExportOptions& options) {
         throw InputError(fmt::format("exposure is {}, expected a finite number of stops", options.exposure));
     const float length = options.up.length();
     if (!(length > 0 && std::isfinite(length))) throw InputError("up has no direction");
-    if (const int samples = options.bake.samples.value_or(2); samples < 2)
+    require_samples(options.bake.shading, options.lightmap ? &DefaultSamples::texel : &DefaultSamples::vertex);
+    if (const int samples = options.bake.samples; samples != 0 && samples < 2)
         throw InputError(fmt::format("samples is {}, expected at least 2", samples));
     if (!options.lightmap) return require_usable(options.vertices);
     if (!format.takes_lightmaps)

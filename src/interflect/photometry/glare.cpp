@@ -194,7 +194,7 @@ std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_
 }
 
 std::vector<GlareRating> rate_glare(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
-                                    std::span<const Observer> observers, const PathOptions& options,
+                                    std::span<const Observer> observers, const MeasuringOptions& options,
                                     const Monitor& monitor) {
     std::vector<MeasuringPoint> eyes;
     for (const Observer& observer : observers) {

@@ -55,11 +55,28 @@ Gauge gauge_of(const MeasuringPoint& point, std::size_t index, const Imath::V3d&
     return gauge;
 }
 
+/// Options of a picture with a pixel per point.
+/// @throws InputError for a shading that is not available for points.
+PictureOptions picture_options(const MeasuringOptions& options, std::size_t points) {
+    return {.width = static_cast<int>(points),
+            .height = 1,
+            .shading = options.shading,
+            .samples = require_samples(options.shading, &DefaultSamples::point, options.samples),
+            .max_samples = options.max_samples,
+            .until = options.until,
+            .time = options.time,
+            .quantity = PictureQuantity::irradiance,
+            .seed = options.seed};
+}
+
 }  // namespace
 
 std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Solution* solution,
                                                    const RayCaster& ray_caster, std::span<const MeasuringPoint> points,
-                                                   PathOptions options, const Monitor& monitor) {
+                                                   const MeasuringOptions& given, const Monitor& monitor) {
+    const PictureOptions options = picture_options(given, points.size());
+    if (needs_solution(options.shading) && !solution)
+        throw InputError(fmt::format("{} shading needs a solution", label(options.shading)));
     if (points.empty()) return {};
     if (points.size() > std::numeric_limits<int>::max())
         throw InputError(
@@ -73,13 +90,11 @@ std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Sol
     const float offset = offset_for(scene, farthest);
     for (Gauge& gauge : gauges) gauge.offset = offset;
 
-    options.width = static_cast<int>(points.size());
-    options.height = 1;
-    options.quantity = PathQuantity::irradiance;
     const PathStart start{{}, 0, gauges};
     std::optional<KnownIrradiance> known;
-    if (solution) known.emplace(known_irradiance(scene, *solution->forest, solution->irradiance));
-    const PathTracing traced = trace_picture(scene, ray_caster, start, options, monitor, known ? &*known : nullptr);
+    if (needs_solution(options.shading))
+        known.emplace(known_irradiance(scene, *solution->forest, solution->irradiance));
+    const Rendering traced = trace_picture(scene, ray_caster, start, options, monitor, known ? &*known : nullptr);
     std::vector<MeasuredIrradiance> measured(points.size());
     const SampledLight& light = traced.layers.reflected;
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -16,7 +16,6 @@ namespace {
 /// Least distance of ray starts from the border of a patch, over the spacing of points. At the foot of a wall, they
 /// would otherwise start in its plane.
 constexpr float inset = 0.05f;
-constexpr int gathered_directions = 64;
 
 SampledLight no_light(int width, int height) {
     const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -63,16 +62,16 @@ BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeO
       vertices_(scene, *solution.forest),
       smooth_(*solution.forest, vertices_, solution.irradiance),
       known_{*solution.forest, solution.irradiance, true} {
-    if (options.shading == BakeShading::smooth) return;
+    if (options.shading == Shading::smooth) return;
     ray_caster_.emplace(scene);
-    if (options.shading == BakeShading::hybrid || sampling.is_tested) traced_.emplace(scene, *ray_caster_);
+    if (options.shading == Shading::hybrid || sampling.is_tested) traced_.emplace(scene, *ray_caster_);
 }
 
 std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids,
                                         float spacing, const Monitor& monitor) const {
-    if (options_.shading == BakeShading::hybrid) {
+    if (options_.shading == Shading::hybrid) {
         const std::vector<Gauge> places = gauges(points, spacing);
-        const PathOptions path = path_options();
+        const PictureOptions path = path_options();
         give_order(monitor.ranks, {.kind = LightOrder::Kind::gauges, .options = path}, {{}, 0, places});
         const std::vector<GaugeLight> light = hybrid_irradiance(*traced_, known_, places, path, monitor);
         std::vector<Rgb> values;
@@ -81,7 +80,7 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std:
         for (const PointGrid& grid : grids) filter(grid, places, light, spacing, values);
         return values;
     }
-    if (options_.shading == BakeShading::gather) return gathered(points, spacing, monitor);
+    if (options_.shading == Shading::gather) return gathered(points, spacing, monitor);
     std::vector<Rgb> values(points.size());
     constexpr std::size_t points_per_task = 1 << 12;
     parallel_for_ranges(points.size(), points_per_task, [&](std::size_t begin, std::size_t end) {
@@ -92,20 +91,19 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std:
 
 std::vector<SampledIrradiance> BakedLight::direct(std::span<const BakedPoint> points, float spacing, int max_samples,
                                                   const Monitor& monitor) const {
-    PathOptions options = path_options();
+    PictureOptions options = path_options();
     options.samples = std::min(options.samples, max_samples);
     const std::vector<Gauge> places = gauges(points, spacing);
     give_order(monitor.ranks, {.kind = LightOrder::Kind::direct_gauges, .options = options}, {{}, 0, places});
     return direct_irradiance(*traced_, places, options, monitor);
 }
 
-PathOptions BakedLight::path_options() const {
-    PathOptions path;
-    path.samples =
-        options_.samples.value_or(options_.shading == BakeShading::gather ? gathered_directions : sampling_.samples);
-    if (options_.shading == BakeShading::hybrid) path.until = sampling_.max_noise;
+PictureOptions BakedLight::path_options() const {
+    PictureOptions path;
+    path.samples = require_samples(options_.shading, sampling_.use, options_.samples);
+    if (options_.shading == Shading::hybrid) path.until = sampling_.max_noise;
     path.seed = options_.seed;
-    path.quantity = PathQuantity::irradiance;
+    path.quantity = PictureQuantity::irradiance;
     return path;
 }
 
@@ -137,8 +135,9 @@ std::vector<Rgb> BakedLight::gathered(std::span<const BakedPoint> points, float 
         const V3f normal = vertices_.normals().at(geometry, point.patch, point.at);
         measuring.push_back({scene_.origin + Imath::V3d(x), normal});
     }
+    const MeasuringOptions options{.samples = path_options().samples, .seed = options_.seed};
     const std::vector<MeasuredIrradiance> measured =
-        measure_irradiance(scene_, &solution_, *ray_caster_, measuring, path_options(), monitor);
+        measure_irradiance(scene_, &solution_, *ray_caster_, measuring, options, monitor);
     const auto lit =
         std::count_if(measured.begin(), measured.end(), [](const MeasuredIrradiance& m) { return m.is_measured(); });
     if (static_cast<std::size_t>(lit) < measured.size())

@@ -25,7 +25,7 @@ struct BakedPoint {
 
 /// Sampling of direct light in hybrid shading.
 struct DirectSampling {
-    int samples;       ///< Without BakeOptions::samples.
+    LightUse use;      ///< Selects the default number of samples.
     double max_noise;  ///< Estimated relative error below which a quarter of the samples suffices.
     bool is_tested;    ///< BakedLight::direct() is called.
 };
@@ -48,14 +48,14 @@ class BakedLight {
     /// @return         [as H], per point. @throws Stopped
     std::vector<Rgb> irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids, float spacing,
                                 const Monitor& monitor) const;
-    /// Direct light of hybrid shading, if DirectSampling::is_tested; not for BakeShading::smooth.
+    /// Direct light of hybrid shading, if DirectSampling::is_tested; not for Shading::smooth.
     std::vector<SampledIrradiance> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
                                           const Monitor& monitor) const;
     /// As by SmoothField.
     Rgb interpolated(const BakedPoint& point) const { return smooth_.at(point.patch, point.at); }
 
   private:
-    PathOptions path_options() const;
+    PictureOptions path_options() const;
     std::vector<Gauge> gauges(std::span<const BakedPoint> points, float spacing) const;
     std::vector<Rgb> gathered(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const;
 

@@ -30,7 +30,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr DirectSampling texel_sampling{16, hybrid_target, /*is_tested=*/false};
+constexpr DirectSampling texel_sampling{&DefaultSamples::texel, hybrid_target, /*is_tested=*/false};
 
 struct TexelPlace : BakedPoint {
     bool is_inside = false;
@@ -253,7 +253,7 @@ double texel_count(const LightmapChart& chart, int gutter) {
 }
 
 /// @param image_texels  Of all images. @param chart_texels  With gutters.
-void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, BakeShading shading,
+void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, Shading shading,
                     std::size_t groups) {
     constexpr double encoded_bytes = 16, target_bytes = 16;
     // Per image texel: itself, a copy to encode.
@@ -263,8 +263,8 @@ void require_memory(double image_texels, double chart_texels, const LightmapOpti
                      hybrid_bytes = sizeof(SurfacePoint) + sizeof(Gauge) + sizeof(GaugeLight) + sizeof(Rgb),
                      gathered_bytes =
                          path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);
-    const bool gathers = shading == BakeShading::gather;
-    const double shading_bytes = gathers ? gathered_bytes : shading == BakeShading::hybrid ? hybrid_bytes : 0;
+    const bool gathers = shading == Shading::gather;
+    const double shading_bytes = gathers ? gathered_bytes : shading == Shading::hybrid ? hybrid_bytes : 0;
     const double bytes =
         image_texels * (image_bytes + (options.groups ? static_cast<double>(groups) * group_bytes : 0)) +
         chart_texels * (texel_bytes + shading_bytes);

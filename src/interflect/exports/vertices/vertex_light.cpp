@@ -271,9 +271,9 @@ class VertexPoints {
 
 VertexLight make_vertex_light(const Scene& scene, const Solution& solution, const ExportOptions& options) {
     std::vector<bool> shown = shown_patches(scene, solution);
-    if (options.bake.shading == BakeShading::smooth)
+    if (options.bake.shading == Shading::smooth)
         return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance), std::move(shown)};
-    constexpr DirectSampling vertex_sampling{64, 1e-3, /*is_tested=*/true};
+    constexpr DirectSampling vertex_sampling{&DefaultSamples::vertex, 1e-3, /*is_tested=*/true};
     const BakedLight light(scene, solution, options.bake, vertex_sampling);
     constexpr double share_of_division = 0.4;  // of the time; roughly
     Division division(scene, light, shown, mean_irradiance(solution, shown), options.vertices);

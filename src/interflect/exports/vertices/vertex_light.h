@@ -15,7 +15,7 @@ struct VertexLight {
     std::vector<bool> shown;  ///< See shown_patches().
 };
 
-/// Light at the vertices of elements: the solution's for BakeShading::smooth; otherwise elements of its own, divided by
+/// Light at the vertices of elements: the solution's for Shading::smooth; otherwise elements of its own, divided by
 /// VertexOptions.
 /// @throws Stopped
 VertexLight make_vertex_light(const Scene& scene, const Solution& solution, const ExportOptions& options);

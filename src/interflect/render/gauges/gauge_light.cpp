@@ -123,7 +123,7 @@ PathStart start_at(std::span<const Gauge> gauges) {
 }  // namespace
 
 std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, const KnownIrradiance& known,
-                                          std::span<const Gauge> gauges, const PathOptions& options,
+                                          std::span<const Gauge> gauges, const PictureOptions& options,
                                           const Monitor& monitor) {
     const PathStart start = start_at(gauges);
     const PathPlan plan{.scene = scene, .start = start, .options = options};
@@ -134,7 +134,7 @@ std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, const KnownI
 }
 
 std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
-                                                 const PathOptions& options, const Monitor& monitor) {
+                                                 const PictureOptions& options, const Monitor& monitor) {
     const PathStart start = start_at(gauges);
     const HybridLight direct_only;
     const PathPlan plan{

@@ -32,10 +32,10 @@ struct GaugeLight {
 /// @return       Per gauge, in rank 0 only; the same bits for any number of threads and ranks. Collective.
 /// @throws Stopped, in all ranks.
 std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, const KnownIrradiance& known,
-                                          std::span<const Gauge> gauges, const PathOptions& options,
+                                          std::span<const Gauge> gauges, const PictureOptions& options,
                                           const Monitor& monitor);
 /// The direct part.
 std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,
-                                                 const PathOptions& options, const Monitor& monitor);
+                                                 const PictureOptions& options, const Monitor& monitor);
 
 }  // namespace interflect::detail

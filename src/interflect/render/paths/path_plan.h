@@ -34,7 +34,7 @@ struct HybridLight {
 struct PathPlan {
     const TracedScene& scene;
     const PathStart& start;
-    const PathOptions& options;
+    const PictureOptions& options;
     std::uint32_t first_rays = 1;                   ///< Shadow rays to each kind of source at first points.
     bool has_direct = true;                         ///< Includes light that is reflected once.
     const KnownLight* known = nullptr;              ///< Ends paths; null: only Russian roulette does.
@@ -42,7 +42,7 @@ struct PathPlan {
     const VirtualLights* virtual_lights = nullptr;  ///< Light every vertex; paths find the light beyond their bounds.
     const HybridLight* hybrid = nullptr;
 
-    bool shows_irradiance() const { return options.quantity == PathQuantity::irradiance; }
+    bool shows_irradiance() const { return options.quantity == PictureQuantity::irradiance; }
 };
 
 }  // namespace interflect::detail

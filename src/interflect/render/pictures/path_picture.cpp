@@ -28,14 +28,14 @@ namespace {
 constexpr int min_parts = 8;
 /// Larger batches stratify little better; more batches improve the error estimate.
 constexpr int largest_half_batch = 32;
-bool is_limited(const PathOptions& options) { return std::isfinite(options.time); }
+bool is_limited(const PictureOptions& options) { return std::isfinite(options.time); }
 
 /// Draws in rounds. The first gives every pixel a few samples, from which the needs of its neighbours are estimated;
 /// the others multiply these needs by a factor that is common to the picture. So the number of samples of a pixel does
 /// not depend on their values, and its mean is unbiased (up to the influence of a pixel on the error of the picture).
 class PathPicture {
   public:
-    /// @param time_left  As PathOptions::time.
+    /// @param time_left  As PictureOptions::time.
     PathPicture(const PathPlan& plan, SharedBatches& batches, const Monitor& monitor, const StopRequest& time_left)
         : plan_(plan),
           options_(plan.options),
@@ -66,8 +66,8 @@ class PathPicture {
         if (!stopped()) report(1);
     }
 
-    PathTracing result() const {
-        PathTracing result;
+    Rendering result() const {
+        Rendering result;
         result.image = Image(options_.width, options_.height);
         result.standard_error = Image(options_.width, options_.height);
         result.batches.reserve(pixels_.size());
@@ -241,7 +241,7 @@ class PathPicture {
     }
 
     const PathPlan& plan_;
-    const PathOptions& options_;
+    const PictureOptions& options_;
     const Monitor& monitor_;
     const StopRequest& time_left_;
     SharedBatches& shared_;
@@ -254,7 +254,7 @@ class PathPicture {
     RayCounts counts_;
 };
 
-void require_valid(const PathOptions& options) {
+void require_valid(const PictureOptions& options) {
     if (!(options.time > 0)) throw InputError(fmt::format("a time of {} s: expected more than 0", options.time));
     if (options.samples < 2)
         throw InputError(
@@ -266,8 +266,8 @@ void require_valid(const PathOptions& options) {
                                      options.max_samples, options.samples));
 }
 
-PathTracing draw(const PathPlan& plan, const Monitor& monitor, const StopRequest& time_left,
-                 VirtualLights* virtual_lights = nullptr) {
+Rendering draw(const PathPlan& plan, const Monitor& monitor, const StopRequest& time_left,
+               VirtualLights* virtual_lights = nullptr) {
     SharedBatches batches(plan, virtual_lights, monitor.ranks);
     if (batches.is_helper()) {
         batches.help(time_left);
@@ -281,8 +281,8 @@ PathTracing draw(const PathPlan& plan, const Monitor& monitor, const StopRequest
 
 }  // namespace
 
-PathTracing trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
-                                  const PathOptions& options, const Monitor& monitor) {
+Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
+                                const PictureOptions& options, const Monitor& monitor) {
     require_valid(options);
     if (options.light_walks < 1)
         throw InputError(fmt::format("{} walks from the light sources: expected 1 or more", options.light_walks));
@@ -297,8 +297,8 @@ PathTracing trace_instant_picture(const Scene& scene, const RayCaster& ray_caste
     return draw(plan, monitor, time_left, &lights);
 }
 
-PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
-                          const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
+Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
+                        const PictureOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
     require_valid(options);
     ray_caster.require_made_for(scene);
     give_order(monitor.ranks,
@@ -315,7 +315,7 @@ PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const
     const double share_of_records = known->is_interpolated ? 0.25 : 0;  // of the time; roughly
     const RecordedLight recorded(plan, *known, monitor_section(monitor, 0, share_of_records));
     const PathPlan with_records = recorded.plan();
-    PathTracing result = draw(with_records, monitor_section(monitor, share_of_records, 1, recorded.rays()), time_left);
+    Rendering result = draw(with_records, monitor_section(monitor, share_of_records, 1, recorded.rays()), time_left);
     result.rays += recorded.rays();
     return result;
 }
@@ -326,7 +326,7 @@ KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest
     return {forest, irradiance};
 }
 
-PathStart start_at_camera(const View& view, const PathOptions& options, const Imath::V3d& origin) {
+PathStart start_at_camera(const View& view, const PictureOptions& options, const Imath::V3d& origin) {
     constexpr float degree = std::numbers::pi_v<float> / 180;
     const Camera camera(view, options.width, options.height, origin);
     if (view.extent > 0) return {camera, 0, {}, view.extent / static_cast<float>(options.height)};

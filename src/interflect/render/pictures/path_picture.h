@@ -21,16 +21,16 @@ inline constexpr std::size_t path_bytes_per_pixel = 600, path_bytes_per_patch = 
 inline constexpr std::size_t bytes_per_light_walk = 4000;
 
 /// With virtual lights, for the arguments of trace_picture().
-PathTracing trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
-                                  const PathOptions& options, const Monitor& monitor);
+Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
+                                const PictureOptions& options, const Monitor& monitor);
 
 /// @param start  Starts of options.width x options.height pixels.
 /// @param known  Null: Russian roulette ends paths.
 /// @return       Empty in other ranks than 0. Collective.
-PathTracing trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
-                          const PathOptions& options, const Monitor& monitor, const KnownIrradiance* known);
+Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
+                        const PictureOptions& options, const Monitor& monitor, const KnownIrradiance* known);
 
 /// @throws InputError as Camera() does.
-PathStart start_at_camera(const View& view, const PathOptions& options, const Imath::V3d& origin);
+PathStart start_at_camera(const View& view, const PictureOptions& options, const Imath::V3d& origin);
 
 }  // namespace interflect::detail

@@ -36,7 +36,7 @@ std::vector<double> sums_along(const std::vector<double>& values, std::size_t li
     return sums;
 }
 
-std::vector<double> sums_around(std::vector<double> values, const PathOptions& options) {
+std::vector<double> sums_around(std::vector<double> values, const PictureOptions& options) {
     const auto width = static_cast<std::size_t>(options.width), height = static_cast<std::size_t>(options.height);
     values = sums_along(values, height, width, width, 1);
     return sums_along(values, width, 1, height, width);
@@ -45,7 +45,7 @@ std::vector<double> sums_around(std::vector<double> values, const PathOptions& o
 /// Light that the error of each pixel is relative to: the mean of its surroundings, at least that of the picture. The
 /// noisy mean of the pixel itself would hide errors of rare light.
 /// @param includes_pixel  Whether the pixel itself is part of its surroundings.
-std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                 bool includes_pixel) {
     std::vector<double> light;
     light.reserve(pixels.size());
@@ -118,7 +118,7 @@ RgbD PixelStatistics::record_error() const {
     return error * error;
 }
 
-double relative_error(const std::vector<PixelStatistics>& pixels, const PathOptions& options) {
+double relative_error(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
     const auto has_error = [](const PixelStatistics& p) { return p.has_error(); };
     if (!std::all_of(pixels.begin(), pixels.end(), has_error)) return std::numeric_limits<double>::infinity();
     const std::vector<double> scale = error_scale(pixels, options, true);
@@ -128,7 +128,7 @@ double relative_error(const std::vector<PixelStatistics>& pixels, const PathOpti
     return std::sqrt(sum / static_cast<double>(pixels.size()));
 }
 
-std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target) {
     const std::vector<double> scale = error_scale(pixels, options, false);
     std::vector<double> variance(pixels.size());  // of one sample of each half

@@ -58,13 +58,13 @@ class PixelStatistics {
     Spread spread_;
 };
 
-/// Returns PathTracing::relative_error.
-double relative_error(const std::vector<PixelStatistics>& pixels, const PathOptions& options);
+/// Returns Rendering::relative_error.
+double relative_error(const std::vector<PixelStatistics>& pixels, const PictureOptions& options);
 
 /// Returns the number of samples of each half by which each pixel reaches the target, from the errors of its
 /// neighbours: a pixel's own samples would bias it.
 /// @param target  Of the relative standard error.
-std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PathOptions& options,
+std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target);
 
 }  // namespace interflect::detail

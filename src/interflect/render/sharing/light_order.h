@@ -22,7 +22,7 @@ struct LightOrder {
         end,              ///< Ends help_with_light().
     };
     Kind kind = Kind::end;
-    PathOptions options{};         ///< Options of the paths.
+    PictureOptions options{};      ///< Options of the paths.
     bool is_known = false;         ///< Paths end at the solution.
     bool is_interpolated = false;  ///< As KnownIrradiance::is_interpolated.
     ProbeOptions probes{};

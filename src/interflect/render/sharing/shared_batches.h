@@ -30,7 +30,7 @@ class SharedBatches {
 
     /// Sets PathBatch::done.
     /// @param is_over     Omits the remaining tiles of this process; called once per tile.
-    /// @param is_limited  The other ranks omit tiles after PathOptions::time.
+    /// @param is_limited  The other ranks omit tiles after PictureOptions::time.
     RayCounts trace(std::span<PathBatch> batches, const std::function<bool()>& is_over, bool is_limited);
     /// Later batches are lit by another set of virtual lights. Returns its number of rays; 0 without virtual lights.
     std::int64_t renew_virtual_lights();
@@ -39,7 +39,7 @@ class SharedBatches {
 
     // Other ranks:
 
-    /// Traces the tiles of this rank until end(). @param time_left  As PathOptions::time.
+    /// Traces the tiles of this rank until end(). @param time_left  As PictureOptions::time.
     void help(const StopRequest& time_left);
 
   private:

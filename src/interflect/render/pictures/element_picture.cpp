@@ -1,4 +1,4 @@
-#include "interflect/render/pictures/render_elements.h"
+#include "interflect/render/pictures/element_picture.h"
 
 #include <atomic>
 #include <numbers>
@@ -13,17 +13,18 @@
 #include "interflect/render/smooth/element_vertices.h"
 #include "interflect/render/smooth/smooth_field.h"
 
-namespace interflect {
-
-using namespace detail;
+namespace interflect::detail {
 
 namespace {
 
 class Shader {
   public:
     Shader(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance,
-           const RenderOptions& options)
-        : scene_(scene), forest_(forest), irradiance_(irradiance), shows_irradiance_(options.irradiance) {
+           const PictureOptions& options)
+        : scene_(scene),
+          forest_(forest),
+          irradiance_(irradiance),
+          shows_irradiance_(options.quantity == PictureQuantity::irradiance) {
         if (options.shading == Shading::flat) return;
         vertices_.emplace(scene, forest, options.smoothing);
         smooth_.emplace(forest, *vertices_, irradiance);
@@ -62,8 +63,8 @@ class Shader {
 
 }  // namespace
 
-Rendering detail::render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
-                         std::span<const Rgb> irradiance, const RenderOptions& options, const Monitor& monitor) {
+Rendering draw_elements(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
+                        std::span<const Rgb> irradiance, const PictureOptions& options, const Monitor& monitor) {
     ray_caster.require_made_for(scene);
     forest.require_made_for(scene);
     require_values_of_elements(forest, irradiance.size(), "irradiance");
@@ -76,18 +77,19 @@ Rendering detail::render(const Scene& scene, const ElementForest& forest, const 
     std::atomic<std::int64_t> escaped_rays{0};
     const CameraSampling sampling{options.width, options.height, options.samples, options.seed};
     const Panes panes(scene, ray_caster);
+    const bool shows_irradiance = options.quantity == PictureQuantity::irradiance;
     trace_pixels(camera, ray_caster, sampling, monitor, [&](const PixelSamples& samples) {
         RgbD sum(0, 0, 0);
         std::int64_t escaped = 0;
         const auto value = [&](const Ray& ray, const Hit& hit) {
             escaped += hit.patch == none ? 1 : 0;
             if (hit.patch != none) return RgbD(shader.value_at(ray, hit));
-            return options.irradiance ? RgbD(0) : RgbD(skies.seen(ray.direction));
+            return shows_irradiance ? RgbD(0) : RgbD(skies.seen(ray.direction));
         };
         for (std::size_t i = 0; i < samples.rays.size(); ++i) sum += value(samples.rays[i], samples.hits[i]);
         thread_local std::vector<Panes::HitBehind> behind;
         behind.clear();
-        if (!options.irradiance) panes.trace(samples.rays, samples.hits, behind);  // panes have their own irradiance
+        if (!shows_irradiance) panes.trace(samples.rays, samples.hits, behind);  // panes have their own irradiance
         for (const auto& [ray, transmittance, hit] : behind) sum += value(samples.rays[ray], hit) * RgbD(transmittance);
         result.image.pixels[samples.pixel] = Rgb(sum / static_cast<double>(samples.rays.size()));
         if (escaped > 0) escaped_rays += escaped;
@@ -100,9 +102,4 @@ Rendering detail::render(const Scene& scene, const ElementForest& forest, const 
     return result;
 }
 
-Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                 const RenderOptions& options, const Monitor& monitor) {
-    return detail::render(scene, *solution.forest, ray_caster, view, solution.irradiance, options, monitor);
-}
-
-}  // namespace interflect
+}  // namespace interflect::detail

@@ -1,0 +1,49 @@
+#include "interflect/render.h"
+
+#include <fmt/format.h>
+
+#include "interflect/core.h"
+#include "interflect/render/pictures/element_picture.h"
+#include "interflect/render/pictures/path_picture.h"
+#include "interflect/render/render_elements.h"
+
+namespace interflect {
+
+using namespace detail;
+
+namespace {
+
+PictureOptions with_samples(PictureOptions options) {
+    options.samples = require_samples(options.shading, &DefaultSamples::pixel, options.samples);
+    return options;
+}
+
+}  // namespace
+
+Rendering detail::render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
+                         std::span<const Rgb> irradiance, const PictureOptions& given, const Monitor& monitor) {
+    if (!needs_solution(given.shading)) return interflect::render(scene, ray_caster, view, given, monitor);
+    const PictureOptions options = with_samples(given);
+    if (!traces_paths(options.shading))
+        return draw_elements(scene, forest, ray_caster, view, irradiance, options, monitor);
+    KnownIrradiance known = known_irradiance(scene, forest, irradiance);
+    known.is_interpolated = options.shading == Shading::hybrid;
+    return trace_picture(scene, ray_caster, start_at_camera(view, options, scene.origin), options, monitor, &known);
+}
+
+Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                 const PictureOptions& options, const Monitor& monitor) {
+    return detail::render(scene, *solution.forest, ray_caster, view, solution.irradiance, options, monitor);
+}
+
+Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& view, const PictureOptions& given,
+                 const Monitor& monitor) {
+    if (needs_solution(given.shading))
+        throw InputError(fmt::format("{} shading needs a solution", label(given.shading)));
+    const PictureOptions options = with_samples(given);
+    const PathStart start = start_at_camera(view, options, scene.origin);
+    if (options.shading == Shading::instant) return trace_instant_picture(scene, ray_caster, start, options, monitor);
+    return trace_picture(scene, ray_caster, start, options, monitor, nullptr);
+}
+
+}  // namespace interflect
