@@ -184,8 +184,8 @@ PathTracing gather(const Scene& scene, const Solution& solution, const RayCaster
                    const PathOptions& options = {}, const Monitor& monitor = {});
 
 /// Hybrid shading: direct light as by gather(), with more stratification; indirect light interpolated between sparse
-/// points that gather 512 directions each (irradiance caching, Ward et al. 1988). Normals of Scene::normals shade
-/// smooth objects. Where no point is near, light is gathered.
+/// points that gather 512 directions each (irradiance caching, Ward et al. 1988). Where no point is near, light is
+/// gathered.
 /// @param options  Of path tracing; `samples` are camera rays per pixel.
 /// @return         The standard error excludes indirect light.
 /// @throws InputError as gather() does.

@@ -7,7 +7,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/render/smooth/element_vertices.h"
 #include "interflect/render/smooth/smooth_field.h"
-#include "interflect/render/smooth/smooth_surfaces.h"
+#include "interflect/geometry/smooth_surfaces.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -8,9 +8,9 @@
 
 #include "interflect/base/monitor_section.h"
 #include "interflect/base/shared_ranges.h"
+#include "interflect/geometry/smooth_surfaces.h"
 #include "interflect/render/paths/part_statistics.h"
 #include "interflect/render/paths/seen_light.h"
-#include "interflect/render/smooth/smooth_surfaces.h"
 
 namespace interflect::detail {
 
@@ -43,9 +43,8 @@ TracedScene::TracedScene(const Scene& scene, const RayCaster& ray_caster, const 
       panes_(scene, ray_caster),
       unoccluded_(scene, geometry_),
       has_mirrors_(has_mirrors(scene)) {
-    if (!known) return;
-    known_.emplace(*known);
-    if (known->is_interpolated && !scene.normals.empty()) smooth_normals_.emplace(scene, find_smooth_surfaces(scene));
+    if (!scene.normals.empty()) smooth_normals_.emplace(scene, find_smooth_surfaces(scene));
+    if (known) known_.emplace(*known);
 }
 
 PathScene TracedScene::paths(const PathStart& start, const PathOptions& options, std::size_t batch_size) const {

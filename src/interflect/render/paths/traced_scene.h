@@ -58,7 +58,7 @@ class TracedScene {
     UnoccludedLight unoccluded_;
     bool has_mirrors_;
     std::optional<KnownIrradiance> known_;
-    std::optional<SmoothNormals> smooth_normals_;  // for hybrid shading of scenes with normals
+    std::optional<SmoothNormals> smooth_normals_;  // of scenes with normals
 };
 
 /// Relative standard error in hybrid shading above which a pixel or texel gets more samples.

@@ -16,13 +16,13 @@
 #include "interflect/base/stop_request.h"
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/smooth_surfaces.h"
 #include "interflect/render/paths/indirect_field.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/pictures/pixel_statistics.h"
 #include "interflect/render/sharing/light_order.h"
 #include "interflect/render/sharing/shared_batches.h"
 #include "interflect/render/smooth/smooth_normals.h"
-#include "interflect/render/smooth/smooth_surfaces.h"
 
 namespace interflect::detail {
 

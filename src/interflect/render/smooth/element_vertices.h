@@ -10,7 +10,7 @@
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/render/smooth/smooth_normals.h"
-#include "interflect/render/smooth/smooth_surfaces.h"
+#include "interflect/geometry/smooth_surfaces.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
