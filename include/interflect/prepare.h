@@ -17,7 +17,8 @@ struct ContactOptions {
     /// always counts as touching.
     float touch_distance = 1e-4f;
     /// Minimum extent of connected segments [m], >= 0; smaller ones are ignored. Faces with less area than its
-    /// square stay whole. Twice default_element_size() (the side of the smallest elements) is suitable.
+    /// square stay whole. Faces closer than half of it and 0.002 of the smaller one's diameter count as touching. Twice
+    /// default_element_size() (the side of the smallest elements) is suitable.
     float min_extent = 0;
     /// Maximum ratio of length to width of quadrilateral pieces, >= 1. Longer pieces are divided across, unless
     /// narrower than twice `min_extent` or 0.002 of the face's diameter.
