@@ -17,7 +17,8 @@ struct ContactOptions {
     /// always counts as touching.
     float touch_distance = 1e-4f;
     /// Minimum extent of connected segments [m], >= 0; smaller ones are ignored. Faces with less area than its
-    /// square stay whole. Twice default_element_size() (the side of the smallest elements) is suitable.
+    /// square stay whole. Faces closer than half of it and 0.002 of the smaller one's diameter count as touching. Twice
+    /// default_element_size() (the side of the smallest elements) is suitable.
     float min_extent = 0;
     /// Maximum ratio of length to width of quadrilateral pieces, >= 1. Longer pieces are divided across, unless
     /// narrower than twice `min_extent` or 0.002 of the face's diameter.
@@ -89,9 +90,10 @@ std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, c
 /// directions are free), "wide-opening" (larger than the scene, or through its walls), "enclosed-luminaire" (in a
 /// closed space without a view that is too narrow for a room, or that keeps all light from the views) and
 /// "shut-out-sky" (a sky or a sun, and a closed scene seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT
-/// in one scene), "probable-unit" and "probable-up-axis" (for formats without either). Traces 384 to 1280 rays for each
-/// point light, spot and measured light, and at most 64 x 66 for its opening, for at most 1024 of them; 2^17 rays from
-/// views or points if a space is closed; and 2^14 lines to find openings to the sky.
+/// in one scene), "probable-unit" and "probable-up-axis" (for formats without either), and "contradicting-normals"
+/// (Scene::normals that deviate by 10 degrees or more from plane faces, which ignore them). Traces 384 to 1280 rays for
+/// each point light, spot and measured light, and at most 64 x 66 for its opening, for at most 1024 of them; 2^17 rays
+/// from views or points if a space is closed; and 2^14 lines to find openings to the sky.
 /// @return  In this order, the same for any number of threads. @throws InputError as validate() does.
 std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_caster,
                                     const ValidateOptions& options = {});

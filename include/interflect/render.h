@@ -85,7 +85,7 @@ struct Rendering {
     PictureLayers layers;  ///< Empty in flat and smooth shading, as are `standard_error` and `batches`.
     /// Standard error of each pixel and channel, in the same unit, from the spread of independent samples.
     Image standard_error;
-    /// Standard error over the larger of the mean radiance of the 7 x 7 pixels around and the picture's mean reflected
+    /// Standard error over the larger of the mean radiance of the 48 pixels around and the picture's mean reflected
     /// radiance (channel means), root mean square over the pixels; 0 for a picture without light. Infinite if any pixel
     /// has fewer than two batches; NaN in flat and smooth shading.
     double relative_error = std::numeric_limits<double>::quiet_NaN();

@@ -40,6 +40,23 @@ std::vector<std::string> with_light(V3f position, V3f direction = {0, 0, -1}) {
     return kinds(scene);
 }
 
+/// A room with a block whose corners have averaged normals, as some programs export them.
+TEST(Setup, NormalsThatContradictPlaneFaces) {
+    Scene scene = two_sided_room(room_size);
+    add_light(scene, downlight(), {1, 1, 2.5f});
+    const std::size_t first = scene.vertices.size();
+    add_two_sided_box(scene, {2, 2, 0.1f}, {3, 3, 1});
+    scene.normals.resize(scene.vertices.size(), V3f(0));
+    EXPECT_THAT(kinds(scene), IsEmpty()) << "faces without normals";
+    const V3f centre(2.5f, 2.5f, 0.55f);
+    for (std::size_t v = first; v < scene.normals.size(); ++v)
+        scene.normals[v] = (scene.vertices[v] - centre).normalized();
+    const std::vector<Finding> findings = validate_setup(scene, RayCaster(scene));
+    ASSERT_EQ(findings.size(), 1u);
+    EXPECT_EQ(findings[0].kind, "contradicting-normals");
+    EXPECT_EQ(findings[0].count, 6) << "sides, each counted once";
+}
+
 TEST(Setup, LuminaireInACeilingOrBelowIt) {
     for (const float z : {3.000001f, 3.0f, 2.999f, 2.9f, 1.5f, 0.021f})
         EXPECT_THAT(with_light({1, 1, z}), IsEmpty()) << z;
@@ -422,8 +439,13 @@ TEST(Setup, IsSoundInTheScenesOfTheRepository) {
     const PlacedLuminaire pendant{.file = scenes / "pendant.ies", .position = {2.5, 2, 2.2}};
     EXPECT_THAT(kinds(load_scene(scenes / "office.mgf", {}, {&pendant, 1})), IsEmpty());
 #ifdef INTERFLECT_HAS_REAL_SCENES
-    for (const char* name : {"corridor.mgf", "cube.mgf", "examp1.mgf", "floor_gloss.mgf", "office2.mgf"})
+    for (const char* name : {"corridor.mgf", "cube.mgf", "floor_gloss.mgf"})
         EXPECT_THAT(kinds(load_scene(real_scenes() / name, {.outside_files = true})), IsEmpty()) << name;
+    // Square table legs with averaged normals; single strips of a reflector, which end at other objects.
+    for (const char* name : {"office2.mgf", "examp1.mgf"})
+        EXPECT_THAT(kinds(load_scene(real_scenes() / name, {.outside_files = true})),
+                    ElementsAre("contradicting-normals"))
+            << name;
 #endif
 }
 

@@ -183,7 +183,7 @@ TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
         double squares = 0;
         for (const Rgb& direct : hybrid.layers.reflected.direct.pixels) EXPECT_NEAR(direct.x, 40, 0.1);
         for (const Rgb& indirect : hybrid.layers.reflected.indirect.pixels) {
-            EXPECT_NEAR(indirect.x, 60, 3);
+            EXPECT_NEAR(indirect.x, 60, 3.6);
             squares += std::pow(static_cast<double>(indirect.x) / 60 - 1, 2);
         }
         EXPECT_LT(std::sqrt(squares / static_cast<double>(hybrid.image.pixels.size())), 0.0115);

@@ -9,6 +9,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/prepare.h"
 #include "interflect/render/smooth/smooth_field.h"
+#include "tests/render/power_of_field.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -18,21 +19,23 @@ namespace {
 
 using testing_support::add_material;
 using testing_support::add_rectangle;
+using testing_support::powers;
 
 const Rgb black(0, 0, 0), grey(0.5f, 0.5f, 0.5f);
 constexpr std::size_t plenty = 1 << 18;  // elements
 
 /// A floor of 2 x 2 m about the origin, material 0, with walls of material 1 on it. The first is along x = 0 over y in
 /// [-1, `wall_end`], the optional one along y = `second_wall` over x in [0.5, 1]. The first divides the floor, the
-/// second its right half, so a corner of two pieces lies in the middle of the left piece's edge.
-Scene cut_floor(float wall_end, std::optional<float> second_wall = std::nullopt) {
+/// second its right half, so a corner of two pieces lies in the middle of the left piece's edge. `gap` is below the
+/// first.
+Scene cut_floor(float wall_end, std::optional<float> second_wall = std::nullopt, float gap = 0) {
     Scene scene;
     add_material(scene, grey, black);
     add_material(scene, grey, black);
     add_rectangle(scene, V3f(-1, -1, 0), V3f(2, 0, 0), V3f(0, 2, 0), 0);
-    add_rectangle(scene, V3f(0, -1, 0), V3f(0, wall_end + 1, 0), V3f(0, 0, 1), 1, 1, 1, true);
+    add_rectangle(scene, V3f(0, -1, gap), V3f(0, wall_end + 1, 0), V3f(0, 0, 1), 1, 1, 1, true);
     if (second_wall) add_rectangle(scene, V3f(0.5f, *second_wall, 0), V3f(0.5f, 0, 0), V3f(0, 0, 1), 1, 1, 1, true);
-    return cut_at_contacts(scene);
+    return cut_at_contacts(scene, {.min_extent = gap > 0 ? 0.01f : 0});
 }
 
 V3f centre_of(const ElementForest& forest, std::uint32_t e) {
@@ -115,22 +118,44 @@ TEST(Seams, LightEndsAtAContact) {
     }
 }
 
+/// Nor below a wall that ends 1 mm above the floor. Seen to fail when only touching faces are cut.
 TEST(Seams, NothingGoesThroughAWallFromEndToEnd) {
-    const Scene scene = cut_floor(1, 0.0f);
-    ElementForest forest(scene, plenty);
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
-        if (forest.level(e) < 3) forest.subdivide(e);
-    const ElementVertices vertices(scene, forest);
-    const SmoothField field(forest, vertices,
-                            values_at_centres(forest, [](const V3f& x) { return x.x < 0 ? 0.f : 8.f; }));
-    for (float y = -1; y <= 0.999f; y += 0.01f) {
-        EXPECT_EQ(value_at(scene, forest, field, V3f(0, y, 0), V3f(-1, 0.0003f, 0)), 0);
-        EXPECT_EQ(value_at(scene, forest, field, V3f(0, y, 0), V3f(1, 0.0003f, 0)), 8);
+    for (const float gap : {0.0f, 0.001f}) {
+        const Scene scene = cut_floor(1, 0.0f, gap);
+        ElementForest forest(scene, plenty);
+        for (std::uint32_t e = 0; e < forest.size(); ++e)
+            if (forest.level(e) < 3) forest.subdivide(e);
+        const ElementVertices vertices(scene, forest);
+        const SmoothField field(forest, vertices,
+                                values_at_centres(forest, [](const V3f& x) { return x.x < 0 ? 0.f : 8.f; }));
+        for (float y = -1; y <= 0.999f; y += 0.01f) {
+            EXPECT_EQ(value_at(scene, forest, field, V3f(0, y, 0), V3f(-1, 0.0003f, 0)), 0);
+            EXPECT_EQ(value_at(scene, forest, field, V3f(0, y, 0), V3f(1, 0.0003f, 0)), 8);
+        }
+    }
+}
+
+/// The floor is one smooth surface of two pieces, whose leaves differ in size. Seen to fail by 4% when all corners of
+/// leaves have equal weights.
+TEST(Seams, InterpolationKeepsThePower) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        const Scene scene = cut_floor(-0.5f, 0.13f);
+        ElementForest forest(scene, plenty);
+        for (std::uint32_t e = 0; e < forest.size(); ++e)
+            if (forest.level(e) < 3 || (forest.level(e) < 5 && random_double(seed, e) < 0.5)) forest.subdivide(e);
+        const ElementVertices vertices(scene, forest);
+        EXPECT_FALSE(vertices.couplings().empty());
+        std::vector<Rgb> values;
+        for (std::uint32_t e = 0; e < forest.size(); ++e)
+            values.emplace_back(static_cast<float>(std::pow(random_double(seed + 3, e), 4)));
+        const auto [power, of_field] = powers(forest, vertices, values);
+        EXPECT_NEAR(of_field, power, 1e-5 * power);
     }
 }
 
 /// With leaves of random levels, the vertices of the two sides differ. The sides still agree up to the curvature of the
-/// field. Without joining they differ by the slope times the leaf size: 0.4.
+/// field, and to a quarter of a large leaf's step: beside small leaves, a value leans towards the large one, whose
+/// power it keeps. Without joining they differ by the slope times the leaf size: 0.4.
 TEST(Seams, SidesAgreeWhateverTheLevels) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         const Scene scene = cut_floor(-0.5f, 0.13f);
@@ -141,7 +166,7 @@ TEST(Seams, SidesAgreeWhateverTheLevels) {
         const SmoothField field(forest, vertices, values_at_centres(forest, [](const V3f& x) {
                                     return 2 + std::sin(2 * x.x + x.y) + x.x;
                                 }));
-        EXPECT_LT(largest_jump(scene, forest, field, -0.2f, 0.95f), 0.04f);
+        EXPECT_LT(largest_jump(scene, forest, field, -0.2f, 0.95f), 0.1f);
     }
 }
 

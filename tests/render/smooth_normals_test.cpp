@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "interflect/elements/forest.h"
+#include "interflect/geometry/corner_normals.h"
+#include "interflect/prepare.h"
 #include "interflect/render/smooth/element_vertices.h"
 #include "interflect/render/smooth/smooth_field.h"
 #include "tests/support/scenes.h"
@@ -180,6 +182,93 @@ TEST(SmoothNormals, DoNotSmoothCornersOfRooms) {
     for (const V3f& x : scene.vertices) scene.normals.push_back((x - V3f(0.5f)).normalized());
     const SmoothSurfaces surfaces = find_smooth_surfaces(scene);
     EXPECT_EQ(surfaces.edges.count, 6u * 4u);
+}
+
+/// The normals of a sphere around `centre`: averages over the faces at a box's corners.
+void average_normals(Scene& scene, const V3f& centre) {
+    for (const V3f& x : scene.vertices) scene.normals.push_back((x - centre).normalized());
+}
+
+/// Largest angle between the normals at corners and `expected` [degrees]. @param is_tested  Of a patch's normal.
+double largest_error(const Scene& scene, const auto& is_tested, const auto& expected) {
+    const CornerNormals normals(scene, find_smooth_surfaces(scene));
+    double largest = 0;
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        const V3f own = PatchGeometry(scene, scene.patches[p]).normal();
+        if (!is_tested(own)) continue;
+        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(scene.patches[p].vertex_count()); ++c) {
+            const V3f n = expected(own, scene.vertices[scene.patches[p].vertices[c]]), found = normals.at(4 * p + c);
+            largest = std::max<double>(largest, std::atan2(n.cross(found).length(), n.dot(found)));
+        }
+    }
+    return largest * 180 / std::numbers::pi;
+}
+
+/// Whole, divided, and cut where another box stands. Seen to fail by 55 degrees with the normals of the file.
+TEST(CornerNormals, OfABoxAreThoseOfItsFaces) {
+    for (const int n : {1, 3})
+        for (const bool is_cut : {false, true}) {
+            Scene scene = testing_support::closed_box({1, 1, 1}, n, {Material{"", Rgb(0.5f), Rgb(0)}});
+            if (is_cut) testing_support::add_box(scene, V3f(0.3f, 0.4f, 0), V3f(0.6f, 0.7f, 0.5f), 0);
+            average_normals(scene, V3f(0.5f));
+            if (is_cut) scene = cut_at_contacts(scene);
+            EXPECT_LT(largest_error(
+                          scene, [](const V3f&) { return true; }, [](const V3f& own, const V3f&) { return own; }),
+                      0.1);
+        }
+}
+
+/// A cylinder of 8 facets about the z axis, or half of one, with a cap at z = 1.
+Scene cylinder(bool has_averaged_cap, int facets) {
+    Scene scene;
+    add_material(scene, Rgb(0.5f), Rgb(0));
+    scene.objects = {""};
+    const auto vertex = [&](int i, float z) {
+        const double azimuth = std::numbers::pi * (i % 8) / 4;
+        const V3f out(static_cast<float>(std::cos(azimuth)), static_cast<float>(std::sin(azimuth)), 0);
+        scene.vertices.push_back(out + V3f(0, 0, z));
+        scene.normals.push_back(has_averaged_cap && z > 0 ? (out + V3f(0, 0, 1)).normalized() : out);
+        return static_cast<std::uint32_t>(scene.vertices.size() - 1);
+    };
+    for (int i = 0; i < facets; ++i) {
+        scene.patches.push_back({.vertices = {vertex(i, 0), vertex(i + 1, 0), vertex(i + 1, 1), vertex(i, 1)}});
+        if (!has_averaged_cap) continue;
+        scene.vertices.emplace_back(0, 0, 1);
+        scene.normals.emplace_back(0, 0, 1);
+        const auto centre = static_cast<std::uint32_t>(scene.vertices.size() - 1);
+        scene.patches.push_back({.vertices = {centre, vertex(i, 1), vertex(i + 1, 1), none}});
+    }
+    return scene;
+}
+
+V3f away_from_axis(const V3f& x) { return V3f(x.x, x.y, 0).normalized(); }
+
+/// Also at the ends of half a cylinder, where the file's normals deviate by 22.5 degrees from the only face there.
+TEST(CornerNormals, OfACoarseCylinderAreThoseOfTheFile) {
+    for (const int facets : {8, 4})
+        EXPECT_LT(largest_error(
+                      cylinder(false, facets), [](const V3f&) { return true; },
+                      [](const V3f&, const V3f& x) { return away_from_axis(x); }),
+                  0.1);
+}
+
+/// The normals of the file are averages over the facets and the cap: the cap is plane, the facets bend around the axis.
+TEST(CornerNormals, OfARimAreNotAveragedWithTheCap) {
+    const Scene scene = cylinder(true, 8);
+    EXPECT_LT(largest_error(
+                  scene, [](const V3f& own) { return own.z > 0.5f; }, [](const V3f& own, const V3f&) { return own; }),
+              0.1);
+    EXPECT_LT(largest_error(
+                  scene, [](const V3f& own) { return own.z < 0.5f; },
+                  [](const V3f&, const V3f& x) { return away_from_axis(x); }),
+              0.1);
+}
+
+TEST(CornerNormals, OfALoneFaceAreItsOwn) {
+    Scene scene = cylinder(false, 1);
+    EXPECT_LT(largest_error(
+                  scene, [](const V3f&) { return true; }, [](const V3f& own, const V3f&) { return own; }),
+              0.1);
 }
 
 }  // namespace

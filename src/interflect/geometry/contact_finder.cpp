@@ -20,17 +20,21 @@ using Imath::V3d;
 /// Flatter intersections (1 degree) bound no shadow.
 constexpr double min_angle_sine = 0.0175;
 
+/// Relative to the smaller facet's diameter. Facets that are closer count as touching: 1 mm below a face of 0.5 m.
+/// office-graz gets 3% more patches than from touching facets alone, with ten times this value 14%.
+constexpr double narrow_gap = 2e-3;
+
 }  // namespace
 
 ContactFinder::ContactFinder(const Scene& scene, const Facet& facet, std::span<const std::uint32_t> rank,
-                             double touch_distance)
-    : scene_(scene), facet_(facet), rank_(rank), touch_distance_(touch_distance), frame_(facet) {
+                             double touch_distance, double gap)
+    : scene_(scene), facet_(facet), rank_(rank), touch_distance_(touch_distance), gap_(gap), frame_(facet) {
     for (std::size_t i = 0; i < facet.count; ++i)
         polygon_.push_back({frame_.in_plane(facet.corners[i]), facet.vertices[i]});
 }
 
 float ContactFinder::reach() const {
-    return static_cast<float>(std::max(touch_distance_ * facet_.diameter, 2 * facet_.rounding));
+    return static_cast<float>(std::max({touch_distance_ * facet_.diameter, 2 * facet_.rounding, gap_}));
 }
 
 bool ContactFinder::plane_meets(const Imath::Box3f& box) const {
@@ -40,7 +44,7 @@ bool ContactFinder::plane_meets(const Imath::Box3f& box) const {
 
 void ContactFinder::add_contacts_with(const Facet& other) {
     if (other.face == facet_.face) return;
-    const double touching =
+    double touching =
         std::max({touch_distance_ * std::min(facet_.diameter, other.diameter), facet_.rounding, other.rounding});
     std::array<double, 4> height{};
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
@@ -49,11 +53,15 @@ void ContactFinder::add_contacts_with(const Facet& other) {
         lowest = std::min(lowest, height[i]);
         highest = std::max(highest, height[i]);
     }
+    const bool is_apart = lowest > touching || highest < -touching;
+    if (is_apart) touching = std::max(touching, std::min(gap_, narrow_gap * std::min(facet_.diameter, other.diameter)));
     if (lowest > touching || highest < -touching) return;
-    if (std::max(highest, -lowest) <= touching)
-        add_outline(other);
-    else if ((highest > touching || is_two_sided(facet_)) &&
-             facet_.normal.cross(other.normal).length() >= min_angle_sine)
+    if (std::max(highest, -lowest) <= touching) {
+        // Rays hit the smaller of coplanar surfaces, and the nearer of separate ones.
+        const bool hides_facet = is_apart ? lowest > 0 || is_two_sided(facet_) : rank_[other.face] < rank_[facet_.face];
+        if (hides_facet) add_outline(other);
+    } else if ((highest > touching || is_two_sided(facet_)) &&
+               facet_.normal.cross(other.normal).length() >= min_angle_sine)
         add_section(other, height, touching);
 }
 
@@ -126,7 +134,6 @@ void ContactFinder::add(const V3d& a, const V3d& b, int outline) {
 }
 
 void ContactFinder::add_outline(const Facet& other) {
-    if (rank_[other.face] > rank_[facet_.face]) return;  // rays hit this facet where both overlap
     const bool opposite = facet_.normal.dot(other.normal) < 0;
     if (opposite && !is_two_sided(facet_) && !is_two_sided(other)) return;
     for (std::size_t i = 0; i < other.count; ++i)

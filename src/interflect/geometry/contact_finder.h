@@ -22,12 +22,14 @@ struct FoundSegment {
 class ContactFinder {
   public:
     /// @param rank  rank_by_flat_surface().
-    ContactFinder(const Scene& scene, const Facet& facet, std::span<const std::uint32_t> rank, double touch_distance);
+    /// @param gap   Maximum distance of facets that count as touching although they do not [m], for large ones.
+    ContactFinder(const Scene& scene, const Facet& facet, std::span<const std::uint32_t> rank, double touch_distance,
+                  double gap);
 
     const PlanarPolygon& polygon() const { return polygon_; }
     const PlaneFrame& frame() const { return frame_; }
 
-    /// Maximum distance of a touching facet [m].
+    /// Maximum distance of a facet that counts as touching [m].
     float reach() const;
     bool plane_meets(const Imath::Box3f& box) const;
     void add_contacts_with(const Facet& other);
@@ -56,7 +58,7 @@ class ContactFinder {
     const Scene& scene_;
     const Facet& facet_;
     std::span<const std::uint32_t> rank_;
-    double touch_distance_;
+    double touch_distance_, gap_;
     PlaneFrame frame_;
     PlanarPolygon polygon_;
     std::vector<FoundSegment> found_;

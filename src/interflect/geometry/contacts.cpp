@@ -28,6 +28,9 @@ namespace {
 /// Relative to the face's diameter. Narrower strips are not divided across.
 constexpr double narrow = 2e-3;
 
+/// The side of the smallest elements: the light in narrower gaps is not resolved.
+constexpr double gap_over_min_extent = 0.5;
+
 constexpr std::size_t facets_per_task = 256;
 
 /// Maximum length of a sliver, relative to the width of its flat surface. Reduces the error of pixel blocks in
@@ -79,12 +82,13 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
     tree.reserve(facets.size());
     for (std::uint32_t i = 0; i < facets.size(); ++i) tree.push_back({facets[i].box(0), i});
     arrange_box_tree(tree);
+    const double gap = gap_over_min_extent * static_cast<double>(options.min_extent);
     std::vector<CutFacet> cut(facets.size());
     parallel_for_ranges(facets.size(), facets_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (facets[i].area() < static_cast<double>(options.min_extent) * static_cast<double>(options.min_extent))
                 continue;
-            ContactFinder finder(scene, facets[i], rank, static_cast<double>(options.touch_distance));
+            ContactFinder finder(scene, facets[i], rank, static_cast<double>(options.touch_distance), gap);
             const Imath::Box3f box = facets[i].box(finder.reach());
             visit_box_tree(
                 std::span<const Boxed>(tree),

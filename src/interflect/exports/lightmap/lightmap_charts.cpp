@@ -12,7 +12,7 @@
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/flat_surfaces.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/render/smooth/smooth_surfaces.h"
+#include "interflect/geometry/smooth_surfaces.h"
 
 namespace interflect::detail {
 

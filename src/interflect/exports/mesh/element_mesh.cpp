@@ -7,6 +7,7 @@
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
+#include "interflect/render/smooth/vertex_values.h"
 
 namespace interflect::detail {
 

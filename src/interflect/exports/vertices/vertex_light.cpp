@@ -14,6 +14,7 @@
 #include "interflect/exports/lightmap/baked_light.h"
 #include "interflect/exports/mesh/shown_patches.h"
 #include "interflect/geometry/texture_mapping.h"
+#include "interflect/render/smooth/vertex_values.h"
 
 namespace interflect::detail {
 
@@ -282,11 +283,10 @@ VertexLight make_vertex_light(const Scene& scene, const Solution& solution, cons
     const VertexPoints points(*forest, vertices, shown, options.vertices);
     const std::vector<Rgb> irradiance = light.irradiance(points.points(), {}, spacing_of(options.vertices),
                                                          monitor_section(options.monitor, share_of_division, 1));
-    const auto at_corner = [&](std::uint32_t leaf, std::uint32_t corner) {
-        const std::uint32_t i = points.number(vertices.corners(leaf)[corner]);
-        return i == none ? std::nullopt : std::optional(irradiance[i]);
-    };
-    std::vector<Rgb> values = joined_at_vertices(*forest, vertices, at_corner);
+    std::vector<std::optional<Rgb>> at_points(vertices.count());
+    for (std::uint32_t v = 0; v < vertices.count(); ++v)
+        if (const std::uint32_t i = points.number(v); i != none) at_points[v] = irradiance[i];
+    std::vector<Rgb> values = joined_values(vertices, at_points);
     return {forest, ElementMesh(scene, *forest, std::move(vertices), std::move(values)), std::move(shown)};
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "interflect/render/smooth/smooth_surfaces.h"
+#include "interflect/geometry/smooth_surfaces.h"
 
 namespace interflect::detail {
 

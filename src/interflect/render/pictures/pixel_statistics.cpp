@@ -42,22 +42,17 @@ std::vector<double> sums_around(std::vector<double> values, const PictureOptions
     return sums_along(values, width, 1, height, width);
 }
 
-/// Light that the error of each pixel is relative to: the mean of its surroundings, at least that of the picture. The
-/// noisy mean of the pixel itself would hide errors of rare light.
-/// @param includes_pixel  Whether the pixel itself is part of its surroundings.
-std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
-                                bool includes_pixel) {
+/// Light that the error of each pixel is relative to: the mean of its neighbours, at least that of the picture. The
+/// noisy value of the pixel itself would hide errors of rare light, and bias the number of its samples.
+std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
     std::vector<double> light;
     light.reserve(pixels.size());
     for (const PixelStatistics& p : pixels) light.push_back(mean_channel(p.mean()));
     std::vector<double> scale = sums_around(light, options);
     const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options);
     const double least = mean_reflected(pixels);
-    for (std::size_t i = 0; i < scale.size(); ++i) {
-        const double sum = includes_pixel ? scale[i] : scale[i] - light[i];
-        const double pixels_of_sum = includes_pixel ? count[i] : count[i] - 1;
-        scale[i] = std::max(least, pixels_of_sum > 0 ? sum / pixels_of_sum : 0);
-    }
+    for (std::size_t i = 0; i < scale.size(); ++i)
+        scale[i] = std::max(least, count[i] > 1 ? (scale[i] - light[i]) / (count[i] - 1) : 0);
     return scale;
 }
 
@@ -121,7 +116,7 @@ RgbD PixelStatistics::record_error() const {
 double relative_error(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
     const auto has_error = [](const PixelStatistics& p) { return p.has_error(); };
     if (!std::all_of(pixels.begin(), pixels.end(), has_error)) return std::numeric_limits<double>::infinity();
-    const std::vector<double> scale = error_scale(pixels, options, true);
+    const std::vector<double> scale = error_scale(pixels, options);
     double sum = 0;
     for (std::size_t i = 0; i < pixels.size(); ++i)
         if (scale[i] > 0) sum += mean_channel(pixels[i].squared_error()) / (scale[i] * scale[i]);
@@ -130,7 +125,7 @@ double relative_error(const std::vector<PixelStatistics>& pixels, const PictureO
 
 std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target) {
-    const std::vector<double> scale = error_scale(pixels, options, false);
+    const std::vector<double> scale = error_scale(pixels, options);
     std::vector<double> variance(pixels.size());  // of one sample of each half
     for (std::size_t i = 0; i < pixels.size(); ++i)
         variance[i] = mean_channel(pixels[i].sampling_error()) * pixels[i].samples_of_half();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <numbers>
 #include <unordered_map>
 #include <unordered_set>
@@ -231,8 +230,11 @@ class VertexBuilder {
         for (const SeamVertex& v : found)
             if (v.edge_length > clearly_longer * longest_own[v.vertex] && hangs.insert(v.vertex).second)
                 hanging.push_back({v.vertex, v.ends, v.fraction});
+        std::unordered_map<std::uint32_t, float> angle;  // of all couplings of a vertex
+        for (const SeamVertex& v : found) angle[v.vertex] += v.angle;
         for (const SeamVertex& v : found)
-            if (!hangs.contains(v.vertex)) couplings.push_back({v.vertex, v.ends, v.fraction, v.angle});
+            if (!hangs.contains(v.vertex))
+                couplings.push_back({v.vertex, v.ends, v.fraction, v.angle / (2 * angle[v.vertex])});
     }
 
     const ElementForest& forest_;
@@ -241,24 +243,6 @@ class VertexBuilder {
     std::vector<Ends> edges_of_;  // [vertex] ends of the halved edge, or no_edge
     KeyTable middles_;
 };
-
-float angle_between(const V3f& a, const V3f& b) { return std::atan2(a.cross(b).length(), a.dot(b)); }
-
-/// Returns [rad].
-std::array<float, 4> corner_angles(const PatchGeometry& patch, const Cell& cell) {
-    if (patch.is_triangle()) {  // the element is similar to its patch
-        const V3f a = patch.point({0, 0}), b = patch.point({1, 0}), c = patch.point({0, 1});
-        return {angle_between(b - a, c - a), angle_between(c - b, a - b), angle_between(a - c, b - c), 0};
-    }
-    // Lines of constant u or v are straight.
-    const auto angle = [&](float s, float t) {
-        const Parameters p = cell.at(s, t);
-        return angle_between(patch.point({1, p.v}) - patch.point({0, p.v}),
-                             patch.point({p.u, 1}) - patch.point({p.u, 0}));
-    };
-    constexpr float pi = std::numbers::pi_v<float>;
-    return {angle(0, 0), pi - angle(1, 0), angle(1, 1), pi - angle(0, 1)};
-}
 
 }  // namespace
 
@@ -269,46 +253,6 @@ ElementVertices::ElementVertices(const Scene& scene, const ElementForest& forest
     builder.find_hanging_vertices(hanging_, couplings_);
     normals_ = SmoothNormals(scene, builder.surfaces());
     corners_ = builder.release_corners();
-}
-
-std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
-                               std::span<const Rgb> irradiance) {
-    std::vector<Rgb> values(irradiance.begin(), irradiance.end());
-    vertices.normals().apply(forest, values);
-    return joined_at_vertices(forest, vertices, [&](std::uint32_t leaf, std::uint32_t) { return values[leaf]; });
-}
-
-std::vector<Rgb> joined_at_vertices(
-    const ElementForest& forest, const ElementVertices& vertices,
-    const std::function<std::optional<Rgb>(std::uint32_t leaf, std::uint32_t corner)>& at_corner) {
-    std::vector<RgbD> sum(vertices.count(), RgbD(0, 0, 0));
-    std::vector<double> weight(vertices.count(), 0.0);
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        if (!forest.is_leaf(e)) continue;
-        const Corners& corners = vertices.corners(e);
-        const std::array<float, 4> angles = corner_angles(forest.geometry(forest.patch(e)), forest.cell(e));
-        for (std::uint32_t c = 0; c < corner_count(corners); ++c) {
-            const std::optional<Rgb> value = at_corner(e, c);
-            if (!value) continue;
-            sum[corners[c]] += RgbD(*value) * angles[c];
-            weight[corners[c]] += angles[c];
-        }
-    }
-    const auto mean = [&](std::uint32_t v) { return weight[v] > 0 ? Rgb(sum[v] / weight[v]) : Rgb(0, 0, 0); };
-    std::vector<Rgb> means(vertices.count());
-    for (std::uint32_t v = 0; v < means.size(); ++v) means[v] = mean(v);
-    const auto is_known = [&](const std::array<std::uint32_t, 2>& ends) {
-        return weight[ends[0]] > 0 && weight[ends[1]] > 0;
-    };
-    for (const auto& [vertex, ends, fraction, angle] : vertices.couplings()) {
-        if (!(weight[vertex] > 0 && is_known(ends))) continue;
-        sum[vertex] += RgbD(means[ends[0]] * (1 - fraction) + means[ends[1]] * fraction) * angle;
-        weight[vertex] += angle;
-    }
-    for (const auto& coupling : vertices.couplings()) means[coupling.vertex] = mean(coupling.vertex);
-    for (const auto& [vertex, ends, fraction] : vertices.hanging())
-        if (is_known(ends)) means[vertex] = means[ends[0]] * (1 - fraction) + means[ends[1]] * fraction;
-    return means;
 }
 
 }  // namespace interflect::detail

@@ -2,15 +2,12 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
 #include <vector>
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
+#include "interflect/geometry/smooth_surfaces.h"
 #include "interflect/render/smooth/smooth_normals.h"
-#include "interflect/render/smooth/smooth_surfaces.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
@@ -30,7 +27,7 @@ class ElementVertices {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
         float fraction;
-        float angle;  // weight of the other side's value [rad]
+        float share;  // of the other side's value; all couplings of a vertex have half
     };
 
     /// @throws InputError for a forest of another scene.
@@ -53,15 +50,5 @@ class ElementVertices {
     SmoothNormals normals_;
     std::uint32_t count_ = 0;
 };
-
-/// Averages the values of the corners of the leaves at each vertex, by angle, independent of tessellation (Thuermer and
-/// Wuethrich 1998).
-/// @param at_corner  Value of a leaf at its corner 0 to 3; nullopt to ignore it.
-std::vector<Rgb> joined_at_vertices(
-    const ElementForest& forest, const ElementVertices& vertices,
-    const std::function<std::optional<Rgb>(std::uint32_t leaf, std::uint32_t corner)>& at_corner);
-/// The same for the irradiance of leaves, after SmoothNormals.
-std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
-                               std::span<const Rgb> irradiance);
 
 }  // namespace interflect::detail

@@ -4,6 +4,7 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
+#include "interflect/render/smooth/vertex_values.h"
 
 namespace interflect::detail {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "interflect/geometry/corner_normals.h"
+
 namespace interflect::detail {
 
 namespace {
 
-/// 0.5 degrees: above the rounding of normals in readers (0.2 degrees).
-constexpr float cosine_of_flat = 0.99996f;
 /// Bounds G where neighbours are nearly coplanar; reduces it by 2% on a regular mesh.
 constexpr double relative_ridge = 0.02;
 
@@ -55,6 +55,7 @@ V3f SmoothNormals::CurvedPatch::mean_normal(bool is_triangle) const {
 
 SmoothNormals::SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces) {
     if (scene.normals.empty()) return;
+    const CornerNormals normals(scene, surfaces);
     const std::vector<V3f> own = patch_normals(scene);
     std::vector<std::array<std::uint32_t, 2>> members(surfaces.edges.count,
                                                       {none, none});  // edges, as 4 patch + corner
@@ -68,10 +69,9 @@ SmoothNormals::SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces)
         const auto count = static_cast<std::uint32_t>(scene.patches[p].vertex_count());
         bool is_curved = false, has_all = true;
         for (std::uint32_t c = 0; c < count; ++c) {
-            const V3f n = scene.normals[scene.patches[p].vertices[c]];
-            curved.normals[c] = n.dot(own[p]) < 0 ? -n : n;
+            curved.normals[c] = normals.at(4 * p + c);
             is_curved |= curved.normals[c].dot(own[p]) < cosine_of_flat;
-            has_all &= n != V3f(0);
+            has_all &= curved.normals[c] != V3f(0);
         }
         if (!is_curved || !has_all) continue;
         curved.first_neighbour = static_cast<std::uint32_t>(neighbours_.size());

@@ -8,12 +8,12 @@
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
-#include "interflect/render/smooth/smooth_surfaces.h"
+#include "interflect/geometry/smooth_surfaces.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
 
-/// Shading of curved surfaces by Scene::normals: H(x) = H_solved(x) + G (n(x) - n_mean) (docs/method.md, Curved
+/// Shading of curved surfaces by CornerNormals: H(x) = H_solved(x) + G (n(x) - n_mean) (docs/method.md, Curved
 /// surfaces). The correction is clamped to the largest step of irradiance across edges.
 class SmoothNormals {
   public:
@@ -24,7 +24,7 @@ class SmoothNormals {
     /// @param irradiance  Per element; only leaves change.
     void apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const;
 
-    /// Returns the unit normal; the patch's own unless all corners have normals.
+    /// Returns the unit normal of the curved surface; the patch's own unless all corners have normals.
     V3f at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const;
 
   private:

@@ -1,4 +1,4 @@
-#include "interflect/render/smooth/smooth_surfaces.h"
+#include "interflect/geometry/smooth_surfaces.h"
 
 #include <ImathBox.h>
 
