@@ -29,6 +29,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/render/smooth/element_vertices.h"
+#include "interflect/render/smooth/vertex_values.h"
 #include "interflect/solver/run.h"
 
 namespace {
@@ -273,12 +274,22 @@ float value(const std::array<float, 4>& c, bool is_triangle, float s, float t) {
 std::vector<float> reconstruct(const Cells& cells, const Mesh& mesh, const Coefficients& c, bool joined) {
     const ElementForest& forest = *mesh.forest;
     std::vector<Rgb> at_vertex;
-    if (joined)
-        at_vertex = joined_at_vertices(forest, *mesh.vertices, [&](std::uint32_t leaf, std::uint32_t corner) {
-            const bool is_triangle = forest.geometry(forest.patch(leaf)).is_triangle();
-            const Parameters p = corners_of(is_triangle)[corner];
-            return std::optional(Rgb(value(c[mesh.element[leaf]], is_triangle, p.u, p.v)));
-        });
+    if (joined) {
+        std::vector<float> sum(mesh.vertices->count()), area(mesh.vertices->count());
+        for (std::uint32_t e = 0; e < forest.size(); ++e) {
+            if (!forest.is_leaf(e)) continue;
+            const auto& corners = mesh.vertices->corners(e);
+            const std::span<const Parameters> at = corners_of(corners[3] == none);
+            for (std::size_t k = 0; k < at.size(); ++k) {
+                sum[corners[k]] += forest.area(e) * value(c[mesh.element[e]], corners[3] == none, at[k].u, at[k].v);
+                area[corners[k]] += forest.area(e);
+            }
+        }
+        std::vector<std::optional<Rgb>> means(sum.size());
+        for (std::size_t v = 0; v < sum.size(); ++v)
+            if (area[v] > 0) means[v] = Rgb(sum[v] / area[v]);
+        at_vertex = joined_values(*mesh.vertices, means);
+    }
     std::vector<float> light(cells.leaves.size());
     for (std::size_t i = 0; i < light.size(); ++i) {
         const std::uint32_t leaf = mesh.leaf[i];

@@ -72,7 +72,7 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
     const double filtering = filters ? seconds_of([&] { denoise(traced.layers); }) : 0;
     const double least =
         sending + preparation + std::max(0.0, drawing - preparation) * std::pow(ratio, growth.exponent);
-    return {least, 2 * least, ratio * filtering + writing * options.width * options.height};
+    return {least, ratio * filtering + writing * options.width * options.height};
 }
 
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
@@ -81,12 +81,12 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
     const double ratio = reduce(small.width, small.height, of_elements.reduction);
     const double drawing = seconds_of([&] { render(scene, solution, ray_caster, view, small, {{}, &stop_flag()}); });
     const double least = std::pow(ratio, of_elements.exponent) * drawing;
-    return {least, least, writing * options.width * options.height};
+    return {least, writing * options.width * options.height};
 }
 
-double reserved_for(const DrawingTime& predicted, double left) {
-    const double half = std::clamp(left / 2, predicted.least, predicted.useful);
-    return std::min(largest_drawing_share * left, half + predicted.finishing);
+double reserved_for(const DrawingTime& predicted, bool is_refined, double left) {
+    const double drawing = is_refined ? std::max(left / 2, predicted.least) : predicted.least;
+    return std::min(largest_drawing_share * left, drawing + predicted.finishing);
 }
 
 }  // namespace interflect::command

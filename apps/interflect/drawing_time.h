@@ -10,7 +10,6 @@ double seconds_of_process();
 /// Predicted duration of drawing a picture [s].
 struct DrawingTime {
     double least = 0;      ///< For two batches of paths per pixel.
-    double useful = 0;     ///< More samples of paths reduce the noise.
     double finishing = 0;  ///< Filtering noise and writing.
 
     double total() const { return least + finishing; }
@@ -27,7 +26,8 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
 /// Drawing takes at most this share of the time that is left.
 constexpr double largest_drawing_share = 0.8;
 
-/// Returns the part of `left` [s] that solving leaves to drawing: half of it, within the limits of the prediction.
-double reserved_for(const DrawingTime& predicted, double left);
+/// Returns the part of `left` [s] that solving leaves to drawing: half of it for paths, whose noise more samples
+/// reduce, within the limits of the prediction.
+double reserved_for(const DrawingTime& predicted, bool is_refined, double left);
 
 }  // namespace interflect::command

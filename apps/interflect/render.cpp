@@ -65,6 +65,7 @@ struct RenderArguments {
     Shown shown = Shown::light;
     FalseColourOptions false_colour;
     int legend_rows = 0;  // at the foot of the picture
+    bool has_default_samples = true;
 
     bool is_in_false_colours() const { return is_quantity(shown) || false_colour.measured; }
     /// Height of the view, above the legend [pixels].
@@ -75,6 +76,7 @@ struct RenderArguments {
     void complete() {
         picture.width = size.width;
         picture.height = rows();
+        has_default_samples = picture.samples == 0;
         picture.samples = require_samples(picture.shading, &DefaultSamples::pixel, picture.samples);
         picture.until = solver.until();
         picture.seed = solver.seed();
@@ -297,6 +299,8 @@ void run_solution(RenderArguments& options, PendingFile& output) {
         const double left = std::max(shortest_time, options.seconds_left());
         seconds_to_preview = std::min(seconds_to_preview, left / 10);
         solve_options.limits.time = left / 2;  // until the time of drawing is known
+        if (options.has_default_samples && traces_paths(options.picture.shading))
+            options.picture.samples = options.picture.max_samples;  // until the time is over
     }
 
     std::optional<DrawingTime> planned;
@@ -307,7 +311,8 @@ void run_solution(RenderArguments& options, PendingFile& output) {
         const double left = options.seconds_left(),
                      spent = so_far.iterations.empty() ? 0 : so_far.iterations.back().seconds;
         Limits limits = solve_options.limits;
-        limits.time = spent + std::max(shortest_time, left - reserved_for(*planned, left));
+        limits.time =
+            spent + std::max(shortest_time, left - reserved_for(*planned, traces_paths(options.picture.shading), left));
         return limits;
     };
     if (!solved_before)
