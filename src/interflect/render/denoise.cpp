@@ -167,8 +167,8 @@ Fields make_fields(const PictureLayers& layers, const Surfaces& surfaces, const 
 using WeightSums = std::array<std::array<std::vector<float>, 2>, 2>;
 
 /// Rows of a picture. Light moves between the pixels i and k of a pair by w_ik / max(S_i, S_k) times the difference of
-/// their values, where w is symmetric and S_i is the sum of w_ik over k. Each pixel gives what another gets, so the sum
-/// over all pixels is kept exactly, whatever the weights depend on.
+/// their values, where w is symmetric and S_i is the sum of w_ik over k. Each exchange keeps the sum of
+/// both pixels, so the sum over all pixels is exact for any weights.
 class Band {
   public:
     Band(const PictureLayers& layers, const Surfaces& surfaces, const std::array<Fields, 2>& halves, int first_row,

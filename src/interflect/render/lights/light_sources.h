@@ -13,8 +13,8 @@
 
 namespace interflect::detail {
 
-/// Kinds of light sources. Each has shadow rays of its own, so a bright source that is hidden takes none from the
-/// others.
+/// Kinds of light sources. Each kind has separate shadow rays, so a hidden bright source does not reduce the rays to
+/// other kinds.
 enum class SourceKind {
     patches,  ///< Emitting patches.
     lamps,    ///< Luminaires with a position.
@@ -25,10 +25,10 @@ inline constexpr std::array source_kinds{SourceKind::patches, SourceKind::lamps,
 /// One sample of a light source, seen from a point x on a surface with normal n.
 struct SourceSample {
     V3f direction{0, 0, 1};
-    std::uint32_t patch = none;  ///< The shadow ray has to hit it; none: it has to be free up to `distance`.
+    std::uint32_t patch = none;  ///< Target of the shadow ray; none: a free ray up to `distance`.
     float distance = 0;          ///< [m]
-    Rgb irradiance{0, 0, 0};     ///< Unoccluded, divided by the density; its mean is that of all sources [as H].
-    float density = 0;           ///< Of the direction [1/sr]; 0 if directions never find the source.
+    Rgb irradiance{0, 0, 0};     ///< Unoccluded, over the density; the mean is the irradiance of all sources [as H].
+    float density = 0;           ///< Density of the direction [1/sr]; 0 if directions never find the source.
 };
 
 /// Samples light sources by estimated unoccluded irradiance. Immutable, thread-safe.

@@ -78,7 +78,7 @@ bool has_extent(const Luminaire& luminaire) {
     return sun && sun->diameter > 0;
 }
 
-/// Chooses one of several candidates in proportion to their irradiance.
+/// Samples a candidate in proportion to its irradiance.
 class Reservoir {
   public:
     /// @param uniform  In (0, 1).

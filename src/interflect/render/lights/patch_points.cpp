@@ -10,7 +10,7 @@ namespace {
 
 using Imath::V3d;
 
-/// In double precision: small triangles have angles close to those of a plane.
+/// In double precision: the angles of small triangles sum to almost 180 degrees.
 struct SphericalTriangle {
     V3d a, b, c;      // unit vectors
     double area = 0;  // solid angle [sr]
@@ -47,11 +47,10 @@ struct SeenPatch {
     SeenPatch(const PatchGeometry& patch, const V3f& x) {
         constexpr float near = 3;       // radii; beyond, squared distances differ by less than a factor of (4 / 2)^2
         constexpr double least = 1e-5;  // [sr]; rounding of float vertices
-        const V3f centre = patch.centre();
+        const PatchGeometry::Shape& shape = patch.shape();
+        const float radius2 = (shape.edge_u.length2() + shape.edge_v.length2()) / 2;  // of a sphere around it, at most
+        if ((patch.centre() - x).length2() >= near * near * radius2) return;
         const auto corners = corners_of(patch.is_triangle());
-        float radius2 = 0;
-        for (const Parameters& p : corners) radius2 = std::max(radius2, (patch.point(p) - centre).length2());
-        if ((centre - x).length2() >= near * near * radius2) return;
         std::array<V3d, 4> v;
         for (std::size_t i = 0; i < corners.size(); ++i) v[i] = V3d(patch.point(corners[i])) - V3d(x);
         parts[0] = {v[0], v[1], v[2]};

@@ -12,7 +12,7 @@ struct PatchPoint {
     Parameters at;
     V3f direction;
     float distance2 = 0;  ///< [m^2]
-    float density = 0;    ///< Of the direction [1/sr].
+    float density = 0;    ///< Density of the direction [1/sr].
 };
 
 /// Samples the lit side of a patch: uniformly in the solid angle seen from x if the patch is near, else uniformly in

@@ -12,18 +12,21 @@ namespace interflect::detail {
 
 namespace {
 
-/// Contributions of shadow rays from similar points of the other half.
-struct OtherHalf {
+/// Contributions of shadow rays.
+struct ShadowRaySums {
     Rgb sampled{0, 0, 0}, visible{0, 0, 0};
-
-    /// Visible share; 1 without a sample.
-    Rgb coefficient() const {
-        Rgb c(1);
-        for (int k = 0; k < 3; ++k)
-            if (sampled[k] > 0) c[k] = std::min(1.0f, visible[k] / sampled[k]);
-        return c;
-    }
 };
+
+/// Visible share of the light at similar points of the other half, or else at all its points. 0 without any: a surface
+/// in the dark is black.
+Rgb coefficient(const ShadowRaySums& similar, const ShadowRaySums& all) {
+    Rgb c(0);
+    for (int k = 0; k < 3; ++k) {
+        const ShadowRaySums& sums = similar.sampled[k] > 0 ? similar : all;
+        if (sums.sampled[k] > 0) c[k] = std::min(1.0f, sums.visible[k] / sums.sampled[k]);
+    }
+    return c;
+}
 
 }  // namespace
 
@@ -76,11 +79,15 @@ void FirstPoints::add_direct(std::span<PathLight> halves) const {
         for (const Point& point : points)
             for (std::size_t k = 0; k < point.sources.size(); ++k) {
                 const Source& source = point.sources[k];
-                OtherHalf other;
-                for (const Point& p : points)
-                    if (p.half != point.half && p.normal.dot(point.normal) >= similar_cosine)
-                        other.sampled += p.sources[k].sampled, other.visible += p.sources[k].visible;
-                const Rgb c = other.coefficient();
+                ShadowRaySums similar, all;
+                for (const Point& p : points) {
+                    if (p.half == point.half) continue;
+                    const Source& other = p.sources[k];
+                    all.sampled += other.sampled, all.visible += other.visible;
+                    if (p.normal.dot(point.normal) < similar_cosine) continue;
+                    similar.sampled += other.sampled, similar.visible += other.visible;
+                }
+                const Rgb c = coefficient(similar, all);
                 const Rgb irradiance = c * source.unoccluded + (source.visible - c * source.sampled);
                 halves[point.half].direct += RgbD(point.throughput / std::numbers::pi_v<float> * irradiance);
             }

@@ -22,8 +22,8 @@ namespace interflect::detail {
 ///
 /// U is a control variate: the expected value is the mean of V f / p for any coefficient c that does not depend on
 /// these shadow rays. Hence c comes from the other half of the batch, as the visible share of its shadow rays from
-/// points with similar normals (cross-fitting). Unbiased for any number of samples. If all or none are visible, c = V,
-/// and the noise is that of U.
+/// points with similar normals (cross-fitting). Unbiased for any number of samples. If all or none are visible, c = V
+/// and only U has noise.
 ///
 /// Indirect light: a lookup of IndirectField for each group of points on a patch. Biased by the interpolation;
 /// PathLight::record_error contains noise and bias.

@@ -14,7 +14,7 @@ struct FirstHit {
     RgbD albedo{0, 0, 0};
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
     double distance = 0;        ///< From the camera, through panes and by mirrors [m].
-    double level = 0;           ///< Of the element, with a known solution.
+    double level = 0;           ///< Level of the element, with a known solution.
     double inverse_length = 0;  ///< 1 / length of the first ray from a gauge, 0 if it escapes [1/m].
     double hits = 0;            ///< Number of these rays that hit a surface.
 
@@ -25,11 +25,11 @@ struct FirstHit {
     }
 };
 
-/// Sums over paths, by the number of reflections between emitter and camera.
+/// Sums over paths, by the number of reflections.
 struct PathLight {
-    RgbD emitted{0, 0, 0};    ///< None.
-    RgbD direct{0, 0, 0};     ///< One.
-    RgbD indirect{0, 0, 0};   ///< More.
+    RgbD emitted{0, 0, 0};    ///< Not reflected.
+    RgbD direct{0, 0, 0};     ///< Reflected once.
+    RgbD indirect{0, 0, 0};   ///< Reflected more often.
     double record_error = 0;  ///< Standard error of recorded light, mean channel; common to all paths.
 
     PathLight& operator+=(const PathLight& o) {

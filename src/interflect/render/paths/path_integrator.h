@@ -56,8 +56,8 @@ class PathIntegrator {
     // Shadow rays from a vertex:
     void light_first_point(Path& path);
     void sample_sources(Path& path);
-    /// @param index        Of the shadow ray, one of `rays` at this vertex.
-    /// @param first_point  Receives the light; none: it is added at once.
+    /// @param index        Index of the shadow ray among all shadow rays of the sequence at this vertex.
+    /// @param first_point  Point of FirstPoints that receives the light, or none.
     void connect_to_source(const Path& path, SourceKind kind, std::uint32_t index, std::uint32_t rays,
                            std::uint32_t first_point);
     void connect_to_sky(const Path& path, std::uint32_t index);

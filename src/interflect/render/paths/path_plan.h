@@ -27,10 +27,10 @@ struct PathStart {
 /// Hybrid shading of first points: direct light by FirstPoints, indirect light from records.
 struct HybridLight {
     const IndirectField* field = nullptr;  ///< null: direct light only.
-    const SkyGuide* guide = nullptr;       ///< Of the field's records; may be null.
+    const SkyGuide* guide = nullptr;       ///< Directions to the sky around the records; may be null.
 };
 
-/// How a PathIntegrator computes light. Pictures, texels, vertices, probes and measuring points differ in nothing else.
+/// Inputs of a PathIntegrator. Pictures, texels, vertices and measuring points differ only in their plan.
 struct PathPlan {
     const TracedScene& scene;
     const PathStart& start;

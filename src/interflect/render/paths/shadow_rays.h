@@ -13,7 +13,7 @@ namespace interflect::detail {
 /// Visibility of points along rays, in bulk, through panes.
 class ShadowRays {
   public:
-    /// @param patch     That the ray has to hit; none: it has to be free up to `distance`.
+    /// @param patch     Target of the ray; none: a free ray up to `distance`.
     /// @param distance  [m]
     void add(const Ray& ray, std::uint32_t patch, float distance);
     /// Traces all rays and removes them. Returns the transmittance of each; 0 if it is occluded.

@@ -23,7 +23,7 @@ struct TracedScene {
 
     const Scene& scene;
     const RayCaster& ray_caster;
-    const std::vector<PatchGeometry> geometry;  ///< Of patches.
+    const std::vector<PatchGeometry> geometry;  ///< Geometry of each patch.
     const LightSources sources;
     const UnoccludedLight unoccluded;
     const Panes panes;

@@ -212,7 +212,7 @@ class PathPicture {
 
     /// In hybrid shading, the batches of a pixel continue two sequences; otherwise they are independent.
     PathBatch next_batch(std::uint32_t pixel, std::uint32_t present, std::uint32_t wanted) const {
-        constexpr std::uint32_t largest = 512;  // of each half, in hybrid shading
+        constexpr std::uint32_t largest = 64;  // of each half, in hybrid shading
         if (plan_.hybrid) return {.pixel = pixel, .first_point = present, .size = std::min(largest, wanted - present)};
         return {.pixel = pixel, .number = present / batch_size(), .size = batch_size()};
     }
