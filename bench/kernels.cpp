@@ -48,7 +48,7 @@ struct SolvedMaze {
     }
     TransportStep step(std::int64_t rays, bool refines) {
         TransportStep step(plan_power(materials, Emission(), solution, Radiosity(materials, solution.irradiance),
-                                      importance_weights(solution, Neighbourhoods(forest), rays), true, rays)
+                                      importance_weights(solution, Neighbourhoods(forest)), true, rays)
                                .plan);
         if (refines) step.oracle = make_oracle(solution, solution.options.limits.rays, 1e-6);
         step.oracle.max_elements = forest.size();

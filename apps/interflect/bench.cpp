@@ -57,8 +57,7 @@ struct Workload {
             throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
         const bool combined = importance_use(solution) == ImportanceUse::full;
         const Radiosity light(materials, solution.irradiance);
-        const ImportanceWeights weights =
-            importance_weights(solution, Neighbourhoods(*forest), solution.iterations.back().importance_rays);
+        const ImportanceWeights weights = importance_weights(solution, Neighbourhoods(*forest));
         step = TransportStep(
             plan_power(materials, Emission(), solution, light, weights, combined, options.limits.rays).plan);
         step.importance_at_patches = options.experimental.importance_at_patches;

@@ -68,22 +68,5 @@ TEST(Neighbourhoods, KeepTheMeanAndGiveMostToWhatIsNear) {
     EXPECT_GT(near, 5 * far);
 }
 
-// Many rays decide by themselves; few leave the mean of the scene, and patches beside a bright one are brighter.
-TEST(Neighbourhoods, TakeLessTheMoreIsExpected) {
-    const Walls w;
-    const auto smoothed = [&](double rays_per_value) {
-        std::vector<float> values(54, 0.0f);
-        values[10] = 1;
-        w.neighbourhoods.smooth(w.forest, values, [&](double expected) { return 8 / (8 + rays_per_value * expected); });
-        return values;
-    };
-    std::vector<float> values(54, 0.0f);
-    values[10] = 1;
-    EXPECT_THAT(smoothed(0), Each(FloatNear(static_cast<float>(w.area_mean(values)), 1e-6f)));
-    const float few = smoothed(1)[10], many = smoothed(10'000)[10];
-    EXPECT_LT(few, 0.5f);
-    EXPECT_GT(many, 0.9f);
-}
-
 }  // namespace
 }  // namespace interflect

@@ -13,10 +13,6 @@ namespace {
 /// Share of the next larger neighbourhood (Neighbourhoods::smooth()).
 constexpr float taken_over = 0.3f;
 
-/// Rays at which the mean of a larger group and the estimate of its part have equal weights. 4 and 16 are as good
-/// within the noise (docs/results.md, Few rays).
-constexpr double rays_of_mean = 8;
-
 /// Mean importance in a box (Emission), and the factor of its parts.
 struct BoxImportance {
     PartImportance all;
@@ -49,6 +45,7 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
 void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
                  ImportanceWeights& weights) {
     constexpr std::size_t alike = Emission::parts_per_emitter;
+    constexpr double rays_of_mean = 8;
     const std::vector<BoxImportance> boxes = importance_of_boxes(emission, found, exponent);
     if (std::none_of(boxes.begin(), boxes.end(), [](const BoxImportance& box) { return box.all.rays > 0; })) return;
     weights.parts.resize(found.size());
@@ -74,18 +71,6 @@ void pow_each(std::span<float> numbers, float exponent) {
     }
 }
 
-/// Each ray carries about the same importance, so a neighbourhood receives its share of them.
-void smooth_by_rays(const ElementForest& forest, const Neighbourhoods& neighbourhoods, std::int64_t rays,
-                    std::span<float> importance) {
-    double all = 0;
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) all += static_cast<double>(importance[p]) * forest.area(p);
-    if (!(all > 0)) return;
-    const double rays_per_importance = static_cast<double>(rays) / all;
-    neighbourhoods.smooth(forest, importance, [&](double expected) {
-        return rays_of_mean / (rays_of_mean + rays_per_importance * expected);
-    });
-}
-
 }  // namespace
 
 ImportanceUse importance_use(const Solution& so_far) {
@@ -102,7 +87,7 @@ std::vector<float> total_importance(const Solution& so_far) {
     return psi;
 }
 
-ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods, std::int64_t rays,
+ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission, const std::vector<PartImportance>& found) {
     const SolveOptions& o = so_far.options;
     const ElementForest& forest = *so_far.forest;
@@ -110,23 +95,13 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
     const Importance psi = importance_use(so_far) == ImportanceUse::direct ? Importance(so_far.view_importance)
                            : o.experimental.total_importance               ? importance_of(so_far)
                                                                            : Importance(so_far.indirect_importance);
-    std::vector<float> of_elements(forest.size());
-    parallel_for_ranges(of_elements.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) of_elements[e] = psi[e];
-    });
-    const std::span<float> of_patches = std::span(of_elements).first(forest.patch_count());
-    const bool smooths = !neighbourhoods.empty() && o.importance.smoothing > 0;
-    ImportanceWeights weights;
-    if (smooths) {
-        weights.nearby.assign(of_patches.begin(), of_patches.end());
-        neighbourhoods.smooth(forest, weights.nearby, taken_over);
-        pow_each(weights.nearby, static_cast<float>(o.importance.exponent));
-    }
-    if (smooths && importance_use(so_far) == ImportanceUse::full)
-        smooth_by_rays(forest, neighbourhoods, rays, of_patches);
-    weights.elements =
-        smoothed_importance(forest, Importance(of_elements), o.importance.smoothing, o.importance.exponent);
+    ImportanceWeights weights{
+        smoothed_importance(forest, psi, o.importance.smoothing, o.importance.exponent), {}, {}, {}};
     weigh_parts(emission, found, static_cast<float>(o.importance.exponent), weights);
+    if (neighbourhoods.empty() || o.importance.smoothing == 0) return weights;
+    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
+    neighbourhoods.smooth(forest, weights.nearby, taken_over);
+    for (float& x : weights.nearby) x = std::pow(x, static_cast<float>(o.importance.exponent));
     return weights;
 }
 

@@ -30,10 +30,8 @@ struct ImportanceWeights {
     std::vector<float> nearby;               ///< By patch; may be empty.
     std::vector<float> parts, parts_nearby;  ///< By luminaire part.
 };
-/// @param rays  Number of rays that estimated the indirect importance. With fewer rays, neighbourhoods have more
-/// weight.
 /// @param found  By luminaire part.
-ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods, std::int64_t rays,
+ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
 /// Smooths importance for sampling (docs/method.md, One step of transport). The paper uses `from_parent` 0 and

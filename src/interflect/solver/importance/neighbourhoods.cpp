@@ -41,11 +41,6 @@ Neighbourhoods::Neighbourhoods(const ElementForest& forest) : patches_(forest.pa
 }
 
 void Neighbourhoods::smooth(const ElementForest& forest, std::span<float> values, float share) const {
-    smooth(forest, values, [share](double) { return share; });
-}
-
-void Neighbourhoods::smooth(const ElementForest& forest, std::span<float> values,
-                            const std::function<double(double expected)>& share) const {
     struct Sum {
         double value = 0, area = 0;
     };
@@ -67,7 +62,7 @@ void Neighbourhoods::smooth(const ElementForest& forest, std::span<float> values
     next = 0;
     const auto hand_down = [&](const auto& self, std::size_t first, std::size_t count, double parent) -> void {
         const Sum& sum = sums[next++];
-        const double own = sum.value / sum.area, value = own + share(sum.area * parent) * (parent - own);
+        const double own = sum.value / sum.area, value = own + share * (parent - own);
         if (count == 1) {
             values[patches_[first]] = static_cast<float>(value);
             return;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -20,10 +19,6 @@ class Neighbourhoods {
     /// Moves each neighbourhood's mean towards its parent's by `share`, from the root to the patches.
     /// @param values  Per area, by patch.
     void smooth(const ElementForest& forest, std::span<float> values, float share) const;
-    /// The same with a share for each neighbourhood.
-    /// @param share  Function of the neighbourhood's area times the mean of its parent.
-    void smooth(const ElementForest& forest, std::span<float> values,
-                const std::function<double(double expected)>& share) const;
 
   private:
     std::vector<std::uint32_t> patches_;  // nodes are ranges, halved recursively

@@ -21,7 +21,6 @@ void transport_importance(SolverState& state, std::int64_t rays) {
     Solution& solution = state.solution;
     std::vector<float> unshot = solution.view_importance;
     BounceBudget budget(rays, 0);
-    const std::int64_t rays_before = state.importance_rays;
     double left = 1;  // importance received in a bounce; initially all of V
     while (left > negligible_importance && !budget.has_planned_last_bounce()) {
         TransportStep step(plan_importance(state.materials, solution, Importance(unshot),
@@ -34,7 +33,6 @@ void transport_importance(SolverState& state, std::int64_t rays) {
             if (e < state.forest->patch_count()) left += static_cast<double>(unshot[e]) * state.forest->area(e);
         }
     }
-    state.rays_of_first_importance = state.importance_rays - rays_before;
 }
 
 }  // namespace interflect::detail

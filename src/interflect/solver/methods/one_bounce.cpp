@@ -38,7 +38,8 @@ Estimate OneBounce::trace(SolverState& state, IterationPlan& plan) {
     const bool combined =
         importance_use(solution) == ImportanceUse::full && !state.options.experimental.separate_iterations;
     const Radiosity light(state.materials, solution.irradiance);
-    const ImportanceWeights weights = importance_weights(state);
+    const ImportanceWeights weights =
+        importance_weights(solution, state.neighbourhoods, state.emission, state.part_importance);
     PowerPlan power = plan_power(state.materials, state.emission, solution, light, weights, combined, rays);
     TransportStep step(std::move(power.plan));
     step.groups = group_radiosity(state, solution.groups);

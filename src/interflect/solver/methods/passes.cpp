@@ -153,7 +153,8 @@ struct Passes::Pass {
 /// @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
     state.payloads = {};  // reported for the last pass only
-    Pass pass{rays, oracle_refines, BounceBudget(rays, total_unshot_), importance_weights(state)};
+    Pass pass{rays, oracle_refines, BounceBudget(rays, total_unshot_),
+              importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance)};
     pass.unshot.assign(state.forest->size(), Rgb(0));
     pass.unshot_groups.assign(state.groups.size(), pass.unshot);
     if (!oracle_refines) pass.reflecting_where_received = leaves_reflecting_where_received(state);

@@ -59,7 +59,8 @@ double noise_of_lines(const Emission& emission, const std::vector<float>& part_q
 
 ViewChange::Sampling ViewChange::sampling_of(const SolverState& state) {
     const Radiosity light(state.materials, state.solution.irradiance);
-    const ImportanceWeights weights = importance_weights(state);
+    const ImportanceWeights weights =
+        importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
     Sampling sampling{plan_power(state.materials, state.emission, state.solution, light, weights, false, 0).plan.q,
                       {},
                       state.targets};

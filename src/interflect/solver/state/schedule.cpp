@@ -16,14 +16,6 @@ constexpr double growth = 0.5;
 constexpr std::int64_t largest_iteration = 1 << 24;
 /// Some per patch, but a small share of the budget.
 constexpr std::int64_t first_rays_per_patch = 4, fewest_first_rays = 50'000, budget_over_first_rays = 8;
-/// Ratio of all rays to the rays before the first iteration, which are not averaged. In one furnished room with 100,000
-/// rays, a ratio of 4 increases the noise by 4% to 10%; 16 changes nothing (docs/results.md, Few rays).
-constexpr std::int64_t budget_over_start_rays = 8;
-
-/// Number of passes before the first iteration: two for the initial mesh, one for importance if it is used.
-std::int64_t passes_of_start(const SolveOptions& options) {
-    return !options.views.empty() && options.method.importance == ImportanceUse::full ? 3 : 2;
-}
 
 }  // namespace
 
@@ -36,9 +28,8 @@ Schedule::Schedule(const SolveOptions& options, std::size_t patches) : options_(
 
 std::int64_t Schedule::start_rays() const {
     constexpr std::int64_t rays_of_a_moment = 1 << 18;
-    return std::min(
-        {smallest_, std::max(first_rays_, rays_of_a_moment),
-         std::max<std::int64_t>(1, options_.limits.rays / budget_over_start_rays / passes_of_start(options_))});
+    return std::min({smallest_, std::max(first_rays_, rays_of_a_moment),
+                     std::max<std::int64_t>(1, options_.limits.rays / budget_over_first_rays)});
 }
 
 void Schedule::record_start(std::int64_t averaged_rays, std::int64_t other_rays) {

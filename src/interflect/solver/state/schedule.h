@@ -25,7 +25,7 @@ class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Returns the rays per pass before the first iteration: together at most an eighth of all.
+    /// Returns the rays per pass before the first iteration: at most an eighth of all.
     std::int64_t start_rays() const;
     /// Records these passes; `averaged_rays` are in the first mean.
     void record_start(std::int64_t averaged_rays, std::int64_t other_rays);

@@ -100,8 +100,6 @@ void compute_view_importance(SolverState& state) {
                                state.options.importance.camera_rays);
     state.solution.view_importance.clear();
     state.solution.indirect_importance.clear();
-    state.importance_rays_of_other_views = state.importance_rays;
-    state.rays_of_first_importance = 0;
     if (!state.view.empty()) {
         if (state.neighbourhoods.empty()) state.neighbourhoods = Neighbourhoods(*state.forest);
         state.solution.view_importance =
@@ -111,12 +109,6 @@ void compute_view_importance(SolverState& state) {
     const ExperimentalOptions& experimental = state.options.experimental;
     if (experimental.shrinkage && experimental.clusters && refines_by_variance(state.options))
         state.clusters = cluster_patches(*state.forest, state.ray_caster, state.solution.view_importance);
-}
-
-ImportanceWeights importance_weights(const SolverState& state) {
-    return importance_weights(state.solution, state.neighbourhoods,
-                              state.importance_rays - state.importance_rays_of_other_views, state.emission,
-                              state.part_importance);
 }
 
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits) {

@@ -62,12 +62,10 @@ struct SolverState {
     RiskCheck risk_check;
     PayloadHistogram payloads;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
-    std::int64_t rays_of_other_views = 0;             // averaged before the views changed
-    std::int64_t importance_rays_of_other_views = 0;  // of importance_rays
-    std::int64_t rays_of_first_importance = 0;        // of transport_importance() for these views
-    RgbD escaped_power{0, 0, 0};                      // mean, averaged like irradiance
-    double escaped_power_rays = 0;                    // rays in this mean
-    double discarded_hits = 0;                        // see IterationReport
+    std::int64_t rays_of_other_views = 0;  // averaged before the views changed
+    RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
+    double escaped_power_rays = 0;         // rays in this mean
+    double discarded_hits = 0;             // see IterationReport
 
     // The work in progress, which alone may be shared with other ranks:
     Monitor monitor;
@@ -98,9 +96,6 @@ void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
 /// Resets the indirect importance and the clusters.
 void compute_view_importance(SolverState& state);
-
-/// For the current views.
-ImportanceWeights importance_weights(const SolverState& state);
 
 /// Refers to its arguments.
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits = true);

@@ -199,7 +199,8 @@ Estimate KeptRays::trace(SolverState& state, IterationPlan& plan) {
     follow_forest(forest);
     reflected_ = state.solution.irradiance;
     const Radiosity light(state.materials, reflected_);
-    const ImportanceWeights weights = importance_weights(state);
+    const ImportanceWeights weights =
+        importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
     PowerPlan power =
         plan_power(state.materials, state.emission, state.solution, light, weights, /*combined=*/false, rays);
     state.solution.non_finite += power.non_finite_leaves;

@@ -203,7 +203,7 @@ void ProgressiveRefinement::update_importance(SolverState& state, IterationPlan&
 Estimate ProgressiveRefinement::trace(SolverState& state, IterationPlan& plan) {
     const std::vector<Rgb> dark(state.forest->size(), Rgb(0));
     PowerSeries series{{plan.rays - plan.importance_rays, current_.power_shots},
-                       importance_weights(state),
+                       importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance),
                        dark,
                        {dark, std::vector<float>(dark.size(), 0.0f), {}}};
     if (series.budget.left > 0) {
