@@ -16,7 +16,7 @@ from shadings.runs import BAKES, Scale, picture_runs
 
 # Kinds of findings of `validate`: harmless ones, and intended ones of a kind of scene.
 HARMLESS = {"open-edge", "no-view"}
-INTENDED = {"ies-and-sun": {"shut-out-sky"}}
+INTENDED = {"ies-and-sun": {"shut-out-sky"}, "corner-normals": {"contradicting-normals"}}
 
 
 class Kinds(CommandTest):

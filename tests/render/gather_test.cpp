@@ -12,7 +12,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/ray_caster.h"
-#include "interflect/render/lights/known_light.h"
+#include "interflect/render/reflections/known_light.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shadings.h"

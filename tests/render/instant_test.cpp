@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "interflect/render.h"
-#include "interflect/render/lights/virtual_lights.h"
+#include "interflect/render/reflections/virtual_lights.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 #include "tests/support/statistics.h"

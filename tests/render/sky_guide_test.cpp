@@ -2,7 +2,7 @@
 //
 // Seen to fail: the density of guided rays ignores their number; escaped rays have full weight beside guided rays;
 // densities lack the number of cells; no guide.
-#include "interflect/render/records/sky_guide.h"
+#include "interflect/render/paths/sky_guide.h"
 
 #include <gtest/gtest.h>
 

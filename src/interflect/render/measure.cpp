@@ -10,8 +10,8 @@
 
 #include "interflect/core.h"
 #include "interflect/geometry/tangent_frame.h"
-#include "interflect/render/gauges/gauge.h"
 #include "interflect/render/pictures/path_picture.h"
+#include "interflect/render/rays/gauge.h"
 
 namespace interflect {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "interflect/export.h"
-#include "interflect/render/gauges/gauge.h"
 #include "interflect/render/gauges/gauge_light.h"
+#include "interflect/render/rays/gauge.h"
 #include "interflect/render/smooth/element_vertices.h"
 #include "interflect/render/smooth/smooth_field.h"
 #include "interflect/solution.h"

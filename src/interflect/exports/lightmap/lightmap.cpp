@@ -19,10 +19,10 @@
 #include "interflect/geometry/box_tree.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/measure.h"
-#include "interflect/render/gauges/gauge.h"
 #include "interflect/render/light_help.h"
 #include "interflect/render/pictures/path_picture.h"
 #include "interflect/render/pictures/pixel_statistics.h"
+#include "interflect/render/rays/gauge.h"
 #include "interflect/render/sharing/light_order.h"
 #include "interflect/scene.h"
 

@@ -51,7 +51,7 @@ class GaugeTile {
   private:
     /// @param wanted  Samples of each half, in all.
     void trace_more(const std::vector<std::uint32_t>& wanted) {
-        std::vector<PathBatch> batches;
+        std::vector<SampleBatch> batches;
         for (std::size_t i = 0; i < pixels_.size(); ++i)
             if (const std::uint32_t present = pixels_[i].samples_of_half(); wanted[i] > present)
                 batches.push_back({.pixel = static_cast<std::uint32_t>(first_ + i),
@@ -60,7 +60,7 @@ class GaugeTile {
         PathIntegrator integrator(plan_);
         integrator.trace(batches);
         rays_ += integrator.counts().rays;
-        for (const PathBatch& b : batches) pixels_[b.pixel - first_].add(b, ErrorSource::halves);
+        for (const SampleBatch& b : batches) pixels_[b.pixel - first_].add(b, ErrorSource::halves);
     }
 
     /// Neighbours in the list are usually neighbours in space. Gauge i itself would bias its own result.

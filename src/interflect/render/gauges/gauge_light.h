@@ -6,8 +6,8 @@
 
 #include "interflect/core.h"
 #include "interflect/render.h"
-#include "interflect/render/gauges/gauge.h"
-#include "interflect/render/paths/traced_scene.h"
+#include "interflect/render/rays/gauge.h"
+#include "interflect/render/rays/traced_scene.h"
 #include "interflect/render/records/recorded_light.h"
 
 namespace interflect::detail {

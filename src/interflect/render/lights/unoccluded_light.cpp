@@ -15,21 +15,23 @@ namespace {
 /// Beyond this number, the sum would take longer than the shadow rays.
 constexpr std::size_t max_sources = 64;
 
-/// Returns acos(x) / sqrt(1 - x^2) for x in [-1, 1], within 2e-8 of acos (Abramowitz and Stegun 1964, 4.4.46). Unlike
+/// Returns acos(x) / sqrt(1 - x^2) for x in [0, 1], within 2e-8 of acos (Abramowitz and Stegun 1964, 4.4.46). Unlike
 /// the quotient it is well conditioned for small angles.
 float angle_over_sine(float x) {
-    const float c = std::abs(x);
     float p = -0.0012624911f;
     for (const float coefficient :
          {0.0066700901f, -0.0170881256f, 0.0308918810f, -0.0501743046f, 0.0889789874f, -0.2145988016f, 1.5707963050f})
-        p = p * c + coefficient;
-    const float of_cosine = p / std::sqrt(1 + c);
-    return x >= 0 ? of_cosine : std::numbers::pi_v<float> / std::sqrt(std::max(1e-12f, 1 - c * c)) - of_cosine;
+        p = p * x + coefficient;
+    return p / std::sqrt(1 + x);
 }
 
 /// Angle between unit vectors, times the component along n of their plane's unit normal.
 float edge_integral(const V3f& a, const V3f& b, const V3f& n) {
-    return n.dot(a.cross(b)) * angle_over_sine(std::min(1.0f, std::max(-1.0f, a.dot(b))));
+    const V3f normal = a.cross(b);
+    const float cosine = a.dot(b);
+    if (cosine >= 0) return n.dot(normal) * angle_over_sine(std::min(1.0f, cosine));
+    const float sine = normal.length();
+    return sine > 0 ? std::atan2(sine, cosine) * (n.dot(normal) / sine) : 0;
 }
 
 /// Points per axis; 1: the middle is exact.

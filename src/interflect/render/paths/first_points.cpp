@@ -4,9 +4,9 @@
 #include <numbers>
 #include <optional>
 
-#include "interflect/render/records/indirect_field.h"
-#include "interflect/render/records/part_statistics.h"
-#include "interflect/render/records/sky_guide.h"
+#include "interflect/render/paths/indirect_field.h"
+#include "interflect/render/paths/part_statistics.h"
+#include "interflect/render/paths/sky_guide.h"
 
 namespace interflect::detail {
 

@@ -7,9 +7,9 @@
 
 #include "interflect/core.h"
 #include "interflect/render/lights/light_sources.h"
-#include "interflect/render/paths/path_batch.h"
-#include "interflect/render/paths/path_plan.h"
-#include "interflect/render/paths/path_rays.h"
+#include "interflect/render/rays/path_plan.h"
+#include "interflect/render/rays/path_rays.h"
+#include "interflect/render/rays/sample_batch.h"
 
 namespace interflect::detail {
 

@@ -8,8 +8,8 @@
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
 #include "interflect/geometry/texture_mapping.h"
-#include "interflect/render/lights/known_light.h"
-#include "interflect/render/records/sky_guide.h"
+#include "interflect/render/paths/sky_guide.h"
+#include "interflect/render/reflections/known_light.h"
 
 namespace interflect::detail {
 
@@ -33,9 +33,9 @@ V3f start_on(const TracedScene& s, const Gauge& gauge, const V3f& normal, float 
 
 }  // namespace
 
-void PathIntegrator::trace(std::span<PathBatch> batches) {
+void PathIntegrator::trace(std::span<SampleBatch> batches) {
     light_.resize(2 * batches.size());
-    for (const PathBatch& b : batches)
+    for (const SampleBatch& b : batches)
         for (const std::uint64_t half : {0, 1})
             keys_.push_back(mix(mix(plan_.options.seed, b.pixel), 2 * std::uint64_t{b.number} + half));
 
@@ -60,12 +60,12 @@ void PathIntegrator::trace(std::span<PathBatch> batches) {
     store(batches);
 }
 
-void PathIntegrator::start_at_camera(std::span<const PathBatch> batches) {
+void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
     const auto width = static_cast<std::uint32_t>(plan_.options.width);
     thread_local PointBlock points;
     Path path;
     for (std::uint32_t h = 0; h < keys_.size(); ++h) {
-        const PathBatch& batch = batches[h / 2];
+        const SampleBatch& batch = batches[h / 2];
         fill_points(PointSet::sobol, keys_[h], batch.first_point, batch.size, points);
         const auto left = static_cast<float>(batch.pixel % width), top = static_cast<float>(batch.pixel / width);
         path.half = h;
@@ -77,11 +77,11 @@ void PathIntegrator::start_at_camera(std::span<const PathBatch> batches) {
     first_hits_.resize(path.sample);
 }
 
-void PathIntegrator::start_at_gauges(std::span<const PathBatch> batches) {
+void PathIntegrator::start_at_gauges(std::span<const SampleBatch> batches) {
     thread_local PointBlock points;
     Path path;
     for (std::uint32_t h = 0; h < keys_.size(); ++h) {
-        const PathBatch& batch = batches[h / 2];
+        const SampleBatch& batch = batches[h / 2];
         const Gauge& gauge = plan_.start.gauges[batch.pixel];
         fill_points(PointSet::sobol, keys_[h], batch.first_point, batch.size, points);
         path.half = h;
@@ -272,12 +272,12 @@ void PathIntegrator::leave_surfaces() {
     paths_.rays.resize(alive);
 }
 
-void PathIntegrator::store(std::span<PathBatch> batches) const {
+void PathIntegrator::store(std::span<SampleBatch> batches) const {
     // Irradiance = pi L of a white surface.
     const double per_radiance = plan_.shows_irradiance() ? std::numbers::pi : 1;
     std::size_t sample = 0;
     for (std::size_t b = 0; b < batches.size(); ++b) {
-        PathBatch& batch = batches[b];
+        SampleBatch& batch = batches[b];
         for (std::size_t h = 0; h < 2; ++h) batch.halves[h] = light_[2 * b + h] * per_radiance;
         for (const std::size_t end = sample + 2 * std::size_t{batch.size}; sample < end; ++sample)
             batch.first += first_hits_[sample];

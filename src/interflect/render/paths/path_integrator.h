@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "interflect/render/paths/first_points.h"
-#include "interflect/render/paths/path_batch.h"
-#include "interflect/render/paths/path_plan.h"
-#include "interflect/render/paths/path_rays.h"
-#include "interflect/render/paths/shadow_rays.h"
+#include "interflect/render/rays/path_plan.h"
+#include "interflect/render/rays/path_rays.h"
+#include "interflect/render/rays/sample_batch.h"
+#include "interflect/render/rays/shadow_rays.h"
 
 namespace interflect::detail {
 
@@ -24,7 +24,7 @@ class PathIntegrator {
     explicit PathIntegrator(const PathPlan& plan) : plan_(plan), first_points_(plan) {}
 
     /// Adds the light of all paths to their batches. Call once.
-    void trace(std::span<PathBatch> batches);
+    void trace(std::span<SampleBatch> batches);
     const RayCounts& counts() const { return counts_; }
 
   private:
@@ -37,14 +37,14 @@ class PathIntegrator {
         SourceKind kind = SourceKind::patches;
     };
 
-    void start_at_camera(std::span<const PathBatch> batches);
+    void start_at_camera(std::span<const SampleBatch> batches);
     /// Gauges are white surfaces: paths start on them.
-    void start_at_gauges(std::span<const PathBatch> batches);
+    void start_at_gauges(std::span<const SampleBatch> batches);
     void arrive_at_surfaces();
     bool arrive(const Hit& hit, const Ray& ray, Path& path);
     void light_vertices();
     void leave_surfaces();
-    void store(std::span<PathBatch> batches) const;
+    void store(std::span<SampleBatch> batches) const;
 
     // At a surface or in the sky:
     void add_sky(const Path& path, const V3f& direction);

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/render/lights/known_light.h"
-#include "interflect/render/lights/virtual_lights.h"
 #include "interflect/render/paths/path_integrator.h"
+#include "interflect/render/reflections/known_light.h"
+#include "interflect/render/reflections/virtual_lights.h"
 
 namespace interflect::detail {
 

@@ -14,9 +14,9 @@
 #include "interflect/base/monitor_section.h"
 #include "interflect/base/stop_request.h"
 #include "interflect/core.h"
-#include "interflect/render/lights/virtual_lights.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/pictures/pixel_statistics.h"
+#include "interflect/render/reflections/virtual_lights.h"
 #include "interflect/render/sharing/light_order.h"
 #include "interflect/render/sharing/shared_batches.h"
 
@@ -184,7 +184,7 @@ class PathPicture {
     bool trace_round(const std::vector<std::uint32_t>& wanted) {
         std::vector<std::uint32_t> present(pixels_.size());
         for (std::size_t i = 0; i < pixels_.size(); ++i) present[i] = pixels_[i].samples_of_half();
-        std::vector<PathBatch> chunk;
+        std::vector<SampleBatch> chunk;
         std::size_t paths = 0;
         bool has_traced = false;
         for (bool more = true; more;) {
@@ -204,24 +204,24 @@ class PathPicture {
     }
 
     /// Each batch of a pixel is lit by another set of virtual lights, so their spread includes the error of the sets.
-    void renew_virtual_lights(std::vector<PathBatch>& chunk) {
+    void renew_virtual_lights(std::vector<SampleBatch>& chunk) {
         if (!plan_.virtual_lights) return;
         trace_chunk(chunk);
         counts_.rays += shared_.renew_virtual_lights();
     }
 
     /// In hybrid shading, the batches of a pixel continue two sequences; otherwise they are independent.
-    PathBatch next_batch(std::uint32_t pixel, std::uint32_t present, std::uint32_t wanted) const {
+    SampleBatch next_batch(std::uint32_t pixel, std::uint32_t present, std::uint32_t wanted) const {
         constexpr std::uint32_t largest = 64;  // of each half, in hybrid shading
         if (plan_.hybrid) return {.pixel = pixel, .first_point = present, .size = std::min(largest, wanted - present)};
         return {.pixel = pixel, .number = present / batch_size(), .size = batch_size()};
     }
 
-    void trace_chunk(std::vector<PathBatch>& chunk) {
+    void trace_chunk(std::vector<SampleBatch>& chunk) {
         if (chunk.empty() || is_over()) return chunk.clear();
         counts_ += shared_.trace(
             chunk, [this] { return is_over(); }, has_all_pixels_);
-        for (const PathBatch& batch : chunk) {
+        for (const SampleBatch& batch : chunk) {
             if (!batch.done) continue;
             pixels_[batch.pixel].add(batch, error_source());
             samples_done_ += batch.size;

@@ -5,7 +5,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/render.h"
-#include "interflect/render/paths/path_plan.h"
+#include "interflect/render/rays/path_plan.h"
 #include "interflect/render/records/recorded_light.h"
 
 namespace interflect::detail {

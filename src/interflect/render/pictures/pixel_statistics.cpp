@@ -68,7 +68,7 @@ void PixelStatistics::Spread::add(const PathLight& light) {
     }
 }
 
-void PixelStatistics::add(const PathBatch& b, ErrorSource source) {
+void PixelStatistics::add(const SampleBatch& b, ErrorSource source) {
     samples_ += b.size;
     first_sum_ += b.first;
     for (std::size_t h = 0; h < 2; ++h) sums_[h] += b.halves[h];

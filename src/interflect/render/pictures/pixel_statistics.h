@@ -6,8 +6,8 @@
 
 #include "interflect/core.h"
 #include "interflect/render.h"
-#include "interflect/render/paths/path_batch.h"
-#include "interflect/render/records/part_statistics.h"
+#include "interflect/render/paths/part_statistics.h"
+#include "interflect/render/rays/sample_batch.h"
 
 namespace interflect::detail {
 
@@ -25,7 +25,7 @@ enum class ErrorSource {
 class PixelStatistics {
   public:
     /// @param source  Equal for all batches.
-    void add(const PathBatch& batch, ErrorSource source);
+    void add(const SampleBatch& batch, ErrorSource source);
 
     std::uint32_t samples_of_half() const { return samples_; }
     bool has_error() const { return spread_.parts > 1; }

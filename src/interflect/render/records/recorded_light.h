@@ -5,10 +5,10 @@
 #include <span>
 
 #include "interflect/elements/forest.h"
-#include "interflect/render/lights/known_light.h"
-#include "interflect/render/paths/path_plan.h"
-#include "interflect/render/records/indirect_field.h"
-#include "interflect/render/records/sky_guide.h"
+#include "interflect/render/paths/indirect_field.h"
+#include "interflect/render/paths/sky_guide.h"
+#include "interflect/render/rays/path_plan.h"
+#include "interflect/render/reflections/known_light.h"
 
 namespace interflect::detail {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "interflect/render/lights/known_light.h"
-#include "interflect/render/paths/traced_scene.h"
-#include "interflect/render/records/surface_points.h"
+#include "interflect/render/paths/surface_points.h"
+#include "interflect/render/rays/traced_scene.h"
+#include "interflect/render/reflections/known_light.h"
 
 namespace interflect::detail {
 

@@ -6,7 +6,7 @@
 #include "interflect/measure.h"
 #include "interflect/ranks.h"
 #include "interflect/render.h"
-#include "interflect/render/paths/path_plan.h"
+#include "interflect/render/rays/path_plan.h"
 
 namespace interflect::detail {
 

@@ -14,13 +14,13 @@ std::size_t SharedBatches::paths_at_once(const Ranks* ranks) {
     return paths_of_process * (ranks ? static_cast<std::size_t>(ranks->count()) : 1);
 }
 
-RayCounts SharedBatches::trace(std::span<PathBatch> batches, const std::function<bool()>& is_over, bool is_limited) {
+RayCounts SharedBatches::trace(std::span<SampleBatch> batches, const std::function<bool()>& is_over, bool is_limited) {
     if (ranks_) {
         Chunk chunk{batches.size(), light_set_, is_limited};
         broadcast(*ranks_, std::span(&chunk, 1));
         std::vector<Key> keys;
         keys.reserve(batches.size());
-        for (const PathBatch& b : batches) keys.push_back({b.pixel, b.number, b.first_point, b.size});
+        for (const SampleBatch& b : batches) keys.push_back({b.pixel, b.number, b.first_point, b.size});
         broadcast(*ranks_, std::span(keys));
     }
     return trace_own(batches, is_over);
@@ -49,7 +49,7 @@ void SharedBatches::help(const StopRequest& time_left) {
         keys.resize(chunk.batches);
         broadcast(*ranks_, std::span(keys));
         if (chunk.light_set != light_set_) virtual_lights_->renew(light_set_ = chunk.light_set);
-        std::vector<PathBatch> batches;
+        std::vector<SampleBatch> batches;
         batches.reserve(keys.size());
         for (const Key& k : keys) batches.push_back({k.pixel, k.number, k.first_point, k.size});
         trace_own(batches, [&] { return chunk.is_limited && time_left.is_out_of_time(); });
@@ -57,11 +57,11 @@ void SharedBatches::help(const StopRequest& time_left) {
     ranks_->gather({});
 }
 
-RayCounts SharedBatches::trace_own(std::span<PathBatch> batches, const std::function<bool()>& is_over) {
+RayCounts SharedBatches::trace_own(std::span<SampleBatch> batches, const std::function<bool()>& is_over) {
     // Paths that are traced together, which amortises the cost of a call.
     constexpr std::size_t paths_per_tile = 2048;
     std::size_t largest = 1;
-    for (const PathBatch& b : batches) largest = std::max<std::size_t>(largest, 2 * std::size_t{b.size});
+    for (const SampleBatch& b : batches) largest = std::max<std::size_t>(largest, 2 * std::size_t{b.size});
     const std::size_t per_tile = std::max<std::size_t>(1, paths_per_tile / largest);
     std::vector<RayCounts> counts((batches.size() + per_tile - 1) / per_tile);
     parallel_for_own_ranges(ranks_, batches.size(), per_tile, [&](std::size_t begin, std::size_t end) {

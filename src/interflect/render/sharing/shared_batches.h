@@ -7,9 +7,9 @@
 
 #include "interflect/base/stop_request.h"
 #include "interflect/ranks.h"
-#include "interflect/render/lights/virtual_lights.h"
-#include "interflect/render/paths/path_batch.h"
-#include "interflect/render/paths/path_plan.h"
+#include "interflect/render/rays/path_plan.h"
+#include "interflect/render/rays/sample_batch.h"
+#include "interflect/render/reflections/virtual_lights.h"
 
 namespace interflect::detail {
 
@@ -28,10 +28,10 @@ class SharedBatches {
 
     // Rank 0:
 
-    /// Sets PathBatch::done.
+    /// Sets SampleBatch::done.
     /// @param is_over     Omits the remaining tiles of this process; called once per tile.
     /// @param is_limited  The other ranks omit tiles after PictureOptions::time.
-    RayCounts trace(std::span<PathBatch> batches, const std::function<bool()>& is_over, bool is_limited);
+    RayCounts trace(std::span<SampleBatch> batches, const std::function<bool()>& is_over, bool is_limited);
     /// Later batches are lit by another set of virtual lights. Returns its number of rays; 0 without virtual lights.
     std::int64_t renew_virtual_lights();
     /// Ends help() and waits until all ranks are there: a picture without the light of one is not usable.
@@ -51,7 +51,7 @@ class SharedBatches {
         std::uint32_t light_set = none;  // of virtual lights
         bool is_limited = false;
     };
-    RayCounts trace_own(std::span<PathBatch> batches, const std::function<bool()>& is_over);
+    RayCounts trace_own(std::span<SampleBatch> batches, const std::function<bool()>& is_over);
 
     const PathPlan& plan_;
     VirtualLights* virtual_lights_;

@@ -1,4 +1,4 @@
-#include "interflect/render/lights/virtual_lights.h"
+#include "interflect/render/reflections/virtual_lights.h"
 
 #include <algorithm>
 #include <cmath>

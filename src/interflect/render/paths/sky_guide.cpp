@@ -1,4 +1,4 @@
-#include "interflect/render/records/sky_guide.h"
+#include "interflect/render/paths/sky_guide.h"
 
 #include <algorithm>
 #include <cmath>

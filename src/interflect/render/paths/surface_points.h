@@ -5,7 +5,7 @@
 
 #include "interflect/base/stop_request.h"
 #include "interflect/core.h"
-#include "interflect/render/paths/path_plan.h"
+#include "interflect/render/rays/path_plan.h"
 
 namespace interflect::detail {
 

@@ -1,11 +1,11 @@
-#include "interflect/render/records/surface_points.h"
+#include "interflect/render/paths/surface_points.h"
 
 #include <algorithm>
 
 #include "interflect/base/parallel.h"
 #include "interflect/base/points.h"
 #include "interflect/base/random.h"
-#include "interflect/render/paths/path_rays.h"
+#include "interflect/render/rays/path_rays.h"
 
 namespace interflect::detail {
 

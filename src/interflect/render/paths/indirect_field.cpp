@@ -1,4 +1,4 @@
-#include "interflect/render/records/indirect_field.h"
+#include "interflect/render/paths/indirect_field.h"
 
 #include <ImathBoxAlgo.h>
 
@@ -12,8 +12,8 @@
 #include "interflect/base/random.h"
 #include "interflect/base/shared_ranges.h"
 #include "interflect/geometry/tangent_frame.h"
-#include "interflect/render/lights/known_light.h"
 #include "interflect/render/paths/path_integrator.h"
+#include "interflect/render/reflections/known_light.h"
 
 namespace interflect::detail {
 
@@ -74,14 +74,14 @@ struct GatheredGroup {
 };
 
 /// Traces the batches, which all ranks share. @param plan  Gathers at the records.
-std::vector<GatheredGroup> gather_groups(const PathPlan& plan, std::span<PathBatch> batches, const CommonStop& stop) {
+std::vector<GatheredGroup> gather_groups(const PathPlan& plan, std::span<SampleBatch> batches, const CommonStop& stop) {
     std::vector<GatheredGroup> groups(batches.size());
     parallel_for_own_ranges(stop.ranks(), batches.size(), groups_per_task, [&](std::size_t begin, std::size_t end) {
         if (stop.within_process().is_due()) return;
         PathIntegrator integrator(plan);
         integrator.trace(batches.subspan(begin, end - begin));
         for (std::size_t i = begin; i < end; ++i) {
-            const PathBatch& b = batches[i];
+            const SampleBatch& b = batches[i];
             groups[i] = {b.pixel,
                          b.done,
                          static_cast<float>(b.first.inverse_length),
@@ -151,7 +151,7 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
     std::vector<Gauge> gauges;
     for (const Record& r : records_) gauges.push_back({.position = r.position, .normal = r.normal});
     constexpr std::uint32_t half = paths_per_group / 2;
-    std::vector<PathBatch> batches;
+    std::vector<SampleBatch> batches;
     for (const std::uint32_t i : chosen)
         for (std::uint32_t group = 0; group < groups; ++group)
             batches.push_back({.pixel = i, .first_point = (records_[i].gathered.batches + group) * half, .size = half});
@@ -169,7 +169,8 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
     const std::size_t at_once = stop.ranks() ? groups_of_rank * stop.ranks()->count() : batches.size();
     bool is_stopped = false;
     for (std::size_t first = 0; first < batches.size() && !is_stopped; first += at_once) {
-        const std::span<PathBatch> some = std::span(batches).subspan(first, std::min(at_once, batches.size() - first));
+        const std::span<SampleBatch> some =
+            std::span(batches).subspan(first, std::min(at_once, batches.size() - first));
         for (const GatheredGroup& group : gather_groups(gathering, some, stop)) {
             rays_ += group.rays;
             if (!group.is_done) continue;

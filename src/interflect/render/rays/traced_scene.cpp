@@ -1,4 +1,4 @@
-#include "interflect/render/paths/traced_scene.h"
+#include "interflect/render/rays/traced_scene.h"
 
 #include <algorithm>
 

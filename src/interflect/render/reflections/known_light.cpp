@@ -1,4 +1,4 @@
-#include "interflect/render/lights/known_light.h"
+#include "interflect/render/reflections/known_light.h"
 
 #include <algorithm>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include "interflect/render/paths/shadow_rays.h"
+#include "interflect/render/rays/shadow_rays.h"
 
 #include "interflect/core.h"
 

@@ -6,7 +6,7 @@
 
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/panes.h"
-#include "interflect/render/paths/path_batch.h"
+#include "interflect/render/rays/sample_batch.h"
 
 namespace interflect::detail {
 

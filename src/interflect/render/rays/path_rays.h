@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "interflect/ray_caster.h"
-#include "interflect/render/paths/path_batch.h"
-#include "interflect/render/paths/traced_scene.h"
+#include "interflect/render/rays/sample_batch.h"
+#include "interflect/render/rays/traced_scene.h"
 
 namespace interflect::detail {
 

@@ -1,4 +1,4 @@
-#include "interflect/render/paths/path_rays.h"
+#include "interflect/render/rays/path_rays.h"
 
 #include <span>
 

@@ -9,9 +9,9 @@
 #include "interflect/base/common_stop.h"
 #include "interflect/core.h"
 #include "interflect/geometry/box_tree.h"
-#include "interflect/render/paths/path_plan.h"
-#include "interflect/render/records/part_statistics.h"
-#include "interflect/render/records/surface_points.h"
+#include "interflect/render/paths/part_statistics.h"
+#include "interflect/render/paths/surface_points.h"
+#include "interflect/render/rays/path_plan.h"
 #include "interflect/render/smooth/local_fit.h"
 #include "interflect/scene.h"
 

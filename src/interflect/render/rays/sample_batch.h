@@ -42,7 +42,7 @@ struct PathLight {
 };
 
 /// Paths of a pixel or gauge: two independent halves of equal size.
-struct PathBatch {
+struct SampleBatch {
     std::uint32_t pixel = 0;
     std::uint32_t number = 0;       ///< Batches of different numbers are independent.
     std::uint32_t first_point = 0;  ///< In the sequence of each half.

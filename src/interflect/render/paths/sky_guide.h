@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/render/records/indirect_field.h"
+#include "interflect/render/paths/indirect_field.h"
 
 namespace interflect::detail {
 
