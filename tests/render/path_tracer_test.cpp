@@ -393,9 +393,9 @@ TEST(PathTracer, ErrorIsUnknownUntilEveryPixelHasASpread) {
     const View view{"lamp", V3f(0, 0, 1), V3f(0, 0, 0), V3f(0, 1, 0), 60};
     std::vector<double> errors;
     const Monitor monitor{[&](const Progress& progress) { errors.push_back(progress.relative_error); }};
-    // Two batches of one path: 320,000 paths, more than the interval between two reports.
+    // Two paths a pixel: 640,000 paths, more than the interval between two reports.
     const Rendering seen = render(scene, RayCaster(scene), view,
-                                  {.width = 400, .height = 400, .shading = Shading::path, .samples = 2}, monitor);
+                                  {.width = 800, .height = 400, .shading = Shading::path, .samples = 2}, monitor);
     ASSERT_EQ(errors.size(), 2u);
     EXPECT_TRUE(std::isinf(errors[0]));
     EXPECT_EQ(errors[1], 0);

@@ -27,7 +27,7 @@ namespace {
 /// Minimum number of independent parts of a pixel's samples: 7 degrees of freedom for its standard error.
 constexpr int min_parts = 8;
 /// Larger batches stratify little better; more batches improve the error estimate.
-constexpr int largest_half_batch = 32;
+constexpr int largest_half_batch = 64;
 bool is_limited(const PictureOptions& options) { return std::isfinite(options.time); }
 
 /// Draws in rounds. The first gives every pixel a few samples, from which the needs of its neighbours are estimated;

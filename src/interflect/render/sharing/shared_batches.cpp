@@ -10,7 +10,7 @@
 namespace interflect::detail {
 
 std::size_t SharedBatches::paths_at_once(const Ranks* ranks) {
-    constexpr std::size_t paths_of_process = std::size_t{1} << 18;
+    constexpr std::size_t paths_of_process = std::size_t{1} << 19;
     return paths_of_process * (ranks ? static_cast<std::size_t>(ranks->count()) : 1);
 }
 
