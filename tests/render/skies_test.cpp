@@ -69,7 +69,7 @@ TEST_P(EverySky, CausesItsIrradiance) {
         for (std::size_t i = 0; i < normals.size(); ++i) {
             const double expected = irradiance[i], error = static_cast<double>(found[i].standard_error.x);
             EXPECT_NEAR(found[i].sum().x, expected, 5 * error + 3e-4 * expected + 1e-3) << i << " " << label(shading);
-            EXPECT_LT(error, 0.03 * expected + 1e-3) << i;
+            EXPECT_LT(error, 0.025 * expected + 1e-3) << i;
         }
     }
     if (const auto* dome = std::get_if<SkyDome>(&sky.luminaire.kind); dome && dome->zenith.z > 0) {
