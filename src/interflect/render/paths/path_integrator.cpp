@@ -67,7 +67,8 @@ void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
     for (std::uint32_t h = 0; h < keys_.size(); ++h) {
         const SampleBatch& batch = batches[h / 2];
         fill_points(PointSet::sobol, keys_[h], batch.first_point, batch.size, points);
-        const auto left = static_cast<float>(batch.pixel % width), top = static_cast<float>(batch.pixel / width);
+        const std::uint32_t column = batch.pixel % width, row = batch.pixel / width;
+        const auto left = static_cast<float>(column), top = static_cast<float>(row);
         path.half = h;
         for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
             path.point = batch.first_point + i;

@@ -20,7 +20,8 @@ PathRays camera_rays(const PathPlan& plan, std::size_t begin, std::size_t end) {
     PointBlock points;
     for (std::size_t pixel = begin; pixel < end; ++pixel) {
         fill_points(PointSet::sobol, mix(plan.options.seed, pixel), 0, 1, points);
-        const auto left = static_cast<float>(pixel % width), top = static_cast<float>(pixel / width);
+        const std::size_t column = pixel % width, row = pixel / width;
+        const auto left = static_cast<float>(column), top = static_cast<float>(row);
         rays.add(Path(), plan.start.camera->ray(left + points.coordinate[0][0], top + points.coordinate[1][0]));
     }
     return rays;
