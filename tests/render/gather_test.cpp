@@ -151,10 +151,12 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     double sum = 0, squares = 0;
     for (int i = 0; i < samples; ++i) {
         const auto words = random_words(5, static_cast<std::uint64_t>(i));
-        const auto place = light.sample(x, n, unit_float(words[0]), unit_float(words[1]), unit_float(words[2]));
+        const auto [place, density] =
+            light.sample(x, n, unit_float(words[0]), unit_float(words[1]), unit_float(words[2]));
         ASSERT_NE(place.patch, none);
         EXPECT_EQ(light.place(place.patch, geometry[place.patch].point(place.parameters)).leaf, place.leaf);
-        const double area = 1 / static_cast<double>(light.density(place, x, n));
+        EXPECT_FLOAT_EQ(light.density(place, x, n), density);
+        const double area = 1 / static_cast<double>(density);
         sum += area, squares += area * area;
     }
     const double mean = sum / samples, error = std::sqrt((squares / samples - mean * mean) / samples);
@@ -170,7 +172,7 @@ TEST(KnownLight, LeavesEvenLightToDirections) {
     const std::vector<Rgb> irradiance(forest.size(), Rgb(1));
     KnownLight light(scene, geometry, forest, irradiance);
     light.sample_brighter_than(3);
-    EXPECT_EQ(light.sample({0.5f, 1, 0}, {0, 0, 1}, 0.5, 0.5f, 0.5f).patch, none);
+    EXPECT_EQ(light.sample({0.5f, 1, 0}, {0, 0, 1}, 0.5, 0.5f, 0.5f).place.patch, none);
     EXPECT_EQ(light.density({0, 0, {0.5f, 0.5f}}, {0.5f, 1, 0}, {0, 0, 1}), 0);
 }
 

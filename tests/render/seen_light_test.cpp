@@ -60,8 +60,10 @@ struct House {
         with_known_light(scene, irradiance, points, [&](const KnownLight& light) {
             for (std::uint64_t i = 0; i < points.size(); ++i) {
                 const auto words = random_words(8, i);
-                const KnownLight::Place place = light.sample(points[i].position, points[i].normal, unit_float(words[0]),
-                                                             unit_float(words[1]), unit_float(words[2]));
+                const KnownLight::Place place = light
+                                                    .sample(points[i].position, points[i].normal, unit_float(words[0]),
+                                                            unit_float(words[1]), unit_float(words[2]))
+                                                    .place;
                 found += place.patch >= spot && place.patch < spot + 4;
             }
         });

@@ -45,7 +45,7 @@ struct SeenPatch {
     double solid_angle() const { return parts[0].area + parts[1].area; }
 
     SeenPatch(const PatchGeometry& patch, const V3f& x) {
-        constexpr float near = 3;       // radii; beyond, squared distances differ by less than a factor of (4 / 2)^2
+        constexpr float near = 2;       // radii; beyond, squared distances differ by less than a factor of (3 / 1)^2
         constexpr double least = 1e-5;  // [sr]; rounding of float vertices
         const PatchGeometry::Shape& shape = patch.shape();
         const float radius2 = (shape.edge_u.length2() + shape.edge_v.length2()) / 2;  // of a sphere around it, at most

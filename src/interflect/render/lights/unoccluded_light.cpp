@@ -12,6 +12,8 @@ namespace interflect::detail {
 
 namespace {
 
+constexpr float pi = std::numbers::pi_v<float>;
+
 /// Beyond this number, the sum would take longer than the shadow rays.
 constexpr std::size_t max_sources = 64;
 
@@ -78,12 +80,54 @@ float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f&
     return std::abs(sum) / 2;
 }
 
+void UnoccludedLight::PatchGroup::add(const Scene& scene, std::uint32_t patch) {
+    const Patch& p = scene.patches[patch];
+    for (std::size_t c = 0; c < x.size(); ++c) {
+        const std::size_t last = static_cast<std::size_t>(p.vertex_count()) - 1;
+        const V3f& vertex = scene.vertices[p.vertices[std::min(c, last)]];
+        x[c][count] = vertex.x, y[c][count] = vertex.y, z[c][count] = vertex.z;
+    }
+    patches[count++] = patch;
+}
+
+/// Lambert's formula, as polygon_irradiance().
+UnoccludedLight::PatchGroup::Irradiance UnoccludedLight::PatchGroup::at(const V3f& p, const V3f& n) const {
+    constexpr float least_cosine = -0.9f;     // between corners; below, rounding shows
+    std::array<Numbers, 4> to_x, to_y, to_z;  // unit vectors to the corners
+    Irradiance found;
+    found.is_exact.fill(1);
+    for (std::size_t c = 0; c < x.size(); ++c)
+        for (std::size_t i = 0; i < size; ++i) {
+            const float dx = x[c][i] - p.x, dy = y[c][i] - p.y, dz = z[c][i] - p.z;
+            found.is_exact[i] &= n.x * dx + n.y * dy + n.z * dz > 0;
+            const float scale = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
+            to_x[c][i] = dx * scale, to_y[c][i] = dy * scale, to_z[c][i] = dz * scale;
+        }
+    Numbers sum{};
+    for (std::size_t c = 0; c < x.size(); ++c) {
+        const Numbers &ax = to_x[c], &ay = to_y[c], &az = to_z[c];
+        const std::size_t next = (c + 1) % x.size();
+        const Numbers &bx = to_x[next], &by = to_y[next], &bz = to_z[next];
+        for (std::size_t i = 0; i < size; ++i) {
+            const float cosine = ax[i] * bx[i] + ay[i] * by[i] + az[i] * bz[i], a = std::min(1.0f, std::abs(cosine));
+            const float height = n.x * (ay[i] * bz[i] - az[i] * by[i]) + n.y * (az[i] * bx[i] - ax[i] * bz[i]) +
+                                 n.z * (ax[i] * by[i] - ay[i] * bx[i]);
+            const float acute = angle_over_sine(a), obtuse = pi / std::sqrt((1 - a) * (1 + a)) - acute;
+            found.is_exact[i] &= cosine > least_cosine;
+            sum[i] += height * (cosine >= 0 ? acute : obtuse);
+        }
+    }
+    for (std::size_t i = 0; i < size; ++i) found.of_unit_radiance[i] = std::abs(sum[i]) / 2;
+    return found;
+}
+
 UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry)
     : scene_(scene), geometry_(geometry) {
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
         const Material& material = scene.materials[scene.patches[i].material];
         if (!(channel_sum(material.exitance) > 0)) continue;
-        patches_.push_back(i);
+        if (patch_count_++ % PatchGroup::size == 0) groups_.emplace_back();
+        groups_.back().add(scene, i);
         has_texture_ = has_texture_ || material.exitance_texture != none;
     }
     for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i) {
@@ -94,7 +138,7 @@ UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeomet
 }
 
 bool UnoccludedLight::has(SourceKind kind) const {
-    if (kind == SourceKind::patches) return !has_texture_ && patches_.size() <= max_sources;
+    if (kind == SourceKind::patches) return !has_texture_ && patch_count_ <= max_sources;
     return (kind == SourceKind::lamps ? lamps_ : suns_).size() <= max_sources;
 }
 
@@ -108,16 +152,24 @@ Rgb UnoccludedLight::at(SourceKind kind, const V3f& x, const V3f& n, float u, fl
 
 Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n) const {
     Rgb irradiance(0);
-    for (const std::uint32_t i : patches_) {
-        const Patch& patch = scene_.patches[i];
-        std::array<V3f, 4> vertices;
-        const auto count = static_cast<std::size_t>(patch.vertex_count());
-        for (std::size_t k = 0; k < count; ++k) vertices[k] = scene_.vertices[patch.vertices[k]];
-        if (geometry_[i].normal().dot(x - vertices[0]) <= 0) continue;
-        irradiance += scene_.materials[patch.material].exitance *
-                      (polygon_irradiance(std::span(vertices).first(count), x, n) / std::numbers::pi_v<float>);
+    for (const PatchGroup& group : groups_) {
+        const PatchGroup::Irradiance found = group.at(x, n);
+        for (std::size_t i = 0; i < group.count; ++i) {
+            const std::uint32_t patch = group.patches[i];
+            const PatchGeometry& geometry = geometry_[patch];
+            if (geometry.normal().dot(x - geometry.shape().origin) <= 0) continue;
+            const float of_unit_radiance = found.is_exact[i] ? found.of_unit_radiance[i] : by_patch(patch, x, n);
+            irradiance += scene_.materials[scene_.patches[patch].material].exitance * (of_unit_radiance / pi);
+        }
     }
     return irradiance;
+}
+
+float UnoccludedLight::by_patch(std::uint32_t patch, const V3f& x, const V3f& n) const {
+    std::array<V3f, 4> vertices;
+    const auto count = static_cast<std::size_t>(scene_.patches[patch].vertex_count());
+    for (std::size_t k = 0; k < count; ++k) vertices[k] = scene_.vertices[scene_.patches[patch].vertices[k]];
+    return polygon_irradiance(std::span(vertices).first(count), x, n);
 }
 
 }  // namespace interflect::detail

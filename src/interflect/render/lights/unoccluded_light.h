@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,6 +22,8 @@ class UnoccludedLight {
 
     /// Whether the sources of a kind are few. Emitting patches must be without texture.
     bool has(SourceKind kind) const;
+    /// Whether at() uses u and v.
+    bool samples_sources() const { return !lamps_.empty() || !suns_.empty(); }
 
     /// Returns the irradiance at x on a surface with normal n [as H]: exact for emitting patches (Lambert's formula for
     /// polygons), points and suns above the horizon. For other luminaires it is an unbiased estimate from 16 stratified
@@ -29,11 +32,30 @@ class UnoccludedLight {
     Rgb at(SourceKind kind, const V3f& x, const V3f& n, float u, float v) const;
 
   private:
+    /// Emitting patches side by side: loops over them become vector code.
+    struct PatchGroup {
+        static constexpr std::size_t size = 8;
+        using Numbers = std::array<float, size>;
+
+        std::array<Numbers, 4> x{}, y{}, z{};  // corners; triangles repeat the last
+        std::array<std::uint32_t, size> patches{};
+        std::size_t count = 0;
+
+        void add(const Scene& scene, std::uint32_t patch);
+        struct Irradiance {
+            Numbers of_unit_radiance;
+            std::array<std::int32_t, size> is_exact;  // not below the horizon in part, nor near a long edge
+        };
+        Irradiance at(const V3f& p, const V3f& n) const;
+    };
     Rgb by_patches(const V3f& x, const V3f& n) const;
+    float by_patch(std::uint32_t patch, const V3f& x, const V3f& n) const;
 
     const Scene& scene_;
     std::span<const PatchGeometry> geometry_;
-    std::vector<std::uint32_t> patches_, lamps_, suns_;
+    std::vector<PatchGroup> groups_;
+    std::size_t patch_count_ = 0;
+    std::vector<std::uint32_t> lamps_, suns_;
     bool has_texture_ = false;
 };
 

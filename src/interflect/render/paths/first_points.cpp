@@ -32,11 +32,11 @@ Rgb coefficient(const ShadowRaySums& similar, const ShadowRaySums& all) {
 
 const FirstPoints::Group& FirstPoints::group_of(const Path& path) {
     constexpr float same_cosine = 0.999f;
-    std::size_t i = groups_.size();
-    for (; i > 0 && groups_[i - 1].half == path.half; --i)
+    const std::uint32_t batch = path.half / 2;
+    for (std::size_t i = groups_.size(); i > 0 && groups_[i - 1].batch == batch; --i)
         if (groups_[i - 1].patch == path.patch && groups_[i - 1].normal.dot(path.normal) >= same_cosine)
             return groups_[i - 1];
-    Group& group = groups_.emplace_back(Group{path.half, path.patch, path.normal});
+    Group& group = groups_.emplace_back(Group{batch, path.patch, path.normal});
     const IndirectField* const field = plan_.hybrid->field;
     if (!field) {
         group.lookup.is_found = true;

@@ -36,8 +36,8 @@ class FirstPoints {
         bool is_found = false;
         std::uint32_t guide = none;  ///< Record whose guide sees the sky.
     };
-    /// Adds the indirect light of the path's vertex to `light`. Points of a half batch on a patch share the lookup of
-    /// the first of them.
+    /// Adds the indirect light of the path's vertex to `light`. Points of a batch on a patch share the lookup of the
+    /// first of them.
     Lookup add_indirect(const Path& path, PathLight& light);
 
     /// Adds the path's vertex with the unoccluded light of the kinds that have it. Returns its index.
@@ -65,7 +65,7 @@ class FirstPoints {
         std::array<Source, source_kinds.size()> sources{};
     };
     struct Group {
-        std::uint32_t half = none, patch = none;
+        std::uint32_t batch = none, patch = none;
         V3f normal{0, 0, 0};
         Lookup lookup{};
         Rgb irradiance{0, 0, 0};

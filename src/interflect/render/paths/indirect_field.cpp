@@ -28,13 +28,14 @@ constexpr std::uint32_t record_paths_per_place = 2;
 /// and all irradiance E at the record, but at least min_share_of_mean of the mean E. This minimises the squared error
 /// of the picture per ray (Neyman allocation): a record affects all pixels in its reach. Bakes are seen from anywhere:
 /// there the geometric mean keeps a sunlit ground from hiding the noise of rooms, and no error exceeds max_baked_error.
-constexpr float groups_per_deviation = 11, min_share_of_mean = 0.25f;
+constexpr float groups_per_deviation = 8, min_share_of_mean = 0.25f;
 constexpr float max_baked_error = 0.1f;  // standard error of a record
 /// Reach of a record, relative to the harmonic mean length of its rays; limits in spacings of the points. With 0.35 and
 /// 512 paths, errors are 1.1 to 1.8 times as large.
-constexpr float reach_over_length = 0.15f, min_spacings = 3, max_spacings = 100;
-/// Difference between a record and the fit of its neighbours that halves their reach, over all irradiance.
-constexpr float max_residual = 0.1f;
+constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
+/// Difference between a record and the fit of its neighbours that halves their reach, over all irradiance; least reach
+/// after that.
+constexpr float max_residual = 0.1f, min_halved_spacings = 2;
 /// Squared error of interpolation at a point over that at a record without its own value: errors fall at least in
 /// proportion to the distance, and a point is half as far from the next record as that record from its neighbours.
 constexpr float bias_of_points = 0.25f;
@@ -219,6 +220,14 @@ void IndirectField::arrange_tree() {
         tree_[i] = {{r.position - V3f(r.reach), r.position + V3f(r.reach)}, i};
     }
     arrange_box_tree(tree_);
+    reaches_.resize(records_.size());
+    for (std::uint32_t i = 0; i < records_.size(); ++i) {
+        const Record& r = records_[tree_[i].index];
+        reaches_[i] = {
+            r.position,    r.normal, r.patch, 1 / (r.reach * r.reach), 1 / (r.reach_elsewhere * r.reach_elsewhere),
+            tree_[i].index};
+        tree_[i].index = i;
+    }
 }
 
 void IndirectField::pool_variances() {
@@ -267,7 +276,7 @@ void IndirectField::shorten_reaches(std::size_t first_new) {
     for (std::size_t i = 0; i < records_.size(); ++i) {
         Record& r = records_[i];
         if (shortens[i] == 0) continue;
-        r.reach = std::max(r.reach / 2, std::min(r.reach, min_spacings * r.spacing));
+        r.reach = std::max(r.reach / 2, std::min(r.reach, min_halved_spacings * r.spacing));
         r.reach_elsewhere = std::min(r.reach_elsewhere, r.reach);
     }
     arrange_tree();
@@ -333,14 +342,15 @@ float IndirectField::distance_to_contact(const V3f& x, float max_distance) const
     return nearest;
 }
 
-float IndirectField::Record::relative_distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const {
+float IndirectField::Reach::relative_distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const {
     constexpr float min_cosine = 0.97f;  // between normals at the record itself: 14 degrees
     constexpr float height_factor = 10;  // distances along the normal count more: parallel surfaces differ
     const float cosine = normal.dot(n);
     if (cosine <= min_cosine) return 1;
     const V3f d = position - x;
-    const float max_distance = of_patch == patch ? reach : reach_elsewhere, height = height_factor * d.dot(n);
-    return (d.length2() + height * height) / (max_distance * max_distance) + (1 - cosine) / (1 - min_cosine);
+    const float height = height_factor * d.dot(n);
+    return (d.length2() + height * height) * (of_patch == patch ? inverse_square : inverse_square_elsewhere) +
+           (1 - cosine) / (1 - min_cosine);
 }
 
 IndirectField::Fit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch, std::uint32_t omitted) const {

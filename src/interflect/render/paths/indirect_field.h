@@ -48,8 +48,8 @@ class IndirectField {
         visit_box_tree(
             std::span<const Boxed>(tree_), [&](const Imath::Box3f& box) { return box.intersects(x); },
             [&](std::uint32_t i) {
-                const float distance2 = records_[i].relative_distance2(x, n, patch);
-                if (distance2 < 1) visit(i, distance2);
+                const float distance2 = reaches_[i].relative_distance2(x, n, patch);
+                if (distance2 < 1) visit(reaches_[i].record, distance2);
             });
     }
 
@@ -69,6 +69,14 @@ class IndirectField {
         float squared_bias = 0;     // of interpolation near the record, mean channel
 
         float variance() const { return group_variance / static_cast<float>(gathered.batches); }
+    };
+    /// What a lookup reads of a record out of reach.
+    struct Reach {
+        V3f position, normal;
+        std::uint32_t patch = none;
+        float inverse_square = 0, inverse_square_elsewhere = 0;  // of Record::reach and reach_elsewhere [1/m^2]
+        std::uint32_t record = 0;
+
         /// Squared distance relative to the reach; 1 or more beyond it.
         float relative_distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const;
     };
@@ -107,7 +115,8 @@ class IndirectField {
     std::vector<Contact> contacts_;
     std::vector<Boxed> contact_tree_;
     std::vector<Record> records_;
-    std::vector<Boxed> tree_;  // boxes of the records' reach
+    std::vector<Boxed> tree_;  // boxes of reaches_, which are in the same order
+    std::vector<Reach> reaches_;
     std::int64_t rays_ = 0;
 };
 

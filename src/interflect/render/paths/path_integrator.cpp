@@ -178,9 +178,10 @@ void PathIntegrator::light_first_point(Path& path) {
     sampling.has_patches = !unoccluded.has(SourceKind::patches);
     sampling.directions = sampling.has_patches || has_sky ? 1.0f / paths_per_direction : 0;
     // Compute unoccluded light; shadow rays estimate the occlusion
-    const std::uint64_t key = keys_[path.half];
-    const std::uint32_t point =
-        first_points_.add(path, light_sample(key, vertex_, LightStream::unoccluded, path.point));
+    const LightSample numbers = unoccluded.samples_sources()
+                                    ? light_sample(keys_[path.half], vertex_, LightStream::unoccluded, path.point)
+                                    : LightSample{};
+    const std::uint32_t point = first_points_.add(path, numbers);
     for (const SourceKind kind : source_kinds) {
         const std::uint32_t rays = sources.useful_rays(kind, sampling.rays);
         const std::uint32_t first_point = unoccluded.has(kind) ? point : none;

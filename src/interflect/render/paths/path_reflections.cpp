@@ -14,13 +14,13 @@ namespace {
 /// At the first vertex.
 constexpr std::uint32_t virtual_shadow_rays = 4;
 
-/// Density of KnownLight::sample() [1/sr], per path. @param distance2  [m^2]
-float density_towards(const PathPlan& plan, const KnownLight::Place& place, const Path& path, const V3f& direction,
+/// Density of directions towards places of KnownLight [1/sr], per path; 0 at its back.
+/// @param of_place   [1/m^2]
+/// @param distance2  [m^2]
+float density_towards(const PathPlan& plan, const KnownLight::Place& place, float of_place, const V3f& direction,
                       float distance2) {
     const float cosine = -plan.scene.geometry[place.patch].normal().dot(direction);
-    if (!(cosine > 0)) return 0;
-    return plan.known->density(place, path.position, path.normal) * distance2 /
-           (cosine * static_cast<float>(plan.paths_per_place));
+    return cosine > 0 ? of_place * distance2 / (cosine * static_cast<float>(plan.paths_per_place)) : 0;
 }
 
 }  // namespace
@@ -31,7 +31,8 @@ bool PathIntegrator::end_at_known_light(const Hit& hit, const V3f& x, const V3f&
     const KnownLight::Place place = plan_.known->place(hit.patch, x);
     const float distance2 = distance * distance;
     if (!plan_.known->is_far(place, distance2)) return false;
-    const float light_density = density_towards(plan_, place, path, direction, distance2);
+    const float light_density =
+        density_towards(plan_, place, plan_.known->density(place, path.position, path.normal), direction, distance2);
     const float weight = balance(path.normal.dot(direction) / std::numbers::pi_v<float>, light_density);
     add(path.half, vertex_, path.throughput * plan_.known->reflected_radiance(place) * weight);
     return true;
@@ -41,15 +42,14 @@ void PathIntegrator::connect_to_known_light(const Path& path) {
     if (path.point % plan_.paths_per_place != 0) return;
     const LightSample numbers =
         light_sample(keys_[path.half], vertex_, LightStream::reflections, path.point / plan_.paths_per_place);
-    const KnownLight::Place place =
-        plan_.known->sample(path.position, path.normal, numbers.choice, numbers.u, numbers.v);
+    const auto [place, density] = plan_.known->sample(path.position, path.normal, numbers.choice, numbers.u, numbers.v);
     if (place.patch == none) return;
     const V3f to_light = plan_.scene.geometry[place.patch].point(place.parameters) - path.position;
     const float distance2 = to_light.length2();
     if (!(distance2 > 0) || !plan_.known->is_far(place, distance2)) return;
     const V3f direction = to_light / std::sqrt(distance2);
     const float direction_density = path.normal.dot(direction) / std::numbers::pi_v<float>;
-    const float light_density = density_towards(plan_, place, path, direction, distance2);
+    const float light_density = density_towards(plan_, place, density, direction, distance2);
     if (!(direction_density > 0 && light_density > 0)) return;
     const float weight = balance(light_density, direction_density);
     shadow_rays_.add({path.position, direction}, place.patch, 0);

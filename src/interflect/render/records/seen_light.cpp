@@ -80,7 +80,8 @@ std::vector<float> seen_shares(const KnownLight& light, const TracedScene& scene
             const auto words = random_words(mix(key, 1), i), places = random_words(mix(key, 2), i);
             const SurfacePoint& p = random_one(points, words[0]);
             const KnownLight::Place place =
-                light.sample(p.position, p.normal, unit_float(words[1]), unit_float(places[0]), unit_float(places[1]));
+                light.sample(p.position, p.normal, unit_float(words[1]), unit_float(places[0]), unit_float(places[1]))
+                    .place;
             if (place.patch == none) continue;
             const V3f to = scene.geometry[place.patch].point(place.parameters) - p.position;
             if (!(p.normal.dot(to) > 0 && scene.geometry[place.patch].normal().dot(to) < 0)) continue;

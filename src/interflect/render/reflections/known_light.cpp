@@ -45,9 +45,9 @@ Rgb KnownLight::reflected_radiance(const Place& place) const {
            std::numbers::pi_v<float>;
 }
 
-KnownLight::Place KnownLight::sample(const V3f& x, const V3f& n, double choice, float u, float v) const {
+KnownLight::Sample KnownLight::sample(const V3f& x, const V3f& n, double choice, float u, float v) const {
     constexpr float below_one = 1 - 0x1p-24f;
-    const std::uint32_t patch = tree_.choose(x, n, choice).index;
+    const auto [patch, probability] = tree_.choose(x, n, choice);
     if (patch == none) return {};
     const PatchGeometry& geometry = geometry_[patch];
     std::uint32_t e = patch;
@@ -62,13 +62,13 @@ KnownLight::Place KnownLight::sample(const V3f& x, const V3f& n, double choice, 
         u = std::clamp(rest / excess_[e], 0.0f, below_one);  // uniform in the child
         cell = cell.child(k, geometry.is_triangle());
     }
-    return {patch, e, geometry.uniform_parameters(u, v, {cell.u, cell.v}, cell.size)};
+    const Place place{patch, e, geometry.uniform_parameters(u, v, {cell.u, cell.v}, cell.size)};
+    return {place, probability * density_in_patch(place)};
 }
 
 float KnownLight::density(const Place& place, const V3f& x, const V3f& n) const {
-    const float of_patch = excess_[place.patch];
-    if (!(of_patch > 0)) return 0;
-    return tree_.probability(place.patch, x, n) * (excess_[place.leaf] / of_patch) / forest_.area(place.leaf);
+    if (!(excess_[place.leaf] > 0)) return 0;
+    return tree_.probability(place.patch, x, n) * density_in_patch(place);
 }
 
 }  // namespace interflect::detail

@@ -45,14 +45,23 @@ class KnownLight {
         return forest_.area(place.leaf) <= max_solid_angle * distance2;
     }
 
+    struct Sample {
+        Place place;
+        float density = 0;  ///< [1/m^2]
+    };
     /// Samples a bright point that may illuminate x on a surface with normal n; its patch may be `none`.
     /// @param choice  Selects the patch; in (0, 1).
     /// @param u, v    In [0, 1).
-    Place sample(const V3f& x, const V3f& n, double choice, float u, float v) const;
+    Sample sample(const V3f& x, const V3f& n, double choice, float u, float v) const;
     /// Density of sample() [1/m^2].
     float density(const Place& place, const V3f& x, const V3f& n) const;
 
   private:
+    /// Of sample() in a patch [1/m^2].
+    float density_in_patch(const Place& place) const {
+        return excess_[place.leaf] / (excess_[place.patch] * forest_.area(place.leaf));
+    }
+
     const Scene& scene_;
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
