@@ -16,13 +16,13 @@ using Clock = std::chrono::steady_clock;
 const Clock::time_point process_start = Clock::now();
 
 /// Reduction of width and height, and exponent of the time as a function of the number of pixels. Measured: hybrid
-/// shading of 256 times the pixels takes 62 to 82 times the time in three offices and a maze, since records are sparser
-/// than pixels; smooth shading of 16 times the pixels takes 5 times the time, since it also prepares elements.
+/// shading of 64 times the pixels traces 23 to 31 times the rays in three offices and a corridor, since records are
+/// sparser than pixels; smooth shading of 16 times the pixels takes 5 times the time, since it also prepares elements.
 struct Growth {
     int reduction;
     double exponent;
 };
-constexpr Growth of_hybrid{16, 0.76}, of_gathering{16, 1}, of_elements{4, 0.6};
+constexpr Growth of_hybrid{8, 0.81}, of_gathering{16, 1}, of_elements{4, 0.6};
 
 constexpr double writing = 0.5e-6;  // [s] per pixel: exposure, tone mapping and compression
 
@@ -47,9 +47,18 @@ double reduce(int& width, int& height, int reduction) {
 
 double seconds_of_process() { return seconds_since(process_start); }
 
+int DrawingTime::samples_within(double seconds, int most) const {
+    // Records take about half of the least time.
+    constexpr double samples_per_least = 2 * least_samples;
+    constexpr int usual = 8;  // before their number follows the noise
+    const int samples =
+        least_samples + static_cast<int>(std::min<double>(most, samples_per_least * (seconds / least - 1)));
+    return samples < usual ? std::max(least_samples, samples) : most;
+}
+
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, bool filters) {
-    constexpr double shortest = 1e-9;  // [s]; ends after two batches per pixel
+    constexpr double shortest = 1e-9;  // [s]; ends after least_samples
     CrewLight crew_light(scene, &solution);
     const double sending = seconds_of([&] { crew_light.start(); });
     Rendering traced;
@@ -62,10 +71,12 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
     };
     PictureOptions one = options;
     one.time = shortest;
+    one.samples = DrawingTime::least_samples;
     one.width = one.height = 1;
     const double preparation = seconds_to_draw(one);
     PictureOptions small = options;
     small.time = shortest;
+    small.samples = DrawingTime::least_samples;
     const Growth& growth = options.shading == Shading::hybrid ? of_hybrid : of_gathering;
     const double ratio = reduce(small.width, small.height, growth.reduction);
     const double drawing = seconds_to_draw(small);
@@ -85,7 +96,8 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
 }
 
 double reserved_for(const DrawingTime& predicted, bool is_refined, double left) {
-    const double drawing = is_refined ? std::max(left / 2, predicted.least) : predicted.least;
+    constexpr double share_of_paths = 2.0 / 3;
+    const double drawing = is_refined ? std::max(share_of_paths * left, predicted.least) : predicted.least;
     return std::min(largest_drawing_share * left, drawing + predicted.finishing);
 }
 

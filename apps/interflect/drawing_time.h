@@ -9,14 +9,17 @@ double seconds_of_process();
 
 /// Predicted duration of drawing a picture [s].
 struct DrawingTime {
-    double least = 0;      ///< For two batches of paths per pixel.
+    double least = 0;      ///< For least_samples per pixel.
     double finishing = 0;  ///< Filtering noise and writing.
 
+    static constexpr int least_samples = 4;
     double total() const { return least + finishing; }
+    /// Samples per pixel of hybrid shading that take this time [s]; `most` if as many as usual do.
+    int samples_within(double seconds, int most) const;
 };
 
-/// Predicts the time of a picture from a smaller one. Within 20% for hybrid shading of 1280 x 720 pixels in three
-/// offices and a maze.
+/// Predicts the time of a picture from a smaller one. Within 25% for hybrid shading of 960 x 540 pixels in three
+/// offices and a corridor.
 /// @param options  Of the full picture.
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, bool filters);
@@ -26,8 +29,8 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
 /// Drawing takes at most this share of the time that is left.
 constexpr double largest_drawing_share = 0.8;
 
-/// Returns the part of `left` [s] that solving leaves to drawing: half of it for paths, whose noise more samples
-/// reduce, within the limits of the prediction.
+/// Returns the part of `left` [s] that solving leaves to drawing: for paths, whose noise more samples reduce, two
+/// thirds, as in the default run of an office; at least the predicted time.
 double reserved_for(const DrawingTime& predicted, bool is_refined, double left);
 
 }  // namespace interflect::command

@@ -298,7 +298,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     if (is_limited) {
         const double left = std::max(shortest_time, options.seconds_left());
         seconds_to_preview = std::min(seconds_to_preview, left / 10);
-        solve_options.limits.time = left / 2;  // until the time of drawing is known
+        solve_options.limits.time = left / 3;  // until the time of drawing is known
         if (options.has_default_samples && traces_paths(options.picture.shading))
             options.picture.samples = options.picture.max_samples;  // until the time is over
     }
@@ -322,6 +322,8 @@ void run_solution(RenderArguments& options, PendingFile& output) {
 
     if (is_limited && planned)
         options.picture.time = std::max(shortest_time, options.seconds_left() - planned->finishing);
+    if (is_limited && planned && options.has_default_samples && options.picture.shading == Shading::hybrid)
+        options.picture.samples = planned->samples_within(options.picture.time, options.picture.max_samples);
     const Picture picture = draw_solution(solved, ray_caster, view, options);
     if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);

@@ -98,7 +98,7 @@ class PathPicture {
     static std::uint32_t samples_of_half(int samples) { return static_cast<std::uint32_t>((samples + 1) / 2); }
 
     /// Samples of each half that every pixel gets before the numbers follow the noise.
-    std::uint32_t first_samples() const { return is_limited(options_) ? 2 : 4; }
+    std::uint32_t first_samples() const { return is_limited(options_) && !plan_.hybrid ? 2 : 4; }
 
     /// Samples of each half in a batch, a power of two. In hybrid shading, batches continue two sequences, and any
     /// number will do.
