@@ -91,7 +91,8 @@ TEST(Gather, SameSeedSameBits) {
     EXPECT_EQ(a.image.pixels, b.image.pixels);
 }
 
-/// Two batches of two samples for each pixel, however short the time is; with a long time, all samples.
+/// Two batches of two samples for each pixel, four in hybrid shading, however short the time is; with a long time, all
+/// samples.
 TEST(PictureOptions, TimeLimitsAllButTwoBatches) {
     const Scene scene = furnished_room();
     const RayCaster ray_caster(scene);
@@ -110,13 +111,14 @@ TEST(PictureOptions, TimeLimitsAllButTwoBatches) {
         const Rendering shortest = render(scene, solution, ray_caster, into_corner, options);
         EXPECT_EQ(least(shortest), 2u);
         EXPECT_EQ(most(shortest), 2u);
-        EXPECT_EQ(shortest.paths, 20 * 15 * 4);
+        const unsigned samples = shading == Shading::hybrid ? 4 : 2;
+        EXPECT_EQ(shortest.paths, 20 * 15 * 2 * samples);
         EXPECT_FALSE(shortest.interrupted);
         options.time = 1e6;
         const Rendering longest = render(scene, solution, ray_caster, into_corner, options);
         options.time = PictureOptions().time;
         const Rendering unlimited = render(scene, solution, ray_caster, into_corner, options);
-        EXPECT_EQ(most(longest), 32u);
+        EXPECT_EQ(most(longest), 64 / samples);
         EXPECT_NEAR(mean_of(longest.image) / mean_of(unlimited.image), 1, 0.01);
         options.time = 0;
         EXPECT_THROW(render(scene, solution, ray_caster, into_corner, options), InputError);

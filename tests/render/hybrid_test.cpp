@@ -363,6 +363,21 @@ TEST(Hybrid, StatesTheErrorOfRareLight) {
     EXPECT_NEAR(relative / relative_to_surroundings(variance, mean, 96), 1, 0.4);
 }
 
+/// A lamp that covers parts of four pixels is a thousand times brighter than the walls. The pixels at its edges are
+/// about as wrong as they are bright, and all others exact. Seen to fail (0.9) when only the pixels around are the
+/// scale.
+TEST(Hybrid, StatesTheErrorOfASmallLampRelativeToTheLamp) {
+    Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0), Rgb(10)}});
+    const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(10'000));
+    add_rectangle(scene, {3.99f, 1.52f, 1.27f}, {0, 0, 0.06f}, {0, 0.06f, 0}, lamp);
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.limits = {.rays = 100'000}});
+    const View view{"lamp", {0.5, 1.5, 1.25}, {4, 1.5, 1.25}, {0, 0, 1}, 60};
+    const Rendering seen = render(scene, solution, ray_caster, view, {.width = 33, .height = 33, .samples = 16});
+    EXPECT_GT(mean_of(seen.image), 1.2 * 10 / std::numbers::pi);
+    EXPECT_LT(seen.relative_error, 2.0 / 33);  // an error of 100% in four of 33 x 33 pixels
+}
+
 /// Without occluders, direct light is exact in every pixel.
 TEST(Hybrid, HasNoNoiseInDirectLightWithoutShadows) {
     Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0.5f)}});

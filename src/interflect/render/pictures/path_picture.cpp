@@ -60,8 +60,9 @@ class PathPicture {
         for (double factor = 1; !is_over(); factor *= 2) {
             const bool more = trace_round(wanted(needed, factor, most));
             const bool has_target = options_.until > 0;
-            if (!more || (has_target && error_of_picture() <= options_.until)) break;
+            if (has_target && error_of_picture() <= options_.until) break;
             if (!has_target && !is_limited(options_)) break;
+            if (!more && factor >= most) break;  // all have the most samples, or no noise
         }
         if (!stopped()) report(1);
     }

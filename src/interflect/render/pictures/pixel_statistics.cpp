@@ -116,10 +116,13 @@ RgbD PixelStatistics::record_error() const {
 double relative_error(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
     const auto has_error = [](const PixelStatistics& p) { return p.has_error(); };
     if (!std::all_of(pixels.begin(), pixels.end(), has_error)) return std::numeric_limits<double>::infinity();
-    const std::vector<double> scale = error_scale(pixels, options);
+    const std::vector<double> around = error_scale(pixels, options);
     double sum = 0;
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        if (scale[i] > 0) sum += mean_channel(pixels[i].squared_error()) / (scale[i] * scale[i]);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        // Lamps of a few pixels are brighter than all around; seen directly, they are not rare.
+        const double scale = std::max(around[i], mean_channel(pixels[i].light().emitted));
+        if (scale > 0) sum += mean_channel(pixels[i].squared_error()) / (scale * scale);
+    }
     return std::sqrt(sum / static_cast<double>(pixels.size()));
 }
 
