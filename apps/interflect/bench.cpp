@@ -142,6 +142,7 @@ Json figures_of(const Workload& work, const std::vector<Measurement>& rounds) {
 Json bench_solver(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& solve_options, int rounds) {
     const Workload work(scene, ray_caster, solve_options);
     std::vector<Measurement> measured;
+    measured.reserve(static_cast<std::size_t>(rounds));
     for (int round = 0; round < rounds; ++round) measured.push_back(measure(scene, ray_caster, work));
     return figures_of(work, measured);
 }

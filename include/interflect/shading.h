@@ -88,6 +88,6 @@ std::vector<Shading> available_shadings(LightUse use);
 int require_samples(Shading shading, LightUse use, int samples = 0);
 
 /// Returns the shading with this label. @throws InputError that lists the available ones if it is not among them.
-Shading find_shading(const std::string& label, LightUse use);
+Shading find_shading(const std::string& text, LightUse use);
 
 }  // namespace interflect

@@ -364,7 +364,7 @@ TEST(Hybrid, StatesTheErrorOfRareLight) {
 }
 
 /// A lamp that covers parts of four pixels is a thousand times brighter than the walls. The pixels at its edges are
-/// about as wrong as they are bright, and all others exact. Seen to fail (0.9) when only the pixels around are the
+/// about as wrong as they are bright, and all others exact. Seen to fail (59%) when only the pixels around are the
 /// scale.
 TEST(Hybrid, StatesTheErrorOfASmallLampRelativeToTheLamp) {
     Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0), Rgb(10)}});

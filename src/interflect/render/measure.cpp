@@ -73,10 +73,10 @@ PictureOptions picture_options(const MeasuringOptions& options, std::size_t poin
 
 std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Solution* solution,
                                                    const RayCaster& ray_caster, std::span<const MeasuringPoint> points,
-                                                   const MeasuringOptions& given, const Monitor& monitor) {
-    const PictureOptions options = picture_options(given, points.size());
-    if (needs_solution(options.shading) && !solution)
-        throw InputError(fmt::format("{} shading needs a solution", label(options.shading)));
+                                                   const MeasuringOptions& options, const Monitor& monitor) {
+    const PictureOptions drawing = picture_options(options, points.size());
+    if (needs_solution(drawing.shading) && !solution)
+        throw InputError(fmt::format("{} shading needs a solution", label(drawing.shading)));
     if (points.empty()) return {};
     if (points.size() > std::numeric_limits<int>::max())
         throw InputError(
@@ -92,9 +92,9 @@ std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Sol
 
     const PathStart start{{}, 0, gauges};
     std::optional<KnownIrradiance> known;
-    if (needs_solution(options.shading))
+    if (needs_solution(drawing.shading))
         known.emplace(known_irradiance(scene, *solution->forest, solution->irradiance));
-    const Rendering traced = trace_picture(scene, ray_caster, start, options, monitor, known ? &*known : nullptr);
+    const Rendering traced = trace_picture(scene, ray_caster, start, drawing, monitor, known ? &*known : nullptr);
     std::vector<MeasuredIrradiance> measured(points.size());
     const SampledLight& light = traced.layers.reflected;
     for (std::size_t i = 0; i < points.size(); ++i) {

@@ -21,14 +21,14 @@ PictureOptions with_samples(PictureOptions options) {
 }  // namespace
 
 Rendering detail::render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
-                         std::span<const Rgb> irradiance, const PictureOptions& given, const Monitor& monitor) {
-    if (!needs_solution(given.shading)) return interflect::render(scene, ray_caster, view, given, monitor);
-    const PictureOptions options = with_samples(given);
-    if (!traces_paths(options.shading))
-        return draw_elements(scene, forest, ray_caster, view, irradiance, options, monitor);
+                         std::span<const Rgb> irradiance, const PictureOptions& options, const Monitor& monitor) {
+    if (!needs_solution(options.shading)) return interflect::render(scene, ray_caster, view, options, monitor);
+    const PictureOptions complete = with_samples(options);
+    if (!traces_paths(complete.shading))
+        return draw_elements(scene, forest, ray_caster, view, irradiance, complete, monitor);
     KnownIrradiance known = known_irradiance(scene, forest, irradiance);
-    known.is_interpolated = options.shading == Shading::hybrid;
-    return trace_picture(scene, ray_caster, start_at_camera(view, options, scene.origin), options, monitor, &known);
+    known.is_interpolated = complete.shading == Shading::hybrid;
+    return trace_picture(scene, ray_caster, start_at_camera(view, complete, scene.origin), complete, monitor, &known);
 }
 
 Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
@@ -36,14 +36,14 @@ Rendering render(const Scene& scene, const Solution& solution, const RayCaster& 
     return detail::render(scene, *solution.forest, ray_caster, view, solution.irradiance, options, monitor);
 }
 
-Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& view, const PictureOptions& given,
+Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& view, const PictureOptions& options,
                  const Monitor& monitor) {
-    if (needs_solution(given.shading))
-        throw InputError(fmt::format("{} shading needs a solution", label(given.shading)));
-    const PictureOptions options = with_samples(given);
-    const PathStart start = start_at_camera(view, options, scene.origin);
-    if (options.shading == Shading::instant) return trace_instant_picture(scene, ray_caster, start, options, monitor);
-    return trace_picture(scene, ray_caster, start, options, monitor, nullptr);
+    if (needs_solution(options.shading))
+        throw InputError(fmt::format("{} shading needs a solution", label(options.shading)));
+    const PictureOptions complete = with_samples(options);
+    const PathStart start = start_at_camera(view, complete, scene.origin);
+    if (complete.shading == Shading::instant) return trace_instant_picture(scene, ray_caster, start, complete, monitor);
+    return trace_picture(scene, ray_caster, start, complete, monitor, nullptr);
 }
 
 }  // namespace interflect
