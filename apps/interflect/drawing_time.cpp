@@ -50,7 +50,7 @@ double seconds_of_process() { return seconds_since(process_start); }
 int DrawingTime::samples_within(double seconds, int most) const {
     // Records take about half of the least time.
     constexpr double samples_per_least = 2 * least_samples;
-    constexpr int usual = 8;  // before their number follows the noise
+    constexpr int usual = 8;  // later samples depend on the noise
     const int samples =
         least_samples + static_cast<int>(std::min<double>(most, samples_per_least * (seconds / least - 1)));
     return samples < usual ? std::max(least_samples, samples) : most;

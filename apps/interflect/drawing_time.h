@@ -14,7 +14,8 @@ struct DrawingTime {
 
     static constexpr int least_samples = 4;
     double total() const { return least + finishing; }
-    /// Samples per pixel of hybrid shading that take this time [s]; `most` if as many as usual do.
+    /// Returns the samples per pixel of hybrid shading for a time [s]. If all pixels can get the usual eight, returns
+    /// `most`: then tracing continues until the time is over.
     int samples_within(double seconds, int most) const;
 };
 

@@ -320,10 +320,12 @@ void run_solution(RenderArguments& options, PendingFile& output) {
                                     {.after = seconds_to_preview, .use = plan_or_preview});
     if (traces_paths(options.picture.shading) && !planned && !is_stop_requested()) plan_or_preview(solved.solution);
 
-    if (is_limited && planned)
-        options.picture.time = std::max(shortest_time, options.seconds_left() - planned->finishing);
-    if (is_limited && planned && options.has_default_samples && options.picture.shading == Shading::hybrid)
-        options.picture.samples = planned->samples_within(options.picture.time, options.picture.max_samples);
+    if (is_limited && planned) {
+        PictureOptions& picture = options.picture;
+        picture.time = std::max(shortest_time, options.seconds_left() - planned->finishing);
+        if (options.has_default_samples && picture.shading == Shading::hybrid)
+            picture.samples = planned->samples_within(picture.time, picture.max_samples);
+    }
     const Picture picture = draw_solution(solved, ray_caster, view, options);
     if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);

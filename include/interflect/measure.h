@@ -55,7 +55,10 @@ struct MeasuringOptions {
     Shading shading = Shading::gather;  ///< `gather` or `path`.
     int samples = 0;  ///< Paths per point, >= 2; with a target the minimum. 0: the number in default_samples.
     int max_samples = default_max_samples;  ///< Maximum number of paths per point with a target, >= samples.
-    double until = 0;  ///< Target of each point's standard error, relative to its irradiance, >= 0; 0: no target.
+    /// Target of the root mean square over the points of their standard error, relative to the mean irradiance of
+    /// neighbours in the list or, if larger, of all points; >= 0; 0: no target. A single point stops by its own
+    /// samples, which is slightly biased.
+    double until = 0;
     /// Maximum duration [s], > 0. Every point gets two batches of paths, however long they take.
     double time = std::numeric_limits<double>::infinity();
     std::uint64_t seed = 1;
@@ -269,7 +272,8 @@ inline constexpr std::int64_t max_probes = 1'000'000;
 
 /// Computes probes for the light of a solution. Rays from each probe follow a randomly rotated product quadrature of
 /// the sphere and return the radiance (M + rho H) / pi of the surface hit, smoothly shaded, or of the sky. Panes of
-/// glass are transparent, mirrors black. Unoccluded light sources other than surfaces are added exactly.
+/// glass are transparent, mirrors black. Light sources other than surfaces are sampled at 16 points each; their
+/// penumbrae are approximate.
 /// @param ray_caster  Of the same scene, as is `solution`.
 /// @return            The same bits for any number of threads.
 /// @throws InputError for an option out of range, more than max_probes, or another scene; Stopped if `monitor` ends

@@ -37,7 +37,7 @@ struct PictureOptions {
     /// the minimum. 0: the number in default_samples.
     int samples = 0;
     int max_samples = default_max_samples;  ///< Maximum number of paths per pixel with a target, >= samples.
-    /// Target of each pixel's relative standard error (Rendering::relative_error), >= 0; 0: every pixel gets `samples`
+    /// Target of the picture's relative error (Rendering::relative_error), >= 0; 0: every pixel gets `samples`
     /// paths, in hybrid shading fewer where the error of its neighbours is below 6%.
     double until = 0;
     /// Maximum duration of tracing paths [s], > 0. Every pixel gets two batches, however long they take; later ones are
@@ -55,7 +55,7 @@ struct PictureOptions {
 struct SampledLight {
     Image direct;    ///< Reflected once, in the picture's unit.
     Image indirect;  ///< Reflected more often.
-    /// Estimated variance of the channel mean of `direct` and `indirect`, [y * width + x].
+    /// Estimated variance of `direct` and `indirect`, the mean over the channels, [y * width + x].
     std::vector<float> direct_variance, indirect_variance;
 };
 

@@ -93,7 +93,7 @@ Room room(std::uint64_t seed) {
     return room;
 }
 
-/// Relative deviation of the mean over seeds from that of path tracing, and its standard error.
+/// Relative deviation from path tracing, of the mean over seeds.
 struct Deviation {
     double value = 0, squared_error = 0;
 };

@@ -22,7 +22,8 @@ struct Lightmap {
     int page(std::uint32_t patch) const { return charts[chart_of_patch[patch]].page; }
 };
 
-/// Evaluates light at texel centres or, outside the patches, at the nearest point of a patch.
+/// Evaluates light at texel centres or, outside the patches, at the nearest point of a patch. Direct light of hybrid
+/// shading is the mean over the texel.
 /// @param options  Must include a lightmap.
 Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options);
 

@@ -26,8 +26,9 @@ struct GaugeLight {
 };
 
 /// Irradiance of gauges by hybrid shading, with options.samples paths for each. A quarter suffices where the direct
-/// light of the neighbours in the list has an estimated relative error below options.until or, without it,
-/// hybrid_target. Direct light is unbiased: the number of samples of a gauge does not depend on these samples.
+/// light of the neighbours in the list has an estimated error, relative to all reflected light, below options.until or,
+/// without it, hybrid_target. Direct light is unbiased: the number of samples of a gauge does not depend on these
+/// samples.
 /// @param known  Interpolated.
 /// @return       Per gauge, in rank 0 only; the same bits for any number of threads and ranks. Collective.
 /// @throws Stopped, in all ranks.

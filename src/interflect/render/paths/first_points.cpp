@@ -4,8 +4,8 @@
 #include <numbers>
 #include <optional>
 
+#include "interflect/render/paths/group_mean.h"
 #include "interflect/render/paths/indirect_field.h"
-#include "interflect/render/paths/part_statistics.h"
 #include "interflect/render/paths/sky_guide.h"
 
 namespace interflect::detail {

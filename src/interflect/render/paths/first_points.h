@@ -36,8 +36,8 @@ class FirstPoints {
         bool is_found = false;
         std::uint32_t guide = none;  ///< Record whose guide sees the sky.
     };
-    /// Adds the indirect light of the path's vertex to `light`. Points of a batch on a patch share the lookup of the
-    /// first of them.
+    /// Adds the indirect light of the path's vertex to `light`. Points of a batch with the same patch and normal
+    /// share the lookup at the first of them, which may belong to the other half.
     Lookup add_indirect(const Path& path, PathLight& light);
 
     /// Adds the path's vertex with the unoccluded light of the kinds that have it. Returns its index.

@@ -155,7 +155,7 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
     std::vector<SampleBatch> batches;
     for (const std::uint32_t i : chosen)
         for (std::uint32_t group = 0; group < groups; ++group)
-            batches.push_back({.pixel = i, .first_point = (records_[i].gathered.batches + group) * half, .size = half});
+            batches.push_back({.pixel = i, .first_point = (records_[i].gathered.groups + group) * half, .size = half});
     PathStart start;
     start.gauges = gauges;
     const PathPlan gathering{.scene = plan.scene,
@@ -231,9 +231,9 @@ void IndirectField::arrange_tree() {
 }
 
 void IndirectField::pool_variances() {
-    // Of the mean of a record: a quarter of the squared difference of its halves.
+    // The variance of a record's mean is a quarter of the squared difference between its halves.
     const auto of_group = [](const Record& r) {
-        const double groups = r.gathered.batches, difference = r.difference / groups;
+        const double groups = r.gathered.groups, difference = r.difference / groups;
         return difference * difference * groups;
     };
     std::vector<float> pooled(records_.size());

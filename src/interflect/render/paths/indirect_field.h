@@ -9,7 +9,7 @@
 #include "interflect/base/common_stop.h"
 #include "interflect/core.h"
 #include "interflect/geometry/box_tree.h"
-#include "interflect/render/paths/part_statistics.h"
+#include "interflect/render/paths/group_mean.h"
 #include "interflect/render/paths/surface_points.h"
 #include "interflect/render/rays/path_plan.h"
 #include "interflect/render/smooth/local_fit.h"
@@ -23,9 +23,10 @@ namespace interflect::detail {
 ///
 /// Biased by interpolation. Each record is compared with the fit of its neighbours: where they differ by more than a
 /// tenth of all irradiance and their noise, both reach half as far. The remaining difference is part of Light::error.
+/// Records without near neighbours add nothing to it.
 class IndirectField {
   public:
-    /// Makes records until all points are covered.
+    /// Makes records at points that others do not cover. Each point is tested once: shorter reaches can leave gaps.
     /// @param plan  With known light; its records gather as it does.
     /// If stopped, ends with fewer records: within milliseconds, with several ranks within seconds. Collective.
     IndirectField(const PathPlan& plan, std::span<const SurfacePoint> points, const Monitor& monitor);
@@ -63,14 +64,14 @@ class IndirectField {
         float reach = 0;            // on its own patch, which no contact crosses [m]
         float reach_elsewhere = 0;  // at most the distance to the nearest contact [m]
         float irradiance = 0;       // luminance of all irradiance there, for relative errors [as H]
-        PartStatistics gathered{};  // irradiance by groups of paths [as H]
-        double difference = 0;      // between the halves of the groups: sum of mean channels [as H]
+        GroupMean gathered{};       // irradiance by groups of paths [as H]
+        double difference = 0;      // half that between the halves of the groups: sum of mean channels [as H]
         float group_variance = 0;   // of the mean channel of a group, pooled over near records
         float squared_bias = 0;     // of interpolation near the record, mean channel
 
-        float variance() const { return group_variance / static_cast<float>(gathered.batches); }
+        float variance() const { return group_variance / static_cast<float>(gathered.groups); }
     };
-    /// What a lookup reads of a record out of reach.
+    /// Position and reach of a record, apart from its light: most records that a lookup tests are out of reach.
     struct Reach {
         V3f position, normal;
         std::uint32_t patch = none;

@@ -6,7 +6,7 @@
 
 #include "interflect/core.h"
 #include "interflect/render.h"
-#include "interflect/render/paths/part_statistics.h"
+#include "interflect/render/paths/group_mean.h"
 #include "interflect/render/rays/sample_batch.h"
 
 namespace interflect::detail {

@@ -57,7 +57,7 @@ class KnownLight {
     float density(const Place& place, const V3f& x, const V3f& n) const;
 
   private:
-    /// Of sample() in a patch [1/m^2].
+    /// Density of sample() once it has chosen the patch [1/m^2].
     float density_in_patch(const Place& place) const {
         return excess_[place.leaf] / (excess_[place.patch] * forest_.area(place.leaf));
     }
