@@ -85,9 +85,10 @@ struct Rendering {
     PictureLayers layers;  ///< Empty in flat and smooth shading, as are `standard_error` and `batches`.
     /// Standard error of each pixel and channel, in the same unit, from the spread of independent samples.
     Image standard_error;
-    /// Standard error over the largest of the mean radiance of the 48 pixels around, the pixel's emitted radiance and
-    /// the picture's mean reflected radiance (channel means), root mean square over the pixels; 0 for a picture without
-    /// light. Infinite if any pixel has fewer than two batches; NaN in flat and smooth shading.
+    /// Standard error over the largest of the mean radiance of the 48 pixels around, the mean emitted radiance of the
+    /// pixel and the eight around it, and the picture's mean reflected radiance (channel means), root mean square over
+    /// the pixels; 0 for a picture without light. Infinite if any pixel has fewer than two batches; NaN in flat and
+    /// smooth shading.
     double relative_error = std::numeric_limits<double>::quiet_NaN();
     std::int64_t rays = 0;               ///< Camera rays, reflected rays and shadow rays.
     std::int64_t shadow_rays = 0;        ///< Included in `rays`.

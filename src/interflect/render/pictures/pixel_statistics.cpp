@@ -10,7 +10,7 @@ namespace interflect::detail {
 namespace {
 
 /// On both axes [pixels].
-constexpr int neighbourhood_radius = 3;
+constexpr std::size_t neighbourhood_radius = 3, radius_of_lamps = 1;
 
 std::array<RgbD, 3> parts_of(const PathLight& light) {
     return {light.emitted + light.direct + light.indirect, light.direct, light.indirect};
@@ -24,22 +24,22 @@ double mean_reflected(const std::vector<PixelStatistics>& pixels) {
 
 /// Sums over neighbours in a line.
 std::vector<double> sums_along(const std::vector<double>& values, std::size_t lines, std::size_t line_step,
-                               std::size_t length, std::size_t step) {
+                               std::size_t length, std::size_t step, std::size_t radius) {
     std::vector<double> sums(values.size());
     for (std::size_t line = 0; line < lines; ++line)
         for (std::size_t i = 0; i < length; ++i) {
-            const std::size_t first = i - std::min<std::size_t>(i, neighbourhood_radius);
-            const std::size_t end = std::min(length, i + neighbourhood_radius + 1);
+            const std::size_t first = i - std::min(i, radius), end = std::min(length, i + radius + 1);
             double& sum = sums[line * line_step + i * step];
             for (std::size_t k = first; k < end; ++k) sum += values[line * line_step + k * step];
         }
     return sums;
 }
 
-std::vector<double> sums_around(std::vector<double> values, const PictureOptions& options) {
+std::vector<double> sums_around(std::vector<double> values, const PictureOptions& options,
+                                std::size_t radius = neighbourhood_radius) {
     const auto width = static_cast<std::size_t>(options.width), height = static_cast<std::size_t>(options.height);
-    values = sums_along(values, height, width, width, 1);
-    return sums_along(values, width, 1, height, width);
+    values = sums_along(values, height, width, width, 1, radius);
+    return sums_along(values, width, 1, height, width, radius);
 }
 
 /// Light that the error of each pixel is relative to: the mean of its neighbours, at least that of the picture. The
@@ -54,6 +54,18 @@ std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, cons
     for (std::size_t i = 0; i < scale.size(); ++i)
         scale[i] = std::max(least, count[i] > 1 ? (scale[i] - light[i]) / (count[i] - 1) : 0);
     return scale;
+}
+
+/// Mean emitted light of the pixel and the eight around it: small lamps are brighter than all around. The pixel alone
+/// would hide its own error.
+std::vector<double> lamps_around(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
+    std::vector<double> light;
+    light.reserve(pixels.size());
+    for (const PixelStatistics& p : pixels) light.push_back(mean_channel(p.light().emitted));
+    light = sums_around(light, options, radius_of_lamps);
+    const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options, radius_of_lamps);
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] /= count[i];
+    return light;
 }
 
 }  // namespace
@@ -116,11 +128,10 @@ RgbD PixelStatistics::record_error() const {
 double relative_error(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
     const auto has_error = [](const PixelStatistics& p) { return p.has_error(); };
     if (!std::all_of(pixels.begin(), pixels.end(), has_error)) return std::numeric_limits<double>::infinity();
-    const std::vector<double> around = error_scale(pixels, options);
+    const std::vector<double> around = error_scale(pixels, options), lamps = lamps_around(pixels, options);
     double sum = 0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        // Lamps of a few pixels are brighter than all around; seen directly, they are not rare.
-        const double scale = std::max(around[i], mean_channel(pixels[i].light().emitted));
+        const double scale = std::max(around[i], lamps[i]);
         if (scale > 0) sum += mean_channel(pixels[i].squared_error()) / (scale * scale);
     }
     return std::sqrt(sum / static_cast<double>(pixels.size()));
