@@ -305,7 +305,7 @@ void add_export(CLI::App& app, int& exit_code) {
         ->type_name("METRES")
         ->check(number_between(1e-6, 1e15))
         ->capture_default_str();
-    command.add_option("--probe-rays", options->probes.rays, "Rays from each probe")
+    command.add_option("--probe-rays", options->probes.rays, "Gathered directions of each probe")
         ->type_name("N")
         ->check(CLI::Range(8, 1 << 20))
         ->capture_default_str();

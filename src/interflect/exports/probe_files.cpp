@@ -14,8 +14,11 @@ ProbeGrid measured(const Scene& scene, const Solution& solution, const ExportOpt
 }
 
 Json description(const Scene& scene, const ProbeGrid& grid, const ExportOptions& options) {
-    Json inside = Json::array();
-    for (const IrradianceProbe& probe : grid.probes) inside.push_back(probe.is_inside ? 1 : 0);
+    Json inside = Json::array(), errors = Json::array();
+    for (const IrradianceProbe& probe : grid.probes) {
+        inside.push_back(probe.is_inside ? 1 : 0);
+        errors.push_back(probe.standard_error);
+    }
     return {{"format", "interflect probes"},
             {"format_version", 1},
             {"version", INTERFLECT_VERSION},
@@ -26,7 +29,8 @@ Json description(const Scene& scene, const ProbeGrid& grid, const ExportOptions&
             {"step", json_of(grid.step)},
             {"count", grid.count},
             {"rays", options.probes.rays},
-            {"inside", inside}};
+            {"inside", inside},
+            {"standard_error", errors}};
 }
 
 }  // namespace

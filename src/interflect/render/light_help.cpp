@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/measure.h"
 #include "interflect/render/gauges/gauge_light.h"
 #include "interflect/render/pictures/path_picture.h"
 #include "interflect/render/sharing/light_order.h"
@@ -40,9 +39,6 @@ void help_with_light(const Scene& scene, const Solution* solution, const RayCast
                     break;
                 case LightOrder::Kind::direct_gauges:
                     direct_irradiance(scene_of_gauges(), received.gauges, order.options, monitor);
-                    break;
-                case LightOrder::Kind::probes:
-                    irradiance_probes(scene, *solution, ray_caster, order.probes, monitor);
                     break;
                 case LightOrder::Kind::group: {
                     const LightOfGroup group = light_of_group(scene, *solution, order.group);

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "interflect/measure.h"
 #include "interflect/ranks.h"
 #include "interflect/render.h"
 #include "interflect/render/rays/path_plan.h"
@@ -17,7 +16,6 @@ struct LightOrder {
         instant_picture,  ///< trace_instant_picture()
         gauges,           ///< hybrid_irradiance()
         direct_gauges,    ///< direct_irradiance()
-        probes,           ///< irradiance_probes()
         group,            ///< help_with_light() with light_of_group().
         end,              ///< Ends help_with_light().
     };
@@ -25,7 +23,6 @@ struct LightOrder {
     PictureOptions options{};      ///< Options of the paths.
     bool is_known = false;         ///< Paths end at the solution.
     bool is_interpolated = false;  ///< As KnownIrradiance::is_interpolated.
-    ProbeOptions probes{};
     std::size_t group = 0;  ///< Light group.
 };
 
