@@ -2,7 +2,7 @@
 //
 // Seen to fail: hidden patches keep their power; patches without test rays keep their power; one lost ray removes a
 // patch; the limit is twice the mean over all surfaces.
-#include "interflect/render/records/seen_light.h"
+#include "interflect/render/prepared/seen_light.h"
 
 #include <gtest/gtest.h>
 

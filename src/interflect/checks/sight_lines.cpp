@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "interflect/base/random.h"
 #include "interflect/geometry/tangent_frame.h"
@@ -13,16 +14,11 @@ SightLines::SightLines(const Scene& scene, const RayCaster& ray_caster)
     : ray_caster_(ray_caster), panes_(scene, ray_caster) {}
 
 Hit SightLines::first_surface(const Ray& ray) const {
-    Ray rest = ray;
     Hit hit;
-    for (int panes = 0; panes <= Panes::max_consecutive_panes; ++panes) {
-        ray_caster_.trace({&rest, 1}, {&hit, 1});
-        if (hit.patch == none) return hit;
-        if (!(largest_channel(panes_.transmittance(rest, hit)) > 0)) break;
-        rest = panes_.behind(rest, hit);
-    }
-    hit.distance += (rest.origin - ray.origin).dot(ray.direction);
-    return hit;
+    ray_caster_.trace({&ray, 1}, {&hit, 1});
+    std::vector<Panes::HitBehind> behind;
+    panes_.trace({&ray, 1}, {&hit, 1}, behind);
+    return behind.empty() ? hit : behind.back().hit;
 }
 
 bool SightLines::is_clear(const V3f& a, const V3f& b) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <span>
 
 #include "interflect/base/parallel.h"
 #include "interflect/core.h"
@@ -11,6 +12,7 @@
 #include "interflect/luminaires/illumination.h"
 #include "interflect/luminaires/opening.h"
 #include "interflect/raycast/panes.h"
+#include "interflect/render/rays/shadow_rays.h"
 
 namespace interflect {
 
@@ -125,20 +127,6 @@ class SourcePlaces {
     std::map<std::string, std::size_t> by_name_;
 };
 
-Rgb transmittance_to(const Place& place, Ray ray, Hit hit, const Panes& panes, const RayCaster& ray_caster) {
-    Rgb transmittance(1);
-    float left = place.distance;
-    for (int passed = 0; passed <= Panes::max_consecutive_panes; ++passed) {
-        if (hit.patch == place.patch || (place.patch == none && hit.distance > left)) return transmittance;
-        transmittance *= panes.transmittance(ray, hit);
-        if (!(largest_channel(transmittance) > 0)) return Rgb(0);
-        left -= hit.distance;
-        ray = panes.behind(ray, hit);
-        ray_caster.trace({&ray, 1}, {&hit, 1});
-    }
-    return Rgb(0);
-}
-
 void require_direction(const Observer& observer) {
     const float length = observer.line_of_sight.length();
     if (!(length > 0 && std::isfinite(length)) || !is_finite(V3f(observer.eye)))
@@ -174,15 +162,12 @@ std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_
     ray_caster.require_made_for(scene);
     SourcePlaces seen(scene, observer);
     const std::vector<Place>& places = seen.places();
-    std::vector<Ray> rays;
-    rays.reserve(places.size());
-    for (const Place& place : places) rays.push_back({seen.eye(), place.towards});
-    std::vector<Hit> hits(rays.size());
-    ray_caster.trace(rays, hits);
-    const Panes panes(scene, ray_caster);
+    ShadowRays rays;
+    for (const Place& place : places) rays.add({seen.eye(), place.towards}, place.patch, place.distance);
+    RayCounts counts;
+    const std::span<const Rgb> transmittance = rays.trace(ray_caster, Panes(scene, ray_caster), counts);
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const Rgb transmittance = transmittance_to(places[i], rays[i], hits[i], panes, ray_caster);
-        const double l = luminance(RgbD(places[i].radiance * transmittance));
+        const double l = luminance(RgbD(places[i].radiance * transmittance[i]));
         if (l > 0) seen.sums()[places[i].source].add(l, places[i].solid_angle, places[i].position_index);
     }
     std::vector<GlareSource> sources;

@@ -128,9 +128,9 @@ std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, const KnownI
     const PathStart start = start_at(gauges);
     const PathPlan plan{.scene = scene, .start = start, .options = options};
     constexpr double share_of_records = 0.6;  // of the time; roughly
-    const RecordedLight recorded(plan, known, monitor_section(monitor, 0, share_of_records));
-    const PathPlan hybrid = recorded.plan();
-    return trace_all_gauges(hybrid, monitor_section(monitor, share_of_records, 1, recorded.rays()));
+    const PreparedLight prepared(plan, known, monitor_section(monitor, 0, share_of_records));
+    const PathPlan hybrid = prepared.plan();
+    return trace_all_gauges(hybrid, monitor_section(monitor, share_of_records, 1, prepared.rays()));
 }
 
 std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,

@@ -6,9 +6,9 @@
 
 #include "interflect/core.h"
 #include "interflect/render.h"
+#include "interflect/render/prepared/prepared_light.h"
 #include "interflect/render/rays/gauge.h"
 #include "interflect/render/rays/traced_scene.h"
-#include "interflect/render/records/recorded_light.h"
 
 namespace interflect::detail {
 

@@ -12,12 +12,13 @@
 
 namespace interflect::detail {
 
-/// Light along paths from the camera or from gauges: the one estimator of pictures, texels, vertices and measuring
-/// points (Kajiya 1986; final gathering, Reichert 1992; hybrid shading).
+/// Light along paths from the camera or from gauges: the one estimator of pictures, texels, vertices, measuring points
+/// and probes (Kajiya 1986; final gathering, Reichert 1992; hybrid shading).
 ///
 /// At each vertex, shadow rays sample the light sources, and a cosine-distributed direction continues the path. Light
 /// sources that both can find are weighted by the balance heuristic (Veach and Guibas 1995). Unbiased unless the plan
-/// ends paths at known light (biased by the error of the solution) or looks up records (FirstPoints).
+/// ends paths at known light (biased by the error of the solution) or looks up records (FirstPoints). Omits light
+/// behind more than 32 panes, or that panes and mirrors reduce to less than 0.1% of a path's (find_surfaces()).
 class PathIntegrator {
   public:
     /// @param plan  Must outlive this.

@@ -5,8 +5,8 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/render.h"
+#include "interflect/render/prepared/prepared_light.h"
 #include "interflect/render/rays/path_plan.h"
-#include "interflect/render/records/recorded_light.h"
 
 namespace interflect::detail {
 

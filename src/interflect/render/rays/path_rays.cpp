@@ -9,7 +9,8 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr float min_throughput = 1e-3f;  // further reflections in facing mirrors are invisible
+/// Of split paths. Facing mirrors that are also panes would double the number of paths at each reflection.
+constexpr float min_throughput = 1e-3f;
 
 Rgb reflectance_of_hit(const TracedScene& scene, const Ray& ray, const Hit& hit) {
     const Parameters p = scene.geometry[hit.patch].parameters_of(ray.origin + hit.distance * ray.direction);

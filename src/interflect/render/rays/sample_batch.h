@@ -41,7 +41,7 @@ struct PathLight {
     }
 };
 
-/// Paths of a pixel or gauge: two independent halves of equal size.
+/// Paths of a pixel or gauge: two halves of equal size, independent but for what hybrid shading shares (FirstPoints).
 struct SampleBatch {
     std::uint32_t pixel = 0;
     std::uint32_t number = 0;       ///< Batches of different numbers are independent.

@@ -1,9 +1,9 @@
-#include "interflect/render/records/recorded_light.h"
+#include "interflect/render/prepared/prepared_light.h"
 
 #include <vector>
 
 #include "interflect/base/common_stop.h"
-#include "interflect/render/records/seen_light.h"
+#include "interflect/render/prepared/seen_light.h"
 
 namespace interflect::detail {
 
@@ -14,7 +14,7 @@ KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, s
     return light;
 }
 
-RecordedLight::RecordedLight(const PathPlan& plan, const KnownIrradiance& known, const Monitor& monitor) : plan_(plan) {
+PreparedLight::PreparedLight(const PathPlan& plan, const KnownIrradiance& known, const Monitor& monitor) : plan_(plan) {
     const CommonStop stop(monitor.stop, monitor.ranks);
     const std::vector<SurfacePoint> points = first_points(plan, stop.within_process());
     light_.emplace(known_light(plan.scene, known, points, plan.options.seed));
@@ -27,7 +27,7 @@ RecordedLight::RecordedLight(const PathPlan& plan, const KnownIrradiance& known,
     hybrid_ = {&*field_, &*guide_};
 }
 
-PathPlan RecordedLight::plan() const {
+PathPlan PreparedLight::plan() const {
     PathPlan plan = plan_;
     plan.known = &*light_;
     plan.first_rays = first_shadow_rays;

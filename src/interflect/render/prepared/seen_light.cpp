@@ -1,4 +1,4 @@
-#include "interflect/render/records/seen_light.h"
+#include "interflect/render/prepared/seen_light.h"
 
 #include <algorithm>
 #include <numbers>

@@ -25,13 +25,13 @@ KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, s
 
 /// What final gathering and hybrid shading know about the light around the first points of a picture or of gauges.
 /// Thread-safe after construction.
-class RecordedLight {
+class PreparedLight {
   public:
     /// @param plan     Without known light; must outlive this, as does `known`.
     /// @param monitor  Collective.
-    RecordedLight(const PathPlan& plan, const KnownIrradiance& known, const Monitor& monitor);
-    RecordedLight(const RecordedLight&) = delete;
-    RecordedLight& operator=(const RecordedLight&) = delete;
+    PreparedLight(const PathPlan& plan, const KnownIrradiance& known, const Monitor& monitor);
+    PreparedLight(const PreparedLight&) = delete;
+    PreparedLight& operator=(const PreparedLight&) = delete;
 
     /// The plan with that light. Refers to this object.
     PathPlan plan() const;
