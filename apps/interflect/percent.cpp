@@ -19,4 +19,11 @@ std::string percent(double share) {
     return fmt::format("{:.{}f}%", hundredths, std::clamp(1 - static_cast<int>(leading_digit), 0, max_decimals));
 }
 
+std::string text_of_error(const IterationReport& report) {
+    const std::string all = percent(report.error_estimate);
+    if (!(report.discretisation_estimate > 0)) return all + " (noise alone)";
+    return fmt::format("{} (noise {}, mesh {})", all, percent(report.noise_estimate),
+                       percent(report.discretisation_estimate));
+}
+
 }  // namespace interflect::command

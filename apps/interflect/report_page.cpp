@@ -240,9 +240,7 @@ std::string method(const ReportContent& content, const SolvedScene& solved) {
         const IterationReport& last = solution.iterations.back();
         text += fmt::format(", {} rays, {} elements", magnitude(static_cast<double>(last.rays)), last.elements);
         if (std::isfinite(last.error_estimate))
-            text += fmt::format("; estimated relative error of the elements {}: noise {}, mesh {}",
-                                percent(last.error_estimate), percent(last.noise_estimate),
-                                percent(last.discretisation_estimate));
+            text += "; estimated relative error of the elements " + text_of_error(last);
     }
     text += fmt::format(
         "){}. Illuminance at points is gathered from this solution: direct light is sampled from the "

@@ -72,10 +72,7 @@ void log_outcome(const Scene& scene, const Solution& solution) {
     const IterationReport& last = solution.iterations.back();
     spdlog::info("{}: {} rays in {}, {} elements{}{}{}", solution.options.method.name,
                  magnitude(static_cast<double>(last.rays)), duration(last.seconds), last.elements,
-                 std::isfinite(last.error_estimate)
-                     ? fmt::format(", estimated relative error {} (noise {}, mesh {})", percent(last.error_estimate),
-                                   percent(last.noise_estimate), percent(last.discretisation_estimate))
-                     : "",
+                 std::isfinite(last.error_estimate) ? ", estimated relative error " + text_of_error(last) : "",
                  last.escaped_rays > 0
                      ? fmt::format(", {} of the rays left the scene",
                                    percent(static_cast<double>(last.escaped_rays) / static_cast<double>(last.rays)))

@@ -1,4 +1,5 @@
 #include "apps/interflect/solution_info.h"
+#include "apps/interflect/percent.h"
 
 #include <fmt/format.h>
 
@@ -74,9 +75,7 @@ void print_text(const SolvedScene& solved) {
                knows_provenance(solved) ? text_of_options(solution.options) : "");
     print_line("  rays      {}{}", result.rays, solution.interrupted ? " (interrupted)" : "");
     print_line("  elements  {} ({} leaves) of {} patches", result.elements, result.leaves, scene.patches.size());
-    if (std::isfinite(result.error_estimate))
-        print_line("  error     {:.2g}% (noise {:.2g}%, mesh {:.2g}%)", 100 * result.error_estimate,
-                   100 * result.noise_estimate, 100 * result.discretisation_estimate);
+    if (std::isfinite(result.error_estimate)) print_line("  error     {}", text_of_error(result));
     print_line("  emitted   {:.6g} lm (RGB {})", luminance(solution.emitted_power), text_of(solution.emitted_power));
     if (!solution.group_names.empty()) print_line("  groups    {}", fmt::join(solution.group_names, ", "));
     print_views(scene.views);

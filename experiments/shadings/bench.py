@@ -4,6 +4,7 @@ import hashlib
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -122,7 +123,9 @@ class SceneWork:
         view |= {"name": "audit", "fov": self.scene.fov}
         self.path.with_suffix(".views.json").write_text(json.dumps({"views": [view]}))
         size = self.bench.scale.picture_size
-        program.run(self.bench.command, ["export", str(self.path), "--size", size, "-o", str(exported)])
+        finished = program.run(self.bench.command, ["export", str(self.path), "--size", size, "-o", str(exported)])
+        if left_out := re.findall(r"lights of the kind '\w+'", finished.messages):
+            raise program.ExperimentError(f"not measured: exports for Mitsuba leave out {left_out[0]}")
         begin = time.monotonic()
         arguments = [python, MITSUBA_SCRIPT, exported, output, str(samples), str(seed)]
         drawn = subprocess.run(arguments, capture_output=True, text=True)

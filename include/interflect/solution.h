@@ -36,8 +36,10 @@ struct IterationReport {
     /// over the picture, relative to the mean, for visible reflected luminance without emission. Without: the same for
     /// irradiance, over the area. Infinite before an estimate exists, and if a view shows no reflected light.
     double error_estimate = std::numeric_limits<double>::infinity();
-    double noise_estimate = std::numeric_limits<double>::infinity();           ///< Standard error.
-    double discretisation_estimate = std::numeric_limits<double>::infinity();  ///< Mean deviation within elements.
+    double noise_estimate = std::numeric_limits<double>::infinity();  ///< Standard error.
+    /// Mean deviation within elements. 0 where it is not estimated: on fixed elements, and where they are refined by
+    /// another criterion than the variance. `error_estimate` is that of noise alone then.
+    double discretisation_estimate = std::numeric_limits<double>::infinity();
     /// Payload of a ray relative to the mean of all rays: maximum, and value exceeded by 0.1% of the rays.
     double largest_payload = 1, high_payload = 1;
     /// Share of all hits whose places refinement has lost; method photon-mesh only. Not in the history of solution

@@ -42,7 +42,13 @@ class Progress(CommandTest):
         self.assertRegex(first, r"^ *\d+%  ")
         self.assertRegex(last, f"^{STATUS}$")
         self.assertIn("100%", last)
-        self.assertRegex(summary, r"^info: hsrr: 300.0 k rays in .* elements, estimated relative error [\d.]+%")
+        self.assertRegex(
+            summary, r"^info: hsrr: 300.0 k rays in .* elements, estimated relative error [\d.]+% \(noise [\d.]+%, mesh "
+        )
+
+    def test_the_error_of_fixed_elements_is_that_of_noise(self):
+        fixed = (*self.SOLVE, "--method", "srr")
+        self.assertRegex(self.interflect(*fixed).stderr.splitlines()[-1], r"estimated relative error [\d.]+% \(noise alone\)")
 
     def test_drawing_has_none_unless_it_takes_long(self):
         self.interflect(*self.SOLVE)
