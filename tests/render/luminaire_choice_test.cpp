@@ -78,8 +78,8 @@ TEST(LuminaireChoice, BringsWhatAllLuminairesBring) {
                 const Illumination light = illumination(l, x, sample.u, sample.v);
                 all += channel_sum(light.irradiance) * static_cast<double>(std::max(0.0f, n.dot(light.towards)));
             }
-            const double d = channel_sum(choice.choose_lamp(x, n, sample).irradiance) +
-                             channel_sum(choice.choose_sun(x, n, sample).irradiance) - all;
+            const double d = channel_sum(choice.choose_lamp(x, n, sample).light.irradiance) +
+                             channel_sum(choice.choose_sun(x, n, sample).light.irradiance) - all;
             sum += all, difference += d, squares += d * d;
         }
         const double error = std::hypot(std::sqrt(squares) / samples, 1e-6 * sum / samples);  // including rounding
@@ -96,8 +96,9 @@ TEST(LuminaireChoice, AmongAFewIsExact) {
     const V3f x(2, 1, 0), n(0, 0, 1);
     const Illumination exact = illumination(scene.luminaires[0], x);
     for (std::uint64_t i = 0; i < 100; ++i)
-        EXPECT_FLOAT_EQ(choice.choose_lamp(x, n, sample_of(1, i)).irradiance.x, exact.irradiance.x * exact.towards.z);
-    EXPECT_EQ(LuminaireChoice(Scene()).choose_lamp(x, n, sample_of(1, 1)).irradiance, Rgb(0));
+        EXPECT_FLOAT_EQ(choice.choose_lamp(x, n, sample_of(1, i)).light.irradiance.x,
+                        exact.irradiance.x * exact.towards.z);
+    EXPECT_EQ(LuminaireChoice(Scene()).choose_lamp(x, n, sample_of(1, 1)).light.irradiance, Rgb(0));
 }
 
 }  // namespace

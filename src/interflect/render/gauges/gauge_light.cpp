@@ -128,7 +128,7 @@ std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, const KnownI
     const PathStart start = start_at(gauges);
     const PathPlan plan{.scene = scene, .start = start, .options = options};
     constexpr double share_of_records = 0.6;  // of the time; roughly
-    const PreparedLight prepared(plan, known, monitor_section(monitor, 0, share_of_records));
+    const PreparedLight prepared(plan, &known, monitor_section(monitor, 0, share_of_records));
     const PathPlan hybrid = prepared.plan();
     return trace_all_gauges(hybrid, monitor_section(monitor, share_of_records, 1, prepared.rays()));
 }
@@ -140,7 +140,8 @@ std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::
     const PathPlan plan{
         .scene = scene, .start = start, .options = options, .first_rays = first_shadow_rays, .hybrid = &direct_only};
     std::vector<SampledIrradiance> direct;
-    for (const GaugeLight& light : trace_all_gauges(plan, monitor)) direct.push_back(light.direct);
+    const PreparedLight prepared(plan, nullptr, monitor);
+    for (const GaugeLight& light : trace_all_gauges(prepared.plan(), monitor)) direct.push_back(light.direct);
     return direct;
 }
 

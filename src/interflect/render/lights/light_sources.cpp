@@ -16,6 +16,11 @@ LightSources::LightSources(const Scene& scene, std::span<const PatchGeometry> ge
       luminaires_(scene),
       skies_(scene) {}
 
+void LightSources::weigh(SourceKind kind, std::span<const float> weights) {
+    if (kind == SourceKind::patches) patches_.weigh(weights);
+    if (kind == SourceKind::lamps) luminaires_.weigh_lamps(weights);
+}
+
 std::uint32_t LightSources::useful_rays(SourceKind kind, std::uint32_t most) const {
     if (kind == SourceKind::patches) return patches_.light_count() > 0 ? most : 0;
     const LuminaireChoice::Group& group = kind == SourceKind::lamps ? luminaires_.lamps() : luminaires_.suns();
@@ -24,9 +29,9 @@ std::uint32_t LightSources::useful_rays(SourceKind kind, std::uint32_t most) con
 
 SourceSample LightSources::sample(SourceKind kind, const V3f& x, const V3f& n, const LightSample& numbers) const {
     if (kind == SourceKind::patches) return sample_patch(x, n, numbers);
-    const Illumination light =
+    const auto [luminaire, light] =
         kind == SourceKind::lamps ? luminaires_.choose_lamp(x, n, numbers) : luminaires_.choose_sun(x, n, numbers);
-    return {light.towards, none, light.distance, light.irradiance, 0};
+    return {luminaire, light.towards, none, light.distance, light.irradiance, 0};
 }
 
 SourceSample LightSources::sample_patch(const V3f& x, const V3f& n, const LightSample& numbers) const {
@@ -37,7 +42,8 @@ SourceSample LightSources::sample_patch(const V3f& x, const V3f& n, const LightS
     const float cosine = n.dot(point->direction), density = choice.probability * point->density;
     if (!(cosine > 0 && density > 0)) return {};
     const Rgb exitance = exitance_at(scene_, scene_.patches[choice.index], point->at);
-    return {point->direction, choice.index, 0, exitance * (cosine / std::numbers::pi_v<float> / density), density};
+    return {choice.index, point->direction, choice.index, 0, exitance * (cosine / std::numbers::pi_v<float> / density),
+            density};
 }
 
 float LightSources::density(std::uint32_t patch, const V3f& x, const V3f& n, const V3f& direction,

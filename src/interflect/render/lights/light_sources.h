@@ -24,6 +24,7 @@ inline constexpr std::array source_kinds{SourceKind::patches, SourceKind::lamps,
 
 /// One sample of a light source, seen from a point x on a surface with normal n.
 struct SourceSample {
+    std::uint32_t index = none;  ///< Patch or luminaire.
     V3f direction{0, 0, 1};
     std::uint32_t patch = none;  ///< Target of the shadow ray; none: a free ray up to `distance`.
     float distance = 0;          ///< [m]
@@ -31,11 +32,14 @@ struct SourceSample {
     float density = 0;           ///< Density of the direction [1/sr]; 0 if directions never find the source.
 };
 
-/// Samples light sources by estimated unoccluded irradiance. Immutable, thread-safe.
+/// Samples light sources by estimated unoccluded irradiance. Constant methods are thread-safe.
 class LightSources {
   public:
     /// Arguments must outlive this.
     LightSources(const Scene& scene, std::span<const PatchGeometry> geometry);
+
+    /// As LightTree::weigh(), for patches or lamps. @param weights  By SourceSample::index, above 0.
+    void weigh(SourceKind kind, std::span<const float> weights);
 
     /// Number of shadow rays that differ from each other, at most `most`; 0 without such sources.
     std::uint32_t useful_rays(SourceKind kind, std::uint32_t most) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "interflect/elements/texture_means.h"
@@ -231,7 +232,8 @@ void LightTree::add_node(const std::vector<BinaryNode>& binary, std::uint32_t ro
 }
 
 // Cosines use the box's nearest point, which favours wide nodes around x.
-LightTree::Choices LightTree::importance_of_children(const Node& node, const V3f& x, const V3f& n) {
+LightTree::Choices LightTree::importance_of_children(const Node& node, const Floats& power, const V3f& x,
+                                                     const V3f& n) {
     constexpr float least = std::numeric_limits<float>::min();
     Choices choices;
     for (std::size_t i = 0; i < width; ++i) {
@@ -252,20 +254,40 @@ LightTree::Choices LightTree::importance_of_children(const Node& node, const V3f
         const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
         const float outside_cone = cosine * node.cone_cosine[i] + sine * node.cone_sine[i];
         const float emitting = cosine >= node.cone_cosine[i] ? 1 : std::max(0.0f, outside_cone);
-        choices.importance[i] = node.power[i] * receiving * emitting / std::max(centre2, radius * radius);
+        choices.importance[i] = power[i] * receiving * emitting / std::max(centre2, radius * radius);
     }
     choices.sum = 0;
     for (const float importance : choices.importance) choices.sum += importance;
     return choices;
 }
 
+void LightTree::weigh(std::span<const float> weights) {
+    is_weighted_ = true;
+    for (std::size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
+        Node& node = nodes_[i];
+        for (std::size_t k = 0; k < width; ++k) {
+            if (!(node.power[k] > 0)) continue;
+            const Floats& below = nodes_[node.is_light[k] ? i : node.child[k]].weighted_power;
+            node.weighted_power[k] = node.is_light[k] ? node.power[k] * weights[node.child[k]]
+                                                      : std::accumulate(below.begin(), below.end(), 0.0f);
+        }
+    }
+}
+
 LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) const {
-    constexpr double below_one = 0x1.fffffffffffffp-1;
     if (nodes_.empty()) return {};
-    float probability = 1;
+    if (!is_weighted_) return choose_by(false, x, n, uniform);
+    return uniform < 0.5 ? choose_by(false, x, n, 2 * uniform) : choose_by(true, x, n, 2 * uniform - 1);
+}
+
+LightTree::Choice LightTree::choose_by(bool is_weighted, const V3f& x, const V3f& n, double uniform) const {
+    constexpr double below_one = 0x1.fffffffffffffp-1;
+    float probability = 1, weighted_probability = 1;
     for (const Node* node = nodes_.data();;) {
-        const auto [importance, sum] = importance_of_children(*node, x, n);
-        if (!(sum > 0)) return {};
+        const Choices by_power = importance_of_children(*node, node->power, x, n);
+        if (!(by_power.sum > 0)) return {};
+        const Choices by_weight = is_weighted_ ? importance_of_children(*node, node->weighted_power, x, n) : by_power;
+        const auto& [importance, sum] = is_weighted ? by_weight : by_power;
         double rest = uniform * static_cast<double>(sum);
         std::size_t i = 0, last = 0;
         for (; i < width && rest >= static_cast<double>(importance[i]); ++i) {
@@ -274,21 +296,27 @@ LightTree::Choice LightTree::choose(const V3f& x, const V3f& n, double uniform) 
         }
         if (i == width) i = last, rest = static_cast<double>(importance[i]);  // by rounding
         uniform = std::min(rest / static_cast<double>(importance[i]), below_one);
-        probability *= importance[i] / sum;
-        if (node->is_light[i]) return {node->child[i], probability};
+        probability *= by_power.importance[i] / by_power.sum;
+        weighted_probability *= by_weight.importance[i] / by_weight.sum;
+        if (node->is_light[i]) return {node->child[i], (probability + weighted_probability) / 2};
         node = &nodes_[node->child[i]];
     }
 }
 
 float LightTree::probability(std::uint32_t index, const V3f& x, const V3f& n) const {
-    float probability = 1;
     if (place_[index] == none) return 0;
-    for (std::uint32_t place = place_[index]; place != none; place = nodes_[place / width].place_in_parent) {
-        const auto [importance, sum] = importance_of_children(nodes_[place / width], x, n);
-        if (!(sum > 0)) return 0;
-        probability *= importance[place % width] / sum;
-    }
-    return probability;
+    const auto product = [&](Floats Node::*power) {
+        float probability = 1;
+        for (std::uint32_t place = place_[index]; place != none; place = nodes_[place / width].place_in_parent) {
+            const Node& node = nodes_[place / width];
+            const auto [importance, sum] = importance_of_children(node, node.*power, x, n);
+            if (!(sum > 0)) return 0.0f;
+            probability *= importance[place % width] / sum;
+        }
+        return probability;
+    };
+    const float by_power = product(&Node::power);
+    return is_weighted_ ? (by_power + product(&Node::weighted_power)) / 2 : by_power;
 }
 
 }  // namespace interflect::detail

@@ -13,7 +13,7 @@
 namespace interflect::detail {
 
 /// Samples lights by estimated unoccluded irradiance at a point (Conty and Kulla 2018): power x upper bounds of the
-/// cosines / squared distance. Thread-safe.
+/// cosines / squared distance. Constant methods are thread-safe.
 class LightTree {
   public:
     struct Cone {
@@ -40,6 +40,11 @@ class LightTree {
     /// @param index_count  Greater than every index.
     LightTree(std::vector<Light> lights, std::size_t index_count);
 
+    /// Half of the choices use these weights times the power from now on. The others keep the probability of a light
+    /// with a wrong weight above half of the former one. @param weights  By index, above 0.
+    void weigh(std::span<const float> weights);
+    bool is_weighted() const { return is_weighted_; }
+
     /// Samples a light for point x on a surface with normal n. @param uniform  In (0, 1).
     Choice choose(const V3f& x, const V3f& n, double uniform) const;
 
@@ -59,8 +64,9 @@ class LightTree {
     struct alignas(64) Node {
         Vectors centre, half, axis;  // of bounding boxes [m] and cones
         Floats cone_cosine{}, cone_sine{};
-        Floats power{};   // [W or lm]
-        Floats radius{};  // of the box [m]; positive
+        Floats power{};           // [W or lm]
+        Floats weighted_power{};  // by weigh()
+        Floats radius{};          // of the box [m]; positive
         std::array<std::uint32_t, width> child{};
         std::array<bool, width> is_light{};
         std::uint32_t place_in_parent = none;  // node times `width` plus its number there
@@ -77,11 +83,14 @@ class LightTree {
     static Split best_split(std::span<const Light> lights, const Box& centres);
     static std::uint32_t build(std::span<Light> lights, std::vector<BinaryNode>& nodes);
     void add_node(const std::vector<BinaryNode>& binary, std::uint32_t root, std::uint32_t place_in_parent);
-    static Choices importance_of_children(const Node& node, const V3f& x, const V3f& n);
+    static Choices importance_of_children(const Node& node, const Floats& power, const V3f& x, const V3f& n);
+    /// @param is_weighted  Which of the powers decides; the probability is that of both.
+    Choice choose_by(bool is_weighted, const V3f& x, const V3f& n, double uniform) const;
 
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> place_;  // of each light, as Node::place_in_parent
     std::size_t light_count_;
+    bool is_weighted_ = false;
 };
 
 /// @param geometry, power  Per patch; only patches with power > 0 become lights.

@@ -85,23 +85,23 @@ class Reservoir {
     explicit Reservoir(double uniform) : uniform_(uniform) {}
 
     /// @param light  Divided by the probability of the candidate, multiplied by the cosine.
-    void consider(const Illumination& light) {
+    void consider(std::uint32_t luminaire, const Illumination& light) {
         const double irradiance = channel_sum(light.irradiance);
         if (!(irradiance > 0)) return;
         sum_ += irradiance;
         const double share = irradiance / sum_;
         const bool replaces = uniform_ < share;
         uniform_ = replaces ? uniform_ / share : (uniform_ - share) / (1 - share);  // uniform again
-        if (replaces) chosen_ = light;
+        if (replaces) chosen_ = {luminaire, light};
     }
-    Illumination chosen() const {
-        Illumination light = chosen_;
-        if (sum_ > 0) light.irradiance *= static_cast<float>(sum_ / channel_sum(light.irradiance));
-        return light;
+    LuminaireChoice::Chosen chosen() const {
+        LuminaireChoice::Chosen chosen = chosen_;
+        if (sum_ > 0) chosen.light.irradiance *= static_cast<float>(sum_ / channel_sum(chosen.light.irradiance));
+        return chosen;
     }
 
   private:
-    Illumination chosen_;
+    LuminaireChoice::Chosen chosen_;
     double sum_ = 0, uniform_;
 };
 
@@ -126,21 +126,23 @@ LuminaireChoice::LuminaireChoice(const Scene& scene)
     }
 }
 
-Illumination LuminaireChoice::choose_lamp(const V3f& x, const V3f& n, const LightSample& sample) const {
+LuminaireChoice::Chosen LuminaireChoice::choose_lamp(const V3f& x, const V3f& n, const LightSample& sample) const {
+    // Among candidates, hidden bright ones would win over those with more weight.
+    const int count = tree_.is_weighted() ? 1 : candidate_count;
     Reservoir reservoir(sample.choice);
-    for (int i = 0; i < candidate_count && tree_.light_count() > 0; ++i) {
+    for (int i = 0; i < count && tree_.light_count() > 0; ++i) {
         const LightTree::Choice choice =
-            tree_.choose(x, n, (static_cast<double>(i) + double{sample.candidates}) / candidate_count);
+            tree_.choose(x, n, (static_cast<double>(i) + double{sample.candidates}) / count);
         if (choice.index == none) continue;
-        reservoir.consider(
-            received(scene_.luminaires[choice.index], x, n, sample, 1 / (choice.probability * candidate_count)));
+        const float factor = 1 / (choice.probability * static_cast<float>(count));
+        reservoir.consider(choice.index, received(scene_.luminaires[choice.index], x, n, sample, factor));
     }
     return reservoir.chosen();
 }
 
-Illumination LuminaireChoice::choose_sun(const V3f& x, const V3f& n, const LightSample& sample) const {
+LuminaireChoice::Chosen LuminaireChoice::choose_sun(const V3f& x, const V3f& n, const LightSample& sample) const {
     Reservoir reservoir(sample.choice);
-    for (const std::uint32_t i : parallel_) reservoir.consider(received(scene_.luminaires[i], x, n, sample, 1));
+    for (const std::uint32_t i : parallel_) reservoir.consider(i, received(scene_.luminaires[i], x, n, sample, 1));
     return reservoir.chosen();
 }
 

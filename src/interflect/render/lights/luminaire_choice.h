@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "interflect/luminaires/illumination.h"
@@ -11,7 +12,7 @@
 namespace interflect::detail {
 
 /// Samples a luminaire by unoccluded irradiance (resampled importance sampling, Talbot et al. 2005). Excludes skies.
-/// Thread-safe.
+/// Constant methods are thread-safe.
 class LuminaireChoice {
   public:
     /// @param scene  Must outlive this.
@@ -24,11 +25,17 @@ class LuminaireChoice {
     const Group& lamps() const { return lamps_; }
     const Group& suns() const { return suns_; }
 
-    /// Returns the light of one luminaire with a position, divided by its probability and multiplied by the cosine; a
-    /// LightTree proposes candidates.
-    Illumination choose_lamp(const V3f& x, const V3f& n, const LightSample& sample) const;
+    /// LightTree::weigh() for luminaires with a position. @param weights  By index in the scene.
+    void weigh_lamps(std::span<const float> weights) { tree_.weigh(weights); }
+
+    struct Chosen {
+        std::uint32_t luminaire = none;
+        Illumination light;  ///< Divided by the probability, multiplied by the cosine.
+    };
+    /// Chooses a luminaire with a position; a LightTree proposes candidates.
+    Chosen choose_lamp(const V3f& x, const V3f& n, const LightSample& sample) const;
     /// The same among all directional lights.
-    Illumination choose_sun(const V3f& x, const V3f& n, const LightSample& sample) const;
+    Chosen choose_sun(const V3f& x, const V3f& n, const LightSample& sample) const;
 
   private:
     const Scene& scene_;

@@ -15,15 +15,20 @@ namespace {
 /// Contributions of shadow rays.
 struct ShadowRaySums {
     Rgb sampled{0, 0, 0}, visible{0, 0, 0};
+    int points = 0;
 };
 
 /// Visible share of the light at similar points of the other half, or else at all its points. 0 without any: a surface
-/// in the dark is black.
-Rgb coefficient(const ShadowRaySums& similar, const ShadowRaySums& all) {
+/// in the dark is black. Less if these points have far less unoccluded light than this one: a hidden bright source may
+/// be below their horizons.
+Rgb coefficient(const ShadowRaySums& similar, const ShadowRaySums& all, const Rgb& unoccluded) {
+    constexpr float most_over_mean = 2;  // rays sample the unoccluded light with less noise
     Rgb c(0);
     for (int k = 0; k < 3; ++k) {
         const ShadowRaySums& sums = similar.sampled[k] > 0 ? similar : all;
-        if (sums.sampled[k] > 0) c[k] = std::min(1.0f, sums.visible[k] / sums.sampled[k]);
+        if (!(sums.sampled[k] > 0)) continue;
+        const float excess = unoccluded[k] * static_cast<float>(sums.points) / (most_over_mean * sums.sampled[k]);
+        c[k] = std::min(1.0f, sums.visible[k] / sums.sampled[k]) / std::max(1.0f, excess);
     }
     return c;
 }
@@ -83,11 +88,11 @@ void FirstPoints::add_direct(std::span<PathLight> halves) const {
                 for (const Point& p : points) {
                     if (p.half == point.half) continue;
                     const Source& other = p.sources[k];
-                    all.sampled += other.sampled, all.visible += other.visible;
+                    all.sampled += other.sampled, all.visible += other.visible, ++all.points;
                     if (p.normal.dot(point.normal) < similar_cosine) continue;
-                    similar.sampled += other.sampled, similar.visible += other.visible;
+                    similar.sampled += other.sampled, similar.visible += other.visible, ++similar.points;
                 }
-                const Rgb c = coefficient(similar, all);
+                const Rgb c = coefficient(similar, all, source.unoccluded);
                 const Rgb irradiance = c * source.unoccluded + (source.visible - c * source.sampled);
                 halves[point.half].direct += RgbD(point.throughput / std::numbers::pi_v<float> * irradiance);
             }

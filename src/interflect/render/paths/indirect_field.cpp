@@ -162,6 +162,7 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
                              .start = start,
                              .options = plan.options,
                              .has_direct = false,
+                             .seen_sources = plan.seen_sources,
                              .known = plan.known,
                              .paths_per_place = record_paths_per_place};
     // Irradiance in pictures of irradiance, else radiance of a white surface.

@@ -165,7 +165,7 @@ void PathIntegrator::light_vertices() {
 }
 
 void PathIntegrator::light_first_point(Path& path) {
-    const LightSources& sources = plan_.scene.sources;
+    const LightSources& sources = plan_.sources();
     const UnoccludedLight& unoccluded = plan_.scene.unoccluded;
     // Look up recorded indirect light; the path goes on where no record may be used
     const FirstPoints::Lookup lookup = first_points_.add_indirect(path, light_[path.half]);
@@ -194,7 +194,7 @@ void PathIntegrator::light_first_point(Path& path) {
 void PathIntegrator::sample_sources(Path& path) {
     if (vertex_ == 1 && !plan_.has_direct) return;
     for (const SourceKind kind : source_kinds) {
-        const std::uint32_t rays = plan_.scene.sources.useful_rays(kind, path.sampling.rays);
+        const std::uint32_t rays = plan_.sources().useful_rays(kind, path.sampling.rays);
         for (std::uint32_t k = 0; k < rays; ++k) connect_to_source(path, kind, path.point * rays + k, rays, none);
     }
     for (std::uint32_t k = 0; k < path.sampling.rays; ++k) connect_to_sky(path, path.point * path.sampling.rays + k);
@@ -204,7 +204,7 @@ void PathIntegrator::connect_to_source(const Path& path, SourceKind kind, std::u
                                        std::uint32_t first_point) {
     constexpr std::array streams{LightStream::patches, LightStream::lamps, LightStream::suns};
     const LightSample numbers = light_sample(keys_[path.half], vertex_, streams[static_cast<std::size_t>(kind)], index);
-    const SourceSample source = plan_.scene.sources.sample(kind, path.position, path.normal, numbers);
+    const SourceSample source = plan_.sources().sample(kind, path.position, path.normal, numbers);
     if (!(channel_sum(source.irradiance) > 0)) return;
     const Rgb irradiance = source.irradiance / static_cast<float>(rays);
     shadow_rays_.add({path.position, source.direction}, source.patch, source.distance);
@@ -220,7 +220,7 @@ void PathIntegrator::connect_to_source(const Path& path, SourceKind kind, std::u
 }
 
 void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
-    const Skies& skies = plan_.scene.sources.skies();
+    const Skies& skies = plan_.sources().skies();
     const std::uint32_t guide = path.sampling.guide;
     if (!skies.can_sample() && guide == none) return;
     const bool takes_turns = guide != none && skies.can_sample();
@@ -288,7 +288,7 @@ void PathIntegrator::store(std::span<SampleBatch> batches) const {
 }
 
 void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
-    const Skies& skies = plan_.scene.sources.skies();
+    const Skies& skies = plan_.sources().skies();
     if (vertex_ == 1) return add(path.half, 0, path.throughput * skies.seen(direction));
     Rgb radiance = sampled_sky(path, direction);
     if (channel_sum(radiance) > 0)
@@ -303,7 +303,7 @@ void PathIntegrator::add_emission(const Hit& hit, const V3f& direction, float di
     const Rgb radiance = path.throughput * exitance / pi;
     if (vertex_ == 1) return add(path.half, 0, radiance);
     const float density =
-        plan_.scene.sources.density(hit.patch, path.position, path.normal, direction, distance * distance);
+        plan_.sources().density(hit.patch, path.position, path.normal, direction, distance * distance);
     const float weight = balance(direction_density(path, direction), static_cast<float>(path.sampling.rays) * density);
     add(path.half, vertex_ - 1, radiance * weight);
 }
@@ -313,12 +313,12 @@ float PathIntegrator::direction_density(const Path& path, const V3f& direction) 
 }
 
 Rgb PathIntegrator::sampled_sky(const Path& path, const V3f& direction) const {
-    const Skies& skies = plan_.scene.sources.skies();
+    const Skies& skies = plan_.sources().skies();
     return path.sampling.guide == none ? skies.sampled_radiance(direction) : skies.radiance(direction);
 }
 
 float PathIntegrator::sky_density(const Path& path, const V3f& direction) const {
-    const Skies& skies = plan_.scene.sources.skies();
+    const Skies& skies = plan_.sources().skies();
     const auto rays = static_cast<float>(path.sampling.rays);
     const float of_sky = skies.can_sample() ? skies.density(direction) : 0;
     if (path.sampling.guide == none) return rays * of_sky;

@@ -312,9 +312,8 @@ Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const P
     time_left.limit_time(StopRequest::Clock::now(), options.time);
     const TracedScene traced(scene, ray_caster);
     const PathPlan plan{.scene = traced, .start = start, .options = options};
-    if (!known) return draw(plan, monitor, time_left);
-    const double share_of_records = known->is_interpolated ? 0.25 : 0;  // of the time; roughly
-    const PreparedLight prepared(plan, *known, monitor_section(monitor, 0, share_of_records));
+    const double share_of_records = known && known->is_interpolated ? 0.25 : 0;  // of the time; roughly
+    const PreparedLight prepared(plan, known, monitor_section(monitor, 0, share_of_records));
     const PathPlan with_records = prepared.plan();
     Rendering result = draw(with_records, monitor_section(monitor, share_of_records, 1, prepared.rays()), time_left);
     result.rays += prepared.rays();

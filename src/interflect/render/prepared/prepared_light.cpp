@@ -4,6 +4,7 @@
 
 #include "interflect/base/common_stop.h"
 #include "interflect/render/prepared/seen_light.h"
+#include "interflect/render/prepared/seen_sources.h"
 
 namespace interflect::detail {
 
@@ -14,14 +15,14 @@ KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, s
     return light;
 }
 
-PreparedLight::PreparedLight(const PathPlan& plan, const KnownIrradiance& known, const Monitor& monitor) : plan_(plan) {
+PreparedLight::PreparedLight(const PathPlan& plan, const KnownIrradiance* known, const Monitor& monitor) : plan_(plan) {
     const CommonStop stop(monitor.stop, monitor.ranks);
     const std::vector<SurfacePoint> points = first_points(plan, stop.within_process());
-    light_.emplace(known_light(plan.scene, known, points, plan.options.seed));
-    if (!known.is_interpolated) return;
-    PathPlan gathering = plan;
-    gathering.known = &*light_;
-    field_.emplace(gathering, points, monitor);
+    if (const auto seen = seen_sources(plan.scene, points, plan.options.seed)) sources_.emplace(*seen);
+    if (!known) return;
+    light_.emplace(known_light(plan.scene, *known, points, plan.options.seed));
+    if (!known->is_interpolated) return;
+    field_.emplace(this->plan(), points, monitor);
     guide_.emplace(plan.scene, *field_, plan.options.seed, stop);
     rays_ = field_->rays() + guide_->rays();
     hybrid_ = {&*field_, &*guide_};
@@ -29,9 +30,11 @@ PreparedLight::PreparedLight(const PathPlan& plan, const KnownIrradiance& known,
 
 PathPlan PreparedLight::plan() const {
     PathPlan plan = plan_;
+    if (sources_) plan.seen_sources = &*sources_;
+    if (!light_) return plan;
     plan.known = &*light_;
     plan.first_rays = first_shadow_rays;
-    if (field_) plan.hybrid = &hybrid_;
+    if (guide_) plan.hybrid = &hybrid_;
     return plan;
 }
 

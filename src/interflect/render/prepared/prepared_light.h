@@ -23,13 +23,15 @@ struct KnownIrradiance {
 KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, std::span<const SurfacePoint> points,
                        std::uint64_t seed);
 
-/// What final gathering and hybrid shading know about the light around the first points of a picture or of gauges.
+/// What paths know about the light around the first points of a picture or of gauges before they are traced: the
+/// visibility of light sources; for final gathering and hybrid shading also the reflected light of a solution.
 /// Thread-safe after construction.
 class PreparedLight {
   public:
     /// @param plan     Without known light; must outlive this, as does `known`.
+    /// @param known    Null for path tracing and for direct light alone.
     /// @param monitor  Collective.
-    PreparedLight(const PathPlan& plan, const KnownIrradiance& known, const Monitor& monitor);
+    PreparedLight(const PathPlan& plan, const KnownIrradiance* known, const Monitor& monitor);
     PreparedLight(const PreparedLight&) = delete;
     PreparedLight& operator=(const PreparedLight&) = delete;
 
@@ -39,6 +41,7 @@ class PreparedLight {
 
   private:
     const PathPlan& plan_;
+    std::optional<LightSources> sources_;
     std::optional<KnownLight> light_;
     std::optional<IndirectField> field_;
     std::optional<SkyGuide> guide_;

@@ -8,6 +8,7 @@
 #include "interflect/base/parallel.h"
 #include "interflect/base/random.h"
 #include "interflect/render/lights/path_samples.h"
+#include "interflect/render/prepared/test_rays.h"
 
 namespace interflect::detail {
 
@@ -17,17 +18,9 @@ namespace {
 /// noise, since directions find them well (Karlik et al. 2019): in a furnace, irradiance of 128 paths then varies
 /// by 2.6% in place of 1.8%.
 constexpr float bright_over_mean = 2;
-constexpr std::size_t min_rays = 256, max_rays = 1 << 16;  // of a round
 constexpr std::size_t rays_per_task = 1 << 10;
 
 std::uint64_t key_of(std::uint64_t seed) { return mix(seed, 0x5ee11); }
-
-/// About one per point, a small part of the rays of its records.
-std::size_t rays_for(std::span<const SurfacePoint> points) { return std::clamp(points.size(), min_rays, max_rays); }
-
-const SurfacePoint& random_one(std::span<const SurfacePoint> points, std::uint32_t word) {
-    return points[static_cast<std::size_t>((std::uint64_t{word} * points.size()) >> 32)];
-}
 
 /// Calls visit(ray, hit, transmittance) for all hits of surfaces, also behind panes.
 void trace(const TracedScene& scene, std::span<const Ray> rays, const auto& visit) {
@@ -45,7 +38,7 @@ void trace(const TracedScene& scene, std::span<const Ray> rays, const auto& visi
 /// Returns the mean of reflected radiosity over cosine-distributed directions, sum of channels.
 float mean_radiosity(const KnownLight& light, const TracedScene& scene, std::span<const SurfacePoint> points,
                      std::uint64_t key) {
-    const std::size_t count = rays_for(points);
+    const std::size_t count = test_rays_for(points);
     const auto sum = parallel_sum(count, rays_per_task, 0.0, [&](std::size_t begin, std::size_t end) {
         std::vector<Ray> rays;
         for (std::size_t i = begin; i < end; ++i) {
@@ -68,41 +61,24 @@ float mean_radiosity(const KnownLight& light, const TracedScene& scene, std::spa
 /// from the points: the missing rays count as hidden.
 std::vector<float> seen_shares(const KnownLight& light, const TracedScene& scene, std::span<const SurfacePoint> points,
                                std::uint64_t key) {
-    struct Sent {
-        std::uint32_t patch = none;
-        bool arrives = false;
-    };
-    std::vector<Sent> sent(rays_for(points));
-    parallel_for_ranges(sent.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
-        std::vector<Ray> rays;
-        std::vector<std::size_t> index;  // in `sent`
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto words = random_words(mix(key, 1), i), places = random_words(mix(key, 2), i);
-            const SurfacePoint& p = random_one(points, words[0]);
-            const KnownLight::Place place =
-                light.sample(p.position, p.normal, unit_float(words[1]), unit_float(places[0]), unit_float(places[1]))
-                    .place;
-            if (place.patch == none) continue;
-            const V3f to = scene.geometry[place.patch].point(place.parameters) - p.position;
-            if (!(p.normal.dot(to) > 0 && scene.geometry[place.patch].normal().dot(to) < 0)) continue;
-            sent[i].patch = place.patch;
-            rays.push_back({p.position, to.normalized()});
-            index.push_back(i);
-        }
-        trace(scene, rays, [&](std::size_t i, const Hit& hit, const Rgb&) {
-            if (hit.patch == sent[index[i]].patch) sent[index[i]].arrives = true;
-        });
+    const std::size_t count = test_rays_for(points);
+    const TestedSources tested = send_test_rays(scene, scene.geometry.size(), count, [&](std::size_t i) {
+        const auto words = random_words(mix(key, 1), i), places = random_words(mix(key, 2), i);
+        const SurfacePoint& p = random_one(points, words[0]);
+        const KnownLight::Place place =
+            light.sample(p.position, p.normal, unit_float(words[1]), unit_float(places[0]), unit_float(places[1]))
+                .place;
+        if (place.patch == none) return TestRay{};
+        const V3f to = scene.geometry[place.patch].point(place.parameters) - p.position;
+        if (!(p.normal.dot(to) > 0 && scene.geometry[place.patch].normal().dot(to) < 0)) return TestRay{};
+        return TestRay{place.patch, {p.position, to.normalized()}, place.patch};
     });
-    std::vector<float> rays(scene.geometry.size(), 0.0f), share(scene.geometry.size(), 1.0f);
-    for (const Sent& s : sent) {
-        if (s.patch == none) continue;
-        ++rays[s.patch];
-        if (s.arrives) ++share[s.patch];
-    }
     const std::span<const float> powers = light.sampling_powers();
     const double power = std::accumulate(powers.begin(), powers.end(), 0.0);
-    const auto rays_per_power = static_cast<float>(power > 0 ? static_cast<double>(sent.size()) / power : 0);
-    for (std::size_t i = 0; i < share.size(); ++i) share[i] /= 1 + std::max(rays[i], rays_per_power * powers[i]);
+    const auto rays_per_power = static_cast<float>(power > 0 ? static_cast<double>(count) / power : 0);
+    std::vector<float> share(scene.geometry.size());
+    for (std::size_t i = 0; i < share.size(); ++i)
+        share[i] = (1 + tested.arrived[i]) / (1 + std::max(tested.sent[i], rays_per_power * powers[i]));
     return share;
 }
 

@@ -44,11 +44,13 @@ struct PathPlan {
     const PictureOptions& options;
     std::uint32_t first_rays = 1;                   ///< Shadow rays to each kind of source at first points.
     bool has_direct = true;                         ///< Includes light that is reflected once.
+    const LightSources* seen_sources = nullptr;     ///< With weights by visibility; null: those of the scene.
     const KnownLight* known = nullptr;              ///< Ends paths; null: only Russian roulette does.
     std::uint32_t paths_per_place = 1;              ///< Paths for each ray to a place of KnownLight::sample().
     const VirtualLights* virtual_lights = nullptr;  ///< Light every vertex; paths find the light beyond their bounds.
     const HybridLight* hybrid = nullptr;
 
+    const LightSources& sources() const { return seen_sources ? *seen_sources : scene.sources; }
     bool shows_irradiance() const { return options.quantity == PictureQuantity::irradiance; }
 };
 

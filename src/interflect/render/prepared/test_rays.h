@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "interflect/ray_caster.h"
+#include "interflect/render/paths/surface_points.h"
+#include "interflect/render/rays/traced_scene.h"
+
+namespace interflect::detail {
+
+/// A ray from a point to a sampled light source or bright element.
+struct TestRay {
+    std::uint32_t source = none;  ///< none: nothing was sampled.
+    Ray ray;
+    std::uint32_t patch = none;  ///< Target, as in ShadowRays.
+    float distance = 0;          ///< [m]
+};
+
+/// Numbers of test rays by source.
+struct TestedSources {
+    std::vector<float> sent, arrived;
+};
+
+/// About one per point, a small part of the rays of its light.
+std::size_t test_rays_for(std::span<const SurfacePoint> points);
+
+const SurfacePoint& random_one(std::span<const SurfacePoint> points, std::uint32_t word);
+
+/// @param sources  Greater than every TestRay::source.
+/// @param sample   Returns the test ray of a number below `count`; thread-safe.
+TestedSources send_test_rays(const TracedScene& scene, std::size_t sources, std::size_t count,
+                             const std::function<TestRay(std::size_t)>& sample);
+
+}  // namespace interflect::detail
