@@ -78,9 +78,11 @@ bool oracle_refines_passes(const SolverState& state) {
 void Passes::prepare(SolverState& state) {
     set_estimate(state, zero_estimate(state));  // IterationStart keeps the light of an interrupted preparation
     if (state.options.limits.rays < fewest_rays_with_preparation) return;
-    const std::int64_t rays = state.schedule.start_rays();
+    const bool needs_importance = importance_use(state.solution) == ImportanceUse::full;
+    const std::int64_t passes = (needs_importance ? 1 : 0) + (state.options.method.refines ? 2 : 0);
+    const std::int64_t rays = state.schedule.start_rays(std::max<std::int64_t>(1, passes));
     total_unshot_ = 0;
-    if (importance_use(state.solution) == ImportanceUse::full) transport_importance(state, rays);
+    if (needs_importance) transport_importance(state, rays);
     aim_outdoor_light(state);
     if (state.options.method.refines)  // the first pass estimates the light that the oracle needs
         for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));
