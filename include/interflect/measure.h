@@ -243,10 +243,10 @@ std::array<float, 9> spherical_harmonics(const V3f& direction);
 struct IrradianceProbe {
     /// E_lm [lm/m^2 or W/m^2], the projection of E(n) on the harmonics: the coefficients of radiance times pi, 2 pi / 3
     /// and pi / 4 for degree 0, 1 and 2 (Ramamoorthi and Hanrahan 2001, Eq. 9). The omitted higher degrees are at most
-    /// 9% of the irradiance from one direction.
+    /// 9.4% of the irradiance from one direction.
     std::array<Rgb, 9> coefficients;
-    /// Standard error of irradiance() from sampling, root mean square over all normals, mean over the channels; without
-    /// the solution's own error.
+    /// Standard error of irradiance() from sampling and from the number of facets, root mean square over all normals,
+    /// mean over the channels; without the solution's own error.
     float standard_error = 0;
     /// Inside a solid or in the dark: more than a quarter of all directions hit the back of a one-sided face, or no
     /// light arrives. Exclude from interpolation.
@@ -277,7 +277,8 @@ inline constexpr std::int64_t max_probes = 1'000'000;
 
 /// Measures the light of probes in a solution as measure_irradiance() does, at 50 points for each probe: the facets of
 /// a small ball, in a random rotation. The coefficients are unbiased but for the solution's error from the second
-/// bounce on. Light from a single direction has an error of quadrature of at most 1% of its irradiance.
+/// bounce on. For light from a single direction, degree 1 is exact, and the facets give irradiance() an error of 0.6%
+/// of the light (root mean square over normals and rotations; at most 3.7%).
 /// @param ray_caster  Of the same scene, as is `solution`.
 /// @return            The same bits for any number of threads.
 /// @throws InputError for an option out of range, more than max_probes, or another scene; Stopped if `monitor` ends

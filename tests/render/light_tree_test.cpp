@@ -48,9 +48,7 @@ const std::vector<Point> points_of_surfaces = {
     {V3f(1.5f, 4.2f, 2.3f), V3f(0, 1, 0)}, {V3f(8, 8, 0.1f), V3f(-0.6f, 0, 0.8f)},  {V3f(-5, 0, 8), V3f(0, 0, -1)}};
 
 /// choose() for evenly spaced numbers agrees with probability(), except for numbers at the borders.
-TEST(LightTree, ChoosesWithTheStatedProbability) {
-    const Scene scene = lamps();
-    const LightTree tree = tree_of(scene);
+void expect_stated_probabilities(const Scene& scene, const LightTree& tree) {
     constexpr int count = 100'000;
     for (const auto& [x, n] : points_of_surfaces) {
         std::vector<int> chosen(scene.patches.size(), 0);
@@ -63,6 +61,30 @@ TEST(LightTree, ChoosesWithTheStatedProbability) {
         for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
             EXPECT_NEAR(static_cast<float>(chosen[p]) / count, tree.probability(p, x, n), 1e-4) << "patch " << p;
     }
+}
+
+TEST(LightTree, ChoosesWithTheStatedProbability) {
+    const Scene scene = lamps();
+    LightTree tree = tree_of(scene);
+    expect_stated_probabilities(scene, tree);
+    std::vector<float> weights;
+    for (std::size_t i = 0; i < scene.patches.size(); ++i) weights.push_back(i % 3 == 0 ? 1e-4f : 1.0f);
+    tree.weigh(weights);
+    expect_stated_probabilities(scene, tree);
+}
+
+/// Half of the choices follow the weights.
+TEST(LightTree, WeightsMoveHalfOfTheChoices) {
+    Scene scene;
+    const std::uint32_t bright = add_material(scene, Rgb(0), Rgb(1e4f)), dim = add_material(scene, Rgb(0), Rgb(1));
+    for (const std::uint32_t material : {bright, dim})
+        add_rectangle(scene, V3f(-1, -1, 1), V3f(0, 2, 0), V3f(2, 0, 0), material);
+    LightTree tree = tree_of(scene);
+    const V3f x(0), up(0, 0, 1);
+    EXPECT_NEAR(tree.probability(1, x, up), 1e-4, 1e-6);
+    tree.weigh(std::vector<float>{1e-8f, 1});
+    EXPECT_NEAR(tree.probability(0, x, up), 0.5, 1e-3);
+    EXPECT_NEAR(tree.probability(1, x, up), 0.5, 1e-3);
 }
 
 /// A patch that can light a point is chosen; tried for each corner of the patch, without occlusion.

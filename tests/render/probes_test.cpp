@@ -57,7 +57,7 @@ TEST(Probes, OfAFurnaceAreUniform) {
     EXPECT_EQ(grid.step, Imath::V3d(1, 1, 1));
     for (const IrradianceProbe& probe : grid.probes) {
         EXPECT_FALSE(probe.is_inside);
-        EXPECT_LT(probe.standard_error, 0.05f);
+        EXPECT_LT(probe.standard_error, 0.1f);
         const float tolerance = 5 * probe.standard_error;  // false alarm: 1e-6 for each of 72 comparisons
         for (int c = 0; c < 3; ++c) {
             const float exitance = static_cast<float>(1 << c);
@@ -80,11 +80,12 @@ void expect_parallel_light(const IrradianceProbe& probe, const V3f& towards, flo
                         factors[k == 0  ? 0
                                 : k < 4 ? 1
                                         : 2],
-                    (is_exact ? 1e-4f : 0.01f * std::sqrt(4 * pi)) * irradiance)
+                    (is_exact ? 1e-4f : 0.037f * std::sqrt(4 * pi)) * irradiance)
             << k;
     }
-    EXPECT_NEAR(probe.irradiance(towards).y, irradiance * 17 / 16, 0.02f * irradiance);
-    EXPECT_NEAR(probe.irradiance(-towards).y, irradiance / 16, 0.02f * irradiance);
+    EXPECT_NEAR(probe.irradiance(towards).y, irradiance * 17 / 16, 0.037f * irradiance);
+    EXPECT_NEAR(probe.irradiance(-towards).y, irradiance / 16, 0.037f * irradiance);
+    EXPECT_NEAR(probe.standard_error, 0.006f * irradiance, 1e-3f * irradiance);
     EXPECT_FALSE(probe.is_inside);
 }
 
@@ -147,7 +148,7 @@ TEST(Probes, DoNotSeeLampsBehindWalls) {
     scene.luminaires = {{"lamp", 0, PointLight{{0.75f, 0.5f, 0.5f}, Rgb(1)}}};
     const ProbeGrid grid = probes(scene, {.spacing = 1, .rays = 8});
     ASSERT_EQ(grid.probes.size(), 2u);
-    EXPECT_NEAR(grid.probes[0].irradiance({1, 0, 0}).x, 16 * 17 / 16.0f, 0.02f * 16) << "1 cd in 0.25 m";
+    EXPECT_NEAR(grid.probes[0].irradiance({1, 0, 0}).x, 16 * 17 / 16.0f, 0.037f * 16) << "1 cd in 0.25 m";
     EXPECT_EQ(grid.probes[1].coefficients[0], Rgb(0));
     EXPECT_FALSE(grid.probes[0].is_inside);
     EXPECT_TRUE(grid.probes[1].is_inside) << "in the dark";

@@ -14,7 +14,7 @@ constexpr std::size_t max_points = 2048;
 constexpr std::uint64_t rays_per_point = 32, seed_of_points = 41;
 
 float offset_of_points(const Scene& scene) {
-    constexpr float relative_offset = 0x1p-17f;  // as in measure_irradiance()
+    constexpr float relative_offset = 0x1p-17f;  // as in measure_irradiance() for points within the scene
     float reach = 0;
     for (const V3f& x : scene.vertices)
         for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(x[k]));

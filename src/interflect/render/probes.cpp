@@ -22,9 +22,11 @@ using namespace detail;
 
 namespace {
 
-/// Of sphere_quadrature(): 50 facets. E(n) has no odd degrees above 1 (Ramamoorthi and Hanrahan 2001), so degree 1 is
-/// exact, and the first degree that changes the coefficients is 8, which has 1% of the light from one direction.
+/// Of sphere_quadrature(): 50 facets.
 constexpr int rows_of_facets = 5;
+/// Error of irradiance() by the facets for light from one direction, root mean square over normals and rotations,
+/// relative to its irradiance; at most 3.7%. With 32 or 72 facets 1.1% and 0.4%.
+constexpr float error_of_facets = 0.006f;
 constexpr std::size_t probes_at_once = 4096;
 
 /// Relative to the scene's origin [m].
@@ -87,16 +89,18 @@ class Balls {
                           std::span<const MeasuredIrradiance> light) const {
         constexpr float sphere = 4 * std::numbers::pi_v<float>;
         IrradianceProbe probe;
-        float variance = 0;
+        float variance = 0, direct = 0;
         for (std::size_t i = 0; i < facets.size(); ++i) {
             const auto error = static_cast<float>(mean_channel(RgbD(light[i].standard_error)));
+            direct += 4 * facets[i].weight / sphere * static_cast<float>(mean_channel(RgbD(light[i].direct)));
             for (std::size_t k = 0; const float basis : spherical_harmonics(facets[i].direction)) {
                 const float share = facets[i].weight * basis;
                 probe.coefficients[k++] += share * light[i].sum();
                 variance += share * share * error * error / sphere;
             }
         }
-        probe.standard_error = std::sqrt(variance);
+        // As if all direct light came from one direction, where the mean over all normals is a quarter.
+        probe.standard_error = std::hypot(std::sqrt(variance), error_of_facets * direct);
         constexpr float max_backs = 0.25f;
         probe.is_inside =
             probe.coefficients[0] == Rgb(0) || share_of_backs(V3f(position - scene_.origin), facets) > max_backs;

@@ -42,9 +42,8 @@ class GaugeTile {
     GaugeLight light(std::size_t i) const {
         const PixelStatistics& p = pixels_[i];
         const auto error = static_cast<float>(mean_channel(p.direct_squared_error()));
-        GaugeLight light{{Rgb(p.light().direct), error}, {}, Rgb(p.light().indirect), 0};
+        GaugeLight light{{Rgb(p.light().direct), error}, {}, Rgb(p.light().indirect)};
         for (std::size_t h = 0; h < 2; ++h) light.halves[h] = {Rgb(p.half(h).direct), 2 * error};
-        light.indirect_error = static_cast<float>(p.light().record_error);
         return light;
     }
 

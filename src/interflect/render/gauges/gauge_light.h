@@ -18,17 +18,16 @@ struct SampledIrradiance {
 };
 struct GaugeLight {
     SampledIrradiance direct;
-    std::array<SampledIrradiance, 2> halves;  ///< `direct` from independent halves of the samples.
-    Rgb indirect;                             ///< Interpolated [as H].
-    float indirect_error = 0;                 ///< IndirectField::Light::error.
+    std::array<SampledIrradiance, 2> halves;  ///< `direct` from the halves of the samples (SampleBatch).
+    Rgb indirect;                             ///< Interpolated; gathered where no record is near [as H].
 
     Rgb irradiance() const { return direct.irradiance + indirect; }
 };
 
-/// Irradiance of gauges by hybrid shading, with options.samples paths for each. A quarter suffices where the direct
-/// light of the neighbours in the list has an estimated error, relative to all reflected light, below options.until or,
-/// without it, hybrid_target. Direct light is unbiased: the number of samples of a gauge does not depend on these
-/// samples.
+/// Irradiance of gauges by hybrid shading, with options.samples paths for each, an even number. A quarter suffices
+/// where the direct light of the neighbours in the list has an estimated error, relative to all reflected light, below
+/// options.until or, without it, hybrid_target. Direct light is unbiased: the number of samples of a gauge does not
+/// depend on these samples.
 /// @param known  Interpolated.
 /// @return       Per gauge, in rank 0 only; the same bits for any number of threads and ranks. Collective.
 /// @throws Stopped, in all ranks.

@@ -132,8 +132,10 @@ UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeomet
     }
     for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i) {
         if (is_sky(scene.luminaires[i])) continue;
-        const bool is_sun = std::holds_alternative<DirectionalLight>(scene.luminaires[i].kind);
-        (is_sun ? suns_ : lamps_).push_back(i);
+        const auto* sun = std::get_if<DirectionalLight>(&scene.luminaires[i].kind);
+        (sun ? suns_ : lamps_).push_back(i);
+        const bool is_point = sun ? sun->diameter == 0 : strata(scene.luminaires[i], V3f(0, 0, 1)) == 1;
+        if (!is_point) is_exact_[static_cast<std::size_t>(sun ? SourceKind::suns : SourceKind::lamps)] = false;
     }
 }
 

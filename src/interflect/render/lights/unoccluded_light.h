@@ -24,6 +24,8 @@ class UnoccludedLight {
     bool has(SourceKind kind) const;
     /// Whether at() uses u and v.
     bool samples_sources() const { return !lamps_.empty() || !suns_.empty(); }
+    /// Whether at() has no noise.
+    bool is_exact(SourceKind kind) const { return is_exact_[static_cast<std::size_t>(kind)]; }
 
     /// Returns the irradiance at x on a surface with normal n [as H]: exact for emitting patches (Lambert's formula for
     /// polygons), points and suns above the horizon. For other luminaires it is an unbiased estimate from 16 stratified
@@ -56,6 +58,7 @@ class UnoccludedLight {
     std::vector<PatchGroup> groups_;
     std::size_t patch_count_ = 0;
     std::vector<std::uint32_t> lamps_, suns_;
+    std::array<bool, source_kinds.size()> is_exact_{true, true, true};
     bool has_texture_ = false;
 };
 

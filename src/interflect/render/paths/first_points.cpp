@@ -1,6 +1,7 @@
 #include "interflect/render/paths/first_points.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -21,14 +22,18 @@ struct ShadowRaySums {
 /// Visible share of the light at similar points of the other half, or else at all its points. 0 without any: a surface
 /// in the dark is black. Less if these points have far less unoccluded light than this one: a hidden bright source may
 /// be below their horizons.
+/// @param unoccluded  Of this point, without noise, which would bias the product with it; or 0.
 Rgb coefficient(const ShadowRaySums& similar, const ShadowRaySums& all, const Rgb& unoccluded) {
-    constexpr float most_over_mean = 2;  // rays sample the unoccluded light with less noise
+    constexpr float least_share =
+        0.125f;                           // below, the noise of hidden light outweighs what the control variate removes
+    constexpr float most_over_mean = 32;  // of unoccluded light and the noise of its samples
     Rgb c(0);
     for (int k = 0; k < 3; ++k) {
         const ShadowRaySums& sums = similar.sampled[k] > 0 ? similar : all;
         if (!(sums.sampled[k] > 0)) continue;
         const float excess = unoccluded[k] * static_cast<float>(sums.points) / (most_over_mean * sums.sampled[k]);
-        c[k] = std::min(1.0f, sums.visible[k] / sums.sampled[k]) / std::max(1.0f, excess);
+        const float share = std::min(1.0f, sums.visible[k] / sums.sampled[k]) / std::max(1.0f, excess);
+        if (share > least_share) c[k] = share;
     }
     return c;
 }
@@ -39,12 +44,14 @@ const FirstPoints::Group& FirstPoints::group_of(const Path& path) {
     constexpr float same_cosine = 0.999f;
     const std::uint32_t batch = path.half / 2;
     for (std::size_t i = groups_.size(); i > 0 && groups_[i - 1].batch == batch; --i)
-        if (groups_[i - 1].patch == path.patch && groups_[i - 1].normal.dot(path.normal) >= same_cosine)
+        if (groups_[i - 1].patch == path.patch && groups_[i - 1].normal.dot(path.normal) >= same_cosine &&
+            (groups_[i - 1].position - path.lookup).length() <= groups_[i - 1].radius)
             return groups_[i - 1];
-    Group& group = groups_.emplace_back(Group{batch, path.patch, path.normal});
+    Group& group = groups_.emplace_back(Group{batch, path.patch, path.normal, path.lookup});
     const IndirectField* const field = plan_.hybrid->field;
     if (!field) {
         group.lookup.is_found = true;
+        group.radius = std::numeric_limits<float>::infinity();
         return group;
     }
     const auto found = field->at(path.lookup, path.normal, path.patch);
@@ -52,6 +59,7 @@ const FirstPoints::Group& FirstPoints::group_of(const Path& path) {
     group.lookup.is_found = true;
     group.irradiance = found->irradiance;
     group.error = found->error;
+    group.radius = found->reach / 2;
     const SkyGuide* const guide = plan_.hybrid->guide;
     if (guide && guide->sees_sky(found->record)) group.lookup.guide = found->record;
     return group;
@@ -92,7 +100,8 @@ void FirstPoints::add_direct(std::span<PathLight> halves) const {
                     if (p.normal.dot(point.normal) < similar_cosine) continue;
                     similar.sampled += other.sampled, similar.visible += other.visible, ++similar.points;
                 }
-                const Rgb c = coefficient(similar, all, source.unoccluded);
+                const bool is_exact = plan_.scene.unoccluded.is_exact(source_kinds[k]);
+                const Rgb c = coefficient(similar, all, is_exact ? source.unoccluded : Rgb(0));
                 const Rgb irradiance = c * source.unoccluded + (source.visible - c * source.sampled);
                 halves[point.half].direct += RgbD(point.throughput / std::numbers::pi_v<float> * irradiance);
             }

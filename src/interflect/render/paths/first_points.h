@@ -36,7 +36,7 @@ class FirstPoints {
         bool is_found = false;
         std::uint32_t guide = none;  ///< Record whose guide sees the sky.
     };
-    /// Adds the indirect light of the path's vertex to `light`. Points of a batch with the same patch and normal
+    /// Adds the indirect light of the path's vertex to `light`. Near points of a batch with the same patch and normal
     /// share the lookup at the first of them, which may belong to the other half.
     Lookup add_indirect(const Path& path, PathLight& light);
 
@@ -66,7 +66,8 @@ class FirstPoints {
     };
     struct Group {
         std::uint32_t batch = none, patch = none;
-        V3f normal{0, 0, 0};
+        V3f normal{0, 0, 0}, position{0, 0, 0};
+        float radius = 0;  // of the points that share the lookup [m]; records reach four pixels or more
         Lookup lookup{};
         Rgb irradiance{0, 0, 0};
         float error = 0;  // standard error, mean channel

@@ -374,7 +374,7 @@ std::optional<IndirectField::Light> IndirectField::at(const V3f& x, const V3f& n
     const Fit fit = fit_at(x, n, patch);
     if (!(fit.values.weight() > min_weight)) return std::nullopt;
     const float squared_error = std::max(0.0f, fit.values.variance()) + records_[fit.nearest].squared_bias;
-    return Light{fit.values.value(), std::sqrt(squared_error), fit.nearest};
+    return Light{fit.values.value(), std::sqrt(squared_error), records_[fit.nearest].reach, fit.nearest};
 }
 
 }  // namespace interflect::detail

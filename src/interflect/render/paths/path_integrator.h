@@ -18,7 +18,8 @@ namespace interflect::detail {
 /// At each vertex, shadow rays sample the light sources, and a cosine-distributed direction continues the path. Light
 /// sources that both can find are weighted by the balance heuristic (Veach and Guibas 1995). Unbiased unless the plan
 /// ends paths at known light (biased by the error of the solution) or looks up records (FirstPoints). Omits light
-/// behind more than 32 panes, or that panes and mirrors reduce to less than 0.1% of a path's (find_surfaces()).
+/// of mirrors except those that the camera sees, and light behind more than 32 panes and mirrors or those that leave
+/// less than 0.1% of it (find_surfaces()).
 class PathIntegrator {
   public:
     /// @param plan  Must outlive this.

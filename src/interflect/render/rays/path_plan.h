@@ -30,7 +30,7 @@ struct HybridLight {
     const SkyGuide* guide = nullptr;       ///< Directions to the sky around the records; may be null.
 };
 
-/// Inputs of a PathIntegrator. Pictures, texels, vertices and measuring points differ only in their plan:
+/// Inputs of a PathIntegrator. For it, pictures, texels, vertices and measuring points differ only in their plan:
 ///
 ///     path tracing                             the defaults
 ///     instant radiosity                        virtual_lights
@@ -38,6 +38,8 @@ struct HybridLight {
 ///     hybrid shading                           known, first_rays, hybrid with its field and guide
 ///     direct light of texels and vertices      first_rays, hybrid without a field
 ///     indirect light of a record               known, paths_per_place, has_direct = false
+///
+/// All may have seen_sources.
 struct PathPlan {
     const TracedScene& scene;
     const PathStart& start;
