@@ -37,8 +37,8 @@ struct IterationReport {
     /// irradiance, over the area. Infinite before an estimate exists, and if a view shows no reflected light.
     double error_estimate = std::numeric_limits<double>::infinity();
     double noise_estimate = std::numeric_limits<double>::infinity();  ///< Standard error.
-    /// Mean deviation within elements. 0 where it is not estimated: on fixed elements, and where they are refined by
-    /// another criterion than the variance. `error_estimate` is that of noise alone then.
+    /// Mean deviation within elements. 0 where it is not estimated: on fixed elements, and where another criterion than
+    /// the variance refines them. `error_estimate` then equals `noise_estimate`.
     double discretisation_estimate = std::numeric_limits<double>::infinity();
     /// Payload of a ray relative to the mean of all rays: maximum, and value exceeded by 0.1% of the rays.
     double largest_payload = 1, high_payload = 1;

@@ -205,9 +205,9 @@ TEST(Hybrid, SunOutsideAddsNoNoise) {
     EXPECT_LE(noise_beside(Hidden::sun, false, 4), 1.1 * noise_beside(Hidden::nothing, false, 4) + 1e-3);
 }
 
-/// Sources behind a wall that are 10,000 and 100,000 times as bright leave the lamp in the room half of its shadow
-/// rays, less what they take because few test rays cannot exclude them: 7% and 16% of noise. Seen to fail without
-/// weights by visibility: 1,500% and 5,300%.
+/// A lamp keeps half of its shadow rays if sources behind a wall are 10,000 or 100,000 times brighter. The test rays
+/// cannot exclude a few visible parts, so noise of 7% and 16% remains. Seen to fail without weights by visibility:
+/// 1,500% and 5,300%.
 TEST(Hybrid, BrightLampBehindAWallAddsLittleNoise) {
     const double of_lamp = 100 / (2 * 2.0), of_patch = 1e4 * 0.04 / (4 * std::numbers::pi);  // below them
     EXPECT_LT(noise_beside(Hidden::lamp, false, 16), 0.25 * of_lamp);

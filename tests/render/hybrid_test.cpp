@@ -375,7 +375,7 @@ TEST(Hybrid, StatesTheErrorOfASmallLampRelativeToTheLamp) {
     const View view{"lamp", {0.5, 1.5, 1.25}, {4, 1.5, 1.25}, {0, 0, 1}, 60};
     const Rendering seen = render(scene, solution, ray_caster, view, {.width = 33, .height = 33, .samples = 16});
     EXPECT_GT(mean_of(seen.image), 1.2 * 10 / std::numbers::pi);
-    // The error of one of 33 x 33 pixels is the whole light of the lamp, relative to its mean over nine.
+    // At most one of 33 x 33 pixels misses the whole light of the lamp, relative to its mean over nine.
     EXPECT_LT(seen.relative_error, 9.0 / 33);
 }
 

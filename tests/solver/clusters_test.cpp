@@ -252,7 +252,7 @@ TEST(ClusterShrinkage, KeepsTheReflectedPower) {
     EXPECT_NEAR(power(true) / reflected, 1, 1e-4);
 }
 
-// Hidden patches, half as bright, are in clusters of their own.
+// The hidden patches are half as bright and form separate clusters.
 TEST(ClusterShrinkage, KeepsTheLightOfAllPatchesThatViewsShow) {
     Box box;
     std::vector<float> seen(box.patches());

@@ -1,6 +1,6 @@
-// Runs of few rays with a view. Importance is known badly then, and must cost no accuracy: the error of what the view
-// shows, with importance and without, in one room, where importance can gain nothing. The exact values are those of a
-// long run without importance.
+// Runs of few rays with a view. Their importance is inaccurate, and must cost no accuracy: compares the error of
+// visible surfaces with and without importance in one room, where importance has no use. A long run without importance
+// is the reference.
 //
 // Seen to fail if the first pass replaces the importance that was transported before it.
 
@@ -23,7 +23,7 @@ using namespace testing_support;
 
 constexpr int runs = 16;
 
-/// A room of 1,500 patches with a lamp and three boxes, of which the view sees most.
+/// A room of 1,500 patches with a lamp and three boxes; most are visible.
 Scene room() {
     Scene scene = closed_box({3, 2.4f, 2}, 16, {{"wall", Rgb(0.6f), Rgb(0)}});
     const std::uint32_t lamp = add_material(scene, Rgb(0.3f), Rgb(900)), box = add_material(scene, Rgb(0.4f), Rgb(0));

@@ -120,10 +120,10 @@ TEST_P(LightGroupsOf, SumToTheUngroupedSolution) {
 
 /// Compares with each group solved alone, with its own rays and the same method, because coarse meshes move light.
 ///
-/// The red light of the red lamp's upper face, 0.2 m below the ceiling, is compared by itself. Its deficit by ihsrr is
-/// 13% with a standard deviation of 2% (four seeds, 2 M rays); without clusters it is 9%. Two thirds of it are probably
-/// due to the mesh, which is coarser above the lamp than that of its light alone. Almost only this face made the
-/// difference of the group 5.1% (mean of 12 seeds). Correct code fails by chance with a probability below 1e-3.
+/// The red light of the red lamp's upper face, 0.2 m below the ceiling, is compared by itself. ihsrr has a deficit of
+/// 13% there, with a standard deviation of 2% (four seeds, 2 M rays); without clusters 9%. The mesh of all light,
+/// coarser above the lamp, is the probable cause of two thirds. Without its own limit this face made the difference of
+/// the group 5.1% (mean of 12 seeds). Correct code fails by chance with a probability below 1e-3.
 TEST_P(LightGroupsOf, AreWhatEachBringsAlone) {
     const Scene scene = lit_room();
     const RayCaster ray_caster(scene);

@@ -22,7 +22,7 @@ using namespace detail;
 
 namespace {
 
-/// Of sphere_quadrature(): 50 facets.
+/// Rows of sphere_quadrature(): 50 facets.
 constexpr int rows_of_facets = 5;
 /// Error of irradiance() by the facets for light from one direction, root mean square over normals and rotations,
 /// relative to its irradiance; at most 3.7%. With 32 or 72 facets 1.1% and 0.4%.
@@ -99,7 +99,7 @@ class Balls {
                 variance += share * share * error * error / sphere;
             }
         }
-        // As if all direct light came from one direction, where the mean over all normals is a quarter.
+        // Assumes that all direct light has one direction; its mean over all normals is a quarter of the largest.
         probe.standard_error = std::hypot(std::sqrt(variance), error_of_facets * direct);
         constexpr float max_backs = 0.25f;
         probe.is_inside =

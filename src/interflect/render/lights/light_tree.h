@@ -84,7 +84,7 @@ class LightTree {
     static std::uint32_t build(std::span<Light> lights, std::vector<BinaryNode>& nodes);
     void add_node(const std::vector<BinaryNode>& binary, std::uint32_t root, std::uint32_t place_in_parent);
     static Choices importance_of_children(const Node& node, const Floats& power, const V3f& x, const V3f& n);
-    /// @param is_weighted  Which of the powers decides; the probability is that of both.
+    /// @param is_weighted  Chooses by the weighted power. The stated probability includes both ways.
     Choice choose_by(bool is_weighted, const V3f& x, const V3f& n, double uniform) const;
 
     std::vector<Node> nodes_;

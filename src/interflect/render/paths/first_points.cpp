@@ -24,9 +24,8 @@ struct ShadowRaySums {
 /// be below their horizons.
 /// @param unoccluded  Of this point, without noise, which would bias the product with it; or 0.
 Rgb coefficient(const ShadowRaySums& similar, const ShadowRaySums& all, const Rgb& unoccluded) {
-    constexpr float least_share =
-        0.125f;                           // below, the noise of hidden light outweighs what the control variate removes
-    constexpr float most_over_mean = 32;  // of unoccluded light and the noise of its samples
+    constexpr float least_share = 0.125f;  // below, the control variate adds more noise of hidden light than it removes
+    constexpr float most_over_mean = 32;   // of unoccluded light and the noise of its samples
     Rgb c(0);
     for (int k = 0; k < 3; ++k) {
         const ShadowRaySums& sums = similar.sampled[k] > 0 ? similar : all;

@@ -23,8 +23,8 @@ namespace interflect::detail {
 ///
 /// Biased by interpolation. Each record is compared with the fit of its neighbours: where they differ by more than a
 /// tenth of all irradiance and their noise, both reach half as far. The remaining difference is part of Light::error.
-/// Records without near neighbours add nothing to it. The number of rays of a record follows the spread among its own
-/// and near rays; in twenty rooms this changed means by less than 0.02%.
+/// Without near neighbours a record has no such difference. The number of rays of a record follows the spread among its
+/// own and near rays; in twenty rooms this changed means by less than 0.02%.
 class IndirectField {
   public:
     /// Makes records at points that others do not cover. Each point is tested once: shorter reaches can leave gaps.
@@ -35,7 +35,7 @@ class IndirectField {
     struct Light {
         Rgb irradiance;  ///< [as H]
         float error;     ///< Of the mean channel: standard error of the records and error of interpolation [as H].
-        float reach;     ///< Of the nearest record [m].
+        float reach;     ///< Reach of the nearest record [m].
         std::uint32_t record;  ///< The nearest.
     };
     /// Returns nullopt without a record in reach.

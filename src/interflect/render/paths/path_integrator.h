@@ -18,8 +18,8 @@ namespace interflect::detail {
 /// At each vertex, shadow rays sample the light sources, and a cosine-distributed direction continues the path. Light
 /// sources that both can find are weighted by the balance heuristic (Veach and Guibas 1995). Unbiased unless the plan
 /// ends paths at known light (biased by the error of the solution) or looks up records (FirstPoints). Omits light
-/// of mirrors except those that the camera sees, and light behind more than 32 panes and mirrors or those that leave
-/// less than 0.1% of it (find_surfaces()).
+/// of mirrors that the camera does not see, light behind more than 32 panes and mirrors, and paths that panes and
+/// mirrors weaken to a throughput below 0.001 (find_surfaces()).
 class PathIntegrator {
   public:
     /// @param plan  Must outlive this.

@@ -23,8 +23,8 @@ struct KnownIrradiance {
 KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, std::span<const SurfacePoint> points,
                        std::uint64_t seed);
 
-/// What paths know about the light around the first points of a picture or of gauges before they are traced: the
-/// visibility of light sources; for final gathering and hybrid shading also the reflected light of a solution.
+/// Light around the first points of a picture or of gauges, measured before paths are traced: the visibility of light
+/// sources; for final gathering and hybrid shading also the reflected light of a solution.
 /// Thread-safe after construction.
 class PreparedLight {
   public:

@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 /// A ray from a point to a sampled light source or bright element.
 struct TestRay {
-    std::uint32_t source = none;  ///< none: nothing was sampled.
+    std::uint32_t source = none;  ///< none: no source was found.
     Ray ray;
     std::uint32_t patch = none;  ///< Target, as in ShadowRays.
     float distance = 0;          ///< [m]

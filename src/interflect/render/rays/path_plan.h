@@ -46,7 +46,7 @@ struct PathPlan {
     const PictureOptions& options;
     std::uint32_t first_rays = 1;                   ///< Shadow rays to each kind of source at first points.
     bool has_direct = true;                         ///< Includes light that is reflected once.
-    const LightSources* seen_sources = nullptr;     ///< With weights by visibility; null: those of the scene.
+    const LightSources* seen_sources = nullptr;     ///< Weighted by visibility; null: the scene's.
     const KnownLight* known = nullptr;              ///< Ends paths; null: only Russian roulette does.
     std::uint32_t paths_per_place = 1;              ///< Paths for each ray to a place of KnownLight::sample().
     const VirtualLights* virtual_lights = nullptr;  ///< Light every vertex; paths find the light beyond their bounds.

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Of split paths. Facing mirrors that are also panes would double the number of paths at each reflection.
+/// Weaker paths end here: facing mirrors that are also panes would double the number of paths at each reflection.
 constexpr float min_throughput = 1e-3f;
 
 Rgb reflectance_of_hit(const TracedScene& scene, const Ray& ray, const Hit& hit) {

@@ -13,7 +13,7 @@ namespace interflect::detail {
 struct SourceSampling {
     std::uint32_t rays = 1;      ///< Most shadow rays to each kind of source, and to skies.
     std::uint32_t guide = none;  ///< Record of the SkyGuide that samples the sky.
-    float directions = 1;        ///< Sampled directions per path; below 1, some paths have none.
+    float directions = 1;        ///< Sampled directions per path; below 1 for a share of the paths.
     bool is_last = false;        ///< The path only looks for light sources and ends at its next surface.
     bool has_patches = true;     ///< Whether directions sample emitting patches.
 };

@@ -41,7 +41,8 @@ struct PathLight {
     }
 };
 
-/// Paths of a pixel or gauge: two halves of equal size, independent but for what hybrid shading shares (FirstPoints).
+/// Paths of a pixel or gauge: two halves of equal size. They are independent, except that hybrid shading shares lookups
+/// and fits coefficients across them (FirstPoints).
 struct SampleBatch {
     std::uint32_t pixel = 0;
     std::uint32_t number = 0;       ///< Batches of different numbers are independent.

@@ -23,7 +23,7 @@ struct LightOrder {
     PictureOptions options{};      ///< Options of the paths.
     bool is_known = false;         ///< Paths end at the solution.
     bool is_interpolated = false;  ///< As KnownIrradiance::is_interpolated.
-    std::size_t group = 0;  ///< Light group.
+    std::size_t group = 0;         ///< Light group.
 };
 
 /// Sends an order to the other ranks. No effect for null and in other ranks than 0.

@@ -24,7 +24,7 @@ class PatchClusters {
         bool is_patch() const { return first_child == none; }
     };
 
-    /// @param shown  Patches that the views show. @param others  All others. One of them may be empty.
+    /// @param shown  Patches that the views show. @param others  All others. Either may be empty.
     /// @param length  Distance over which irradiance changes about as much as from one direction to the opposite [m].
     /// @param turn  Angle by which the scene is turned before it is divided [radians].
     PatchClusters(const ElementForest& forest, std::vector<std::uint32_t> shown, std::vector<std::uint32_t> others,

@@ -78,8 +78,8 @@ double squared_error_of_differences(const RiskCheck& check, double noise_of_diff
                                               : std::max(0.0, check.measured / check.weight);
 }
 
-/// Sets the errors of the means that clusters have reduced, by the first tree. Those of the others are about the same,
-/// and their average would take 15% of the time of short runs in scenes of many patches.
+/// Sets the errors of the means that clusters have reduced, by the first tree. The other trees have about the same
+/// errors, and averaging them would take 15% of the time of short runs in scenes of many patches.
 void set_errors_of_clusters(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {
     const ElementForest& forest = *state.forest;
     const PatchClusters& clusters = state.clusters.front();

@@ -27,7 +27,7 @@ Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
     return {Rgb(fx, fy, fz), Rgb(ox, oy, oz)};
 }
 
-/// Rays of the mean: those averaged into an element, up to a limit, and those of a first estimate.
+/// Rays of the mean so far: rays averaged into an element, up to a limit, plus the rays of a first estimate.
 struct Earlier {
     float most = std::numeric_limits<float>::infinity(), first = 0;
 

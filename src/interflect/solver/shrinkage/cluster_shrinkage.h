@@ -41,7 +41,7 @@ class ClusterShrinkage {
     const SolverState* state_;
     const PatchClusters* clusters_;
     std::span<const Rgb> irradiance_;
-    std::vector<double> weights_;  // by patch: area, or what the views show of it
+    std::vector<double> weights_;  // by patch: area, for visible patches times view importance
     std::vector<Part> parts_;      // by node
 };
 
