@@ -16,7 +16,7 @@ INNER_LAYERS = {
         "light", "clusters", "importance", "sampling", "noise", "deposit", "transport", "state", "shrinkage", "error", "refinement", "iteration",
         "methods", "methods/baselines", "methods/links", "methods/particles", ".",
     ],
-    "render": ["smooth", "lights", "reflections", "rays", "paths", "records", "sharing", "pictures", "gauges", "."],
+    "render": ["smooth", "lights", "reflections", "rays", "paths", "prepared", "sharing", "pictures", "gauges", "."],
     "exports": ["hdf5", "records", "mesh", "lightmap", "vertices", "files", "gltf", "foreign", "."],
 }
 MOST_FILES = 12  # of each of these folders

@@ -11,7 +11,6 @@
 #include <functional>
 #include <random>
 #include <set>
-#include <utility>
 
 #include "interflect/elements/forest.h"
 #include "interflect/solver/clusters/patch_clusters.h"
@@ -31,13 +30,12 @@ struct Box {
     static constexpr float payload = 0.004f;  // [lm]
 
     float size;
-    Scene scene;
+    Scene scene = closed_box({size, size, size}, 10, {{"wall", Rgb(0.5f), Rgb(1)}});
     RayCaster ray_caster{scene};
     SolverState state{scene, ray_caster, {.method = find_method("hsrr")}};
     std::mt19937_64 random{1};
 
-    explicit Box(float s = 1) : size(s), scene(closed_box({s, s, s}, 10, {{"wall", Rgb(0.5f), Rgb(1)}})) {}
-    explicit Box(Scene s) : size(1), scene(std::move(s)) {}
+    explicit Box(float s = 1) : size(s) {}
     std::uint32_t patches() const { return state.forest->patch_count(); }
     float area(std::uint32_t p) const { return state.forest->area(p); }
 
@@ -212,7 +210,6 @@ TEST(ClusterShrinkage, KeepsTheMeanOfPicturesThatShowTheBrightPatches) {
     compute_view_importance(box.state);
     std::vector<float>& seen = box.state.solution.view_importance;
     for (std::uint32_t p = 0; p < box.patches(); ++p) seen[p] = p % 2 == 0 ? 1 / 3.0f : 0;
-    box.state.clusters = cluster_patches(*box.state.forest, box.ray_caster, seen);
     const auto truth = [](std::uint32_t p) { return p % 2 == 0 ? 2.2f : 1.8f; };  // five rays on each patch
     box.receive(truth);
     const auto mean_of = [&](std::uint32_t parity) {
@@ -227,52 +224,6 @@ TEST(ClusterShrinkage, KeepsTheMeanOfPicturesThatShowTheBrightPatches) {
     EXPECT_NEAR(mean_of(0) / seen_before, 1, 0.01);
     EXPECT_NEAR((mean_of(0) + mean_of(1)) / (seen_before + hidden_before), 1, 0.01) << "power";
     EXPECT_LT(box.squared_error(box.state.solution.irradiance, truth), error / 3);
-}
-
-// Light patches that are brighter than the dark ones beside them lose light to these. Seen to fail (-4%) without
-// keep_reflected_light().
-TEST(ClusterShrinkage, KeepsTheReflectedPower) {
-    Scene scene = closed_box({1, 1, 1}, 10, {{"dark", Rgb(0.1f), Rgb(1)}});
-    add_material(scene, Rgb(0.8f), Rgb(1));
-    for (std::uint32_t p = 0; p < scene.patches.size(); p += 2) scene.patches[p].material = 1;
-    Box box(scene);
-    box.receive([](std::uint32_t p) { return p % 2 == 0 ? 2.5f : 1.5f; });
-    const auto power = [&](bool is_reflected) {
-        double sum = 0;
-        for (std::uint32_t p = 0; p < box.patches(); ++p) {
-            const double rho = p % 2 == 0 ? 0.8 : 0.1;
-            sum += static_cast<double>(box.area(p) * luminance(box.state.solution.irradiance[p])) *
-                   (is_reflected ? rho : 1);
-        }
-        return sum;
-    };
-    const double received = power(false), reflected = power(true);
-    finish_solution(box.state);
-    EXPECT_NEAR(power(false) / received, 1, 1e-4);
-    EXPECT_NEAR(power(true) / reflected, 1, 1e-4);
-}
-
-// The hidden patches are half as bright and form separate clusters.
-TEST(ClusterShrinkage, KeepsTheLightOfAllPatchesThatViewsShow) {
-    Box box;
-    std::vector<float> seen(box.patches());
-    for (std::uint32_t p = 0; p < box.patches(); ++p) seen[p] = p % 3 == 0 ? 0.5f : 0;
-    box.state.clusters = cluster_patches(*box.state.forest, box.ray_caster, seen);
-    for (const PatchClusters& clusters : box.state.clusters) {
-        EXPECT_EQ(clusters.root_count(), 2u);
-        for (std::uint32_t p = 0; p < box.patches(); ++p) EXPECT_EQ(clusters.is_shown(p), p % 3 == 0);
-    }
-    box.state.solution.view_importance = seen;
-    box.receive([](std::uint32_t p) { return p % 3 == 0 ? 2.0f : 1.0f; });
-    const auto shown = [&] {
-        double sum = 0;
-        for (std::uint32_t p = 0; p < box.patches(); p += 3)
-            sum += static_cast<double>(box.area(p) * luminance(box.state.solution.irradiance[p]));
-        return sum;
-    };
-    const double before = shown();
-    finish_solution(box.state);
-    EXPECT_NEAR(shown() / before, 1, 1e-4);
 }
 
 TEST(ClusterShrinkage, KeepsTheSumOfLightGroups) {

@@ -85,15 +85,10 @@ void divide(Range patches, int halvings, const std::vector<Place>& places, std::
 
 }  // namespace
 
-PatchClusters::PatchClusters(const ElementForest& forest, std::vector<std::uint32_t> shown,
-                             std::vector<std::uint32_t> others, float length, float turn)
-    : patch_count_(forest.patch_count()), is_shown_(forest.patch_count(), 0) {
-    for (const std::uint32_t p : shown) is_shown_[p] = 1;
+PatchClusters::PatchClusters(const ElementForest& forest, std::vector<std::uint32_t> patches, float length, float turn)
+    : patch_count_(forest.patch_count()) {
     const std::vector<Place> of_patch = places(forest, length, turn);
-    std::vector<Range> ranges;  // of the nodes
-    for (std::vector<std::uint32_t>* const patches : {&shown, &others})
-        if (!patches->empty()) ranges.emplace_back(*patches);
-    root_count_ = static_cast<std::uint32_t>(ranges.size());
+    std::vector<Range> ranges{patches};  // of the nodes
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const Range range = ranges[i];
         if (range.size() == 1) {
@@ -109,19 +104,16 @@ PatchClusters::PatchClusters(const ElementForest& forest, std::vector<std::uint3
     }
 }
 
-std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster,
-                                           std::span<const float> view_importance) {
+std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster) {
     const float length = distance_of_surfaces(forest, ray_caster);
-    std::vector<std::uint32_t> shown, others;
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
-        if (!(ray_caster.uncovered_share(p) > 0)) continue;
-        (!view_importance.empty() && view_importance[p] > 0 ? shown : others).push_back(p);
-    }
+    std::vector<std::uint32_t> patches;
+    for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
+        if (ray_caster.uncovered_share(p) > 0) patches.push_back(p);
     // A turn of 120 degrees about (1, 1, 1) would exchange the axes.
     std::vector<std::vector<PatchClusters>> made(trees);
     parallel_for_ranges(trees, 1, [&](std::size_t tree, std::size_t) {
         const float turn = static_cast<float>(tree) / trees * 2 * std::numbers::pi_v<float> / 3;
-        made[tree].emplace_back(forest, shown, others, length, turn);
+        made[tree].emplace_back(forest, patches, length, turn);
     });
     std::vector<PatchClusters> all;
     all.reserve(trees);

@@ -15,18 +15,20 @@ namespace {
 /// Contributions of a part, found or expected, at which its measured variance has weight 1/2. With fewer, parts tend to
 /// the variance that their area and the mean of the cluster suggest: one without any would seem to be exactly black.
 constexpr double contributions_of_half_trust = 8;
+/// In a region of the pictures that keeps its mean. Fewer would bring noise of the unreduced light back.
+constexpr double fewest_camera_rays = 1024;
 constexpr std::size_t clusters_per_task = 1 << 10;
 
 struct Sums {
-    double weight = 0, power = 0;  // luminance of the irradiance times the weight
-    double variance = 0;           // of the power
+    double area = 0, power = 0;  // [m^2], luminance of the received power
+    double variance = 0;         // of the power
 
-    explicit Sums(double w = 0, double p = 0, double v = 0) : weight(w), power(p), variance(v) {}
+    explicit Sums(double a = 0, double p = 0, double v = 0) : area(a), power(p), variance(v) {}
     Sums& operator+=(const Sums& o) {
-        weight += o.weight, power += o.power, variance += o.variance;
+        area += o.area, power += o.power, variance += o.variance;
         return *this;
     }
-    double mean() const { return power / weight; }
+    double mean() const { return power / area; }
     double payload() const { return variance / power; }
     double contributions() const { return variance > 0 ? power * power / variance : 0; }
 };
@@ -35,10 +37,10 @@ struct Sums {
 double variance_of(const Sums& part, double cluster_mean, double least_payload) {
     const bool is_known = part.power > 0 && part.variance > 0;
     const double payload = is_known ? part.payload() : least_payload;
-    const double expected = cluster_mean * part.weight / payload,
+    const double expected = cluster_mean * part.area / payload,
                  contributions = std::max(part.contributions(), expected),
                  measured = contributions / (contributions + contributions_of_half_trust);
-    return (measured * part.variance / part.weight + (1 - measured) * payload * cluster_mean) / part.weight;
+    return (measured * part.variance / part.area + (1 - measured) * payload * cluster_mean) / part.area;
 }
 
 struct Sample {
@@ -48,45 +50,66 @@ struct Sample {
 /// Estimates the variance of the true values (Paule and Mandel, Consensus values and weighting factors, 1982): the
 /// least with which the samples' deviations from their weighted mean are as large as expected. Precise samples decide.
 double variance_of_true_values(std::span<const Sample> samples) {
-    constexpr double tolerance = 1e-3;  // relative; the estimate varies by a tenth or more
-    constexpr int most_steps = 20;
-    const double expected = static_cast<double>(samples.size() - 1);
-    double signal = 0;
-    for (int step = 0; step < most_steps; ++step) {  // Newton's method for 1 / sum, which is nearly linear
-        double weights = 0, mean = 0, sum = 0, slope = 0;
+    const auto excess = [&](double signal) {
+        double weights = 0, mean = 0, sum = 0;
         for (const auto& [value, variance] : samples)
             weights += 1 / (signal + variance), mean += value / (signal + variance);
         mean /= weights;
-        for (const auto& [value, variance] : samples) {
-            const double weight = 1 / (signal + variance), square = (value - mean) * (value - mean) * weight;
-            sum += square, slope += square * weight;
-        }
-        if (signal == 0 && !(sum > expected)) break;
-        const double change = (sum - expected) * sum / (expected * slope);
-        signal = std::max(0.0, signal + change);
-        if (std::abs(change) < tolerance * signal) break;
+        for (const auto& [value, variance] : samples) sum += (value - mean) * (value - mean) / (signal + variance);
+        return sum - static_cast<double>(samples.size() - 1);
+    };
+    if (!(excess(0) > 0)) return 0;
+    const auto [least, most] = std::ranges::minmax(samples, {}, &Sample::value);
+    double low = 0, high = (most.value - least.value) * (most.value - least.value);  // excess(high) <= 0
+    constexpr int halvings = 20;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = (low + high) / 2;
+        (excess(middle) > 0 ? low : high) = middle;
     }
-    return signal;
+    return high;
 }
+
+/// Patches that share a mean of the pictures.
+struct Region {
+    double share = 0, area = 0;  // of the pictures; [m^2]
+    RgbD before{0, 0, 0};        // in the pictures
+    // After the reduction, in the pictures and over the area, and weighted by visibility():
+    RgbD after{0, 0, 0}, after_visible{0, 0, 0}, power{0, 0, 0}, power_visible{0, 0, 0};
+
+    /// 1 for patches that are seen at least as well as the region on average.
+    double visibility(double seen) const { return std::min(1.0, seen * area / share); }
+
+    void add(double seen, double patch_area, const RgbD& unreduced, const RgbD& reduced) {
+        if (!(share > 0)) return;
+        before += seen * patch_area * unreduced, after += seen * patch_area * reduced;
+        power += patch_area * reduced;
+        after_visible += visibility(seen) * seen * patch_area * reduced;
+        power_visible += visibility(seen) * patch_area * reduced;
+    }
+
+    /// Returns 1 + x (visibility - y), which keeps the power and makes `after` equal to `before`. Where little is
+    /// hidden, y = 0.
+    float factor(double seen, int c) const {
+        constexpr double most = 0.5;  // change of hidden patches
+        const auto change = [&](double y) { return (before[c] - after[c]) / (after_visible[c] - y * after[c]); };
+        if (!(after_visible[c] > 0)) return 1;
+        double y = power_visible[c] / power[c];
+        if (!(std::abs(y * change(y)) <= most)) y = 0;
+        return static_cast<float>(std::max(0.0, 1 + change(y) * (visibility(seen) - y)));
+    }
+};
 
 }  // namespace
 
 ClusterShrinkage::ClusterShrinkage(const SolverState& state, const PatchClusters& clusters,
                                    std::span<const Rgb> irradiance)
-    : state_(&state),
-      clusters_(&clusters),
-      irradiance_(irradiance),
-      weights_(clusters.patch_count()),
-      parts_(clusters.nodes().size()) {
-    const std::vector<float>& seen = state.solution.view_importance;
-    for (std::uint32_t p = 0; p < weights_.size(); ++p)
-        weights_[p] = state.forest->area(p) * (clusters.is_shown(p) ? static_cast<double>(seen[p]) : 1.0);
+    : state_(&state), clusters_(&clusters), irradiance_(irradiance), parts_(clusters.nodes().size()) {
     measure_parts();
 }
 
 std::vector<Rgb> ClusterShrinkage::means() const {
     std::vector<Rgb> means = reduce();
-    keep_reflected_light(means);
+    keep_means_of_pictures(means);
     return means;
 }
 
@@ -94,21 +117,21 @@ void ClusterShrinkage::measure_parts() {
     const SolverState& state = *state_;
     const ElementForest& forest = *state.forest;
     const std::vector<Sums> sums = clusters_->sums<Sums>([&](std::uint32_t p) {
-        const double weight = weights_[p], all = luminance(state.solution.irradiance[p]), h = luminance(irradiance_[p]);
+        const double area = forest.area(p), all = luminance(state.solution.irradiance[p]),
+                     h = luminance(irradiance_[p]);
         const double of_all =
             state.noise.variance(forest, state.solution.irradiance, p, std::max(state.history[p], 1.0f));
         const double variance = all > 0 ? of_all * std::clamp(h / all, 0.0, 1.0) : 0;  // fewer of the same rays
-        return Sums(weight, weight * h, weight * weight * variance);
+        return Sums(area, area * h, area * area * variance);
     });
-    for (std::uint32_t root = 0; root < clusters_->root_count(); ++root)
-        parts_[root].variance = static_cast<float>(sums[root].variance / (sums[root].weight * sums[root].weight));
+    parts_[0].variance = static_cast<float>(sums[0].variance / (sums[0].area * sums[0].area));
     parallel_for_ranges(sums.size(), clusters_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<Sample> samples;
         for (std::size_t i = begin; i < end; ++i) {
             const auto [first, count] = clusters_->nodes()[i];
             if (first == none) continue;
             for (std::uint32_t k = first; k < first + count; ++k)
-                parts_[k].share = static_cast<float>(sums[k].weight / sums[i].weight);
+                parts_[k].share = static_cast<float>(sums[k].area / sums[i].area);
             if (!(sums[i].variance > 0 && sums[i].power > 0)) continue;
             double least_payload = sums[i].payload();
             for (std::uint32_t k = first; k < first + count; ++k)
@@ -126,7 +149,7 @@ void ClusterShrinkage::measure_parts() {
     });
 }
 
-/// From the roots to the patches.
+/// From the scene to the patches.
 std::vector<Rgb> ClusterShrinkage::reduce() const {
     std::vector<Rgb> means(irradiance_.begin(), irradiance_.begin() + clusters_->patch_count());
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
@@ -139,7 +162,7 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
             for (std::uint32_t k = first; k < first + count; ++k) before[i] += parts_[k].share * before[k];
     }
     std::vector<Rgb> after(nodes.size());
-    std::copy_n(before.begin(), clusters_->root_count(), after.begin());
+    after[0] = before[0];
     std::array<Rgb, PatchClusters::most_parts> differences;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto [first, count] = nodes[i];
@@ -168,35 +191,33 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
     return means;
 }
 
-/// Clusters keep the weighted mean of the irradiance. The patches of each tree also keep the light that they reflect:
-/// uncertain ones are scaled by 1 + x (1 - kept) (rho - y), where x and y keep both.
-void ClusterShrinkage::keep_reflected_light(std::vector<Rgb>& means) const {
-    constexpr double most = 1;  // no patch becomes negative
-    struct Sums {
-        RgbD lost{0, 0, 0}, uncertain{0, 0, 0}, reflected{0, 0, 0}, square{0, 0, 0};  // by power of rho: 1, 0, 1, 2
-    };
-    std::array<Sums, 2> trees;  // patches that the views show, and others
-    std::vector<float> uncertainty(means.size(), 0.0f);
+/// Clusters preserve the mean over their area, but visible patches may be brighter than hidden ones. Visible patches
+/// are scaled to the mean of the pictures before the reduction, hidden ones to keep the power.
+void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
+    const ElementForest& forest = *state_->forest;
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (!nodes[i].is_patch()) continue;
-        const std::uint32_t p = nodes[i].count;
-        uncertainty[p] = 1 - parts_[i].kept;
-        const RgbD rho(state_->materials.surface(p, p).reflectance),
-            light = weights_[p] * RgbD(means[p]), uncertain = static_cast<double>(uncertainty[p]) * light;
-        Sums& tree = trees[clusters_->is_shown(p) ? 1 : 0];
-        tree.lost += rho * (weights_[p] * RgbD(irradiance_[p]) - light);
-        tree.uncertain += uncertain, tree.reflected += rho * uncertain, tree.square += rho * rho * uncertain;
-    }
-    for (std::uint32_t p = 0; p < means.size(); ++p) {
-        const Sums& tree = trees[clusters_->is_shown(p) ? 1 : 0];
-        const Rgb rho = state_->materials.surface(p, p).reflectance;
-        for (int c = 0; c < 3 && uncertainty[p] > 0; ++c) {
-            if (!(tree.uncertain[c] > 0)) continue;
-            const double y = tree.reflected[c] / tree.uncertain[c], spread = tree.square[c] - y * tree.reflected[c],
-                         x = std::clamp(tree.lost[c] / spread, -most, most);
-            if (spread > 0) means[p][c] *= static_cast<float>(1 + x * uncertainty[p] * (rho[c] - y));
+    const std::vector<float>& seen = state_->solution.view_importance;
+    if (seen.empty()) return;
+    const std::vector<double> shares =
+        clusters_->sums<double>([&](std::uint32_t p) { return seen[p] * forest.area(p); });
+    const double fewest = fewest_camera_rays / static_cast<double>(state_->view.rays());
+    std::vector<Region> regions(nodes.size());
+    std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+        const auto [first, count] = nodes[i];
+        if (shares[i] >= fewest) region[i] = i;
+        if (first != none) {
+            std::fill_n(region.begin() + first, count, region[i]);
+            continue;
         }
+        region_of_patch[count] = region[i];
+        regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(count);
+    }
+    for (std::uint32_t p = 0; p < means.size(); ++p)
+        regions[region_of_patch[p]].add(seen[p], forest.area(p), RgbD(irradiance_[p]), RgbD(means[p]));
+    for (std::uint32_t p = 0; p < means.size(); ++p) {
+        const Region& r = regions[region_of_patch[p]];
+        for (int c = 0; c < 3 && r.share >= fewest; ++c) means[p][c] *= r.factor(seen[p], c);
     }
 }
 

@@ -29,27 +29,25 @@ class ClusterShrinkage {
 
   private:
     struct Part {
-        float share = 1;     // of its cluster's weight
+        float share = 1;     // of its cluster's area
         float kept = 1;      // share of its own mean; the rest is its cluster's
         float variance = 0;  // of its own mean, as squared luminance
         float signal = 0;    // variance of the true means in its cluster
     };
     void measure_parts();
     std::vector<Rgb> reduce() const;
-    void keep_reflected_light(std::vector<Rgb>& means) const;
+    void keep_means_of_pictures(std::vector<Rgb>& means) const;
 
     const SolverState* state_;
     const PatchClusters* clusters_;
     std::span<const Rgb> irradiance_;
-    std::vector<double> weights_;  // by patch: area, for visible patches times view importance
-    std::vector<Part> parts_;      // by node
+    std::vector<Part> parts_;  // by node
 };
 
 template <class Shown>
 void ClusterShrinkage::measure_errors(std::span<Errors> of_patches, const Shown& shown) const {
     std::vector<Errors> errors(parts_.size());
-    for (std::uint32_t root = 0; root < clusters_->root_count(); ++root)
-        errors[root] = {shown(root) * parts_[root].variance, 0};
+    errors[0] = {shown(0) * parts_[0].variance, 0};
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const auto [first, count] = clusters_->nodes()[i];
         if (first == none) {

@@ -56,6 +56,8 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
     history.assign(forest->size(), 0.0f);
     solution.emitted_power = radiated_power(*this);
     compute_view_importance(*this);
+    if (o.experimental.shrinkage && o.experimental.clusters && refines_by_variance(o))
+        clusters = cluster_patches(*forest, ray_caster);
 }
 
 void SolverState::begin_work(const Monitor& m) {
@@ -101,15 +103,11 @@ void compute_view_importance(SolverState& state) {
     state.solution.view_importance.clear();
     state.solution.indirect_importance.clear();
     state.rays_of_first_importance = 0;
-    if (!state.view.empty()) {
-        if (state.neighbourhoods.empty()) state.neighbourhoods = Neighbourhoods(*state.forest);
-        state.solution.view_importance =
-            state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
-        state.solution.indirect_importance.assign(state.forest->size(), 0.0f);
-    }
-    const ExperimentalOptions& experimental = state.options.experimental;
-    if (experimental.shrinkage && experimental.clusters && refines_by_variance(state.options))
-        state.clusters = cluster_patches(*state.forest, state.ray_caster, state.solution.view_importance);
+    if (state.view.empty()) return;
+    if (state.neighbourhoods.empty()) state.neighbourhoods = Neighbourhoods(*state.forest);
+    state.solution.view_importance =
+        state.view.per_area(*state.forest, state.options.experimental.importance_at_patches);
+    state.solution.indirect_importance.assign(state.forest->size(), 0.0f);
 }
 
 GroupRadiosity group_radiosity(const SolverState& state, const GroupLight& irradiance, bool emits) {

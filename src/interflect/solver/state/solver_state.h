@@ -95,7 +95,7 @@ void set_sources(SolverState& state, const Scene& lit);
 /// Also resets the importance of luminaire parts.
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets);
 
-/// Resets the indirect importance, and divides patches into clusters of visible and hidden ones.
+/// Resets the indirect importance.
 void compute_view_importance(SolverState& state);
 
 /// Refers to its arguments.
