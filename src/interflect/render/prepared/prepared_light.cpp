@@ -1,5 +1,6 @@
 #include "interflect/render/prepared/prepared_light.h"
 
+#include <utility>
 #include <vector>
 
 #include "interflect/base/common_stop.h"
@@ -18,7 +19,7 @@ KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, s
 PreparedLight::PreparedLight(const PathPlan& plan, const KnownIrradiance* known, const Monitor& monitor) : plan_(plan) {
     const CommonStop stop(monitor.stop, monitor.ranks);
     const std::vector<SurfacePoint> points = first_points(plan, stop.within_process());
-    if (const auto seen = seen_sources(plan.scene, points, plan.options.seed)) sources_.emplace(*seen);
+    if (auto seen = seen_sources(plan.scene, points, plan.options.seed)) sources_.emplace(std::move(*seen));
     if (!known) return;
     light_.emplace(known_light(plan.scene, *known, points, plan.options.seed));
     if (!known->is_interpolated) return;

@@ -31,36 +31,34 @@ TestedSources test(const TracedScene& scene, const LightSources& sources, Source
     });
 }
 
-/// Returns whether the sources got weights.
-bool weigh(LightSources& sources, const TracedScene& scene, SourceKind kind, std::span<const SurfacePoint> points,
-           std::uint64_t key) {
-    TestedSources all;
-    // The second round tests the sources that hidden ones have outshone.
-    for (const std::uint64_t round : {0, 1}) {
-        const TestedSources tested = test(scene, sources, kind, points, mix(key, round));
-        if (round == 0 && sum_of(tested.arrived) >= most_arrive * sum_of(tested.sent)) return false;
-        all.sent.resize(tested.sent.size()), all.arrived.resize(tested.sent.size());
-        std::vector<float> weights(tested.sent.size());
-        for (std::size_t i = 0; i < weights.size(); ++i) {
-            all.sent[i] += tested.sent[i], all.arrived[i] += tested.arrived[i];
-            weights[i] = (1 + all.arrived[i]) / (1 + all.sent[i]);
-        }
-        sources.weigh(kind, weights);
-    }
-    return true;
+void add(TestedSources& all, const TestedSources& more) {
+    for (std::size_t i = 0; i < all.sent.size(); ++i) all.sent[i] += more.sent[i], all.arrived[i] += more.arrived[i];
+}
+
+/// Visible shares. Sources without test rays have 1.
+std::vector<float> weights(const TestedSources& tested) {
+    std::vector<float> weights(tested.sent.size());
+    for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = (1 + tested.arrived[i]) / (1 + tested.sent[i]);
+    return weights;
 }
 
 }  // namespace
 
 std::optional<LightSources> seen_sources(const TracedScene& scene, std::span<const SurfacePoint> points,
                                          std::uint64_t seed) {
-    if (points.empty()) return {};
-    LightSources sources = scene.sources;
-    const std::uint64_t key = mix(seed, 0x5ee12);
-    const bool has_patches = weigh(sources, scene, SourceKind::patches, points, mix(key, 1));
-    const bool has_lamps = weigh(sources, scene, SourceKind::lamps, points, mix(key, 2));
-    if (!has_patches && !has_lamps) return {};
-    return sources;
+    std::optional<LightSources> seen;
+    if (points.empty()) return seen;
+    for (const SourceKind kind : {SourceKind::patches, SourceKind::lamps}) {
+        const std::uint64_t key = mix(mix(seed, 0x5ee12), static_cast<std::uint64_t>(kind));
+        TestedSources tested = test(scene, scene.sources, kind, points, mix(key, 0));
+        if (sum_of(tested.arrived) >= most_arrive * sum_of(tested.sent)) continue;
+        if (!seen) seen.emplace(scene.sources);
+        seen->weigh(kind, weights(tested));
+        // Test the sources that hidden ones have outshone
+        add(tested, test(scene, *seen, kind, points, mix(key, 1)));
+        seen->weigh(kind, weights(tested));
+    }
+    return seen;
 }
 
 }  // namespace interflect::detail
