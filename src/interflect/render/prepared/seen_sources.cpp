@@ -1,7 +1,6 @@
 #include "interflect/render/prepared/seen_sources.h"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "interflect/base/random.h"
@@ -11,10 +10,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Weights can at most double the number of shadow rays that arrive.
-constexpr float most_arrive = 0.5f;
-
-float sum_of(const std::vector<float>& numbers) { return std::accumulate(numbers.begin(), numbers.end(), 0.0f); }
+/// Share of the unoccluded light of a kind that arrives, below which its sources get weights. Weighted rays follow the
+/// unoccluded light less closely: with weights, office-graz has 3.2% of error a pixel in place of 2.8%.
+constexpr double least_arriving = 0.125;
 
 /// Test rays to sources of a kind, in proportion to their unoccluded light.
 TestedSources test(const TracedScene& scene, const LightSources& sources, SourceKind kind,
@@ -27,7 +25,11 @@ TestedSources test(const TracedScene& scene, const LightSources& sources, Source
                                   unit_float(words[2])};
         const SourceSample source = sources.sample(kind, p.position, p.normal, numbers);
         if (!(channel_sum(source.irradiance) > 0)) return TestRay{};
-        return TestRay{source.index, {p.position, source.direction}, source.patch, source.distance};
+        return TestRay{source.index,
+                       {p.position, source.direction},
+                       source.patch,
+                       source.distance,
+                       channel_sum(source.irradiance)};
     });
 }
 
@@ -51,7 +53,7 @@ std::optional<LightSources> seen_sources(const TracedScene& scene, std::span<con
     for (const SourceKind kind : {SourceKind::patches, SourceKind::lamps}) {
         const std::uint64_t key = mix(mix(seed, 0x5ee12), static_cast<std::uint64_t>(kind));
         TestedSources tested = test(scene, scene.sources, kind, points, mix(key, 0));
-        if (sum_of(tested.arrived) >= most_arrive * sum_of(tested.sent)) continue;
+        if (tested.light_arrived >= least_arriving * tested.light_sent) continue;
         if (!seen) seen.emplace(scene.sources);
         seen->weigh(kind, weights(tested));
         // Test the sources that hidden ones have outshone

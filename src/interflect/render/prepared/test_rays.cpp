@@ -27,6 +27,7 @@ TestedSources send_test_rays(const TracedScene& scene, std::size_t sources, std:
     struct Sent {
         std::uint32_t source = none;
         bool arrives = false;
+        float light = 0;
     };
     std::vector<Sent> sent(count);
     parallel_for_ranges(count, rays_per_task, [&](std::size_t begin, std::size_t end) {
@@ -36,18 +37,19 @@ TestedSources send_test_rays(const TracedScene& scene, std::size_t sources, std:
         for (std::size_t i = begin; i < end; ++i) {
             const TestRay test = sample(i);
             if (test.source == none) continue;
-            sent[i].source = test.source;
+            sent[i].source = test.source, sent[i].light = test.light;
             rays.add(test.ray, test.patch, test.distance);
             number.push_back(i);
         }
         const std::span<const Rgb> transmittance = rays.trace(scene.ray_caster, scene.panes, counts);
         for (std::size_t k = 0; k < number.size(); ++k) sent[number[k]].arrives = largest_channel(transmittance[k]) > 0;
     });
-    TestedSources tested{std::vector<float>(sources, 0.0f), std::vector<float>(sources, 0.0f)};
+    TestedSources tested;
+    tested.sent.resize(sources), tested.arrived.resize(sources);
     for (const Sent& s : sent) {
         if (s.source == none) continue;
-        ++tested.sent[s.source];
-        if (s.arrives) ++tested.arrived[s.source];
+        ++tested.sent[s.source], tested.light_sent += static_cast<double>(s.light);
+        if (s.arrives) ++tested.arrived[s.source], tested.light_arrived += static_cast<double>(s.light);
     }
     return tested;
 }

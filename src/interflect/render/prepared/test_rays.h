@@ -18,11 +18,13 @@ struct TestRay {
     Ray ray;
     std::uint32_t patch = none;  ///< Target, as in ShadowRays.
     float distance = 0;          ///< [m]
+    float light = 0;             ///< Unoccluded irradiance over its density, sum of channels [as H].
 };
 
-/// Numbers of test rays by source.
+/// Numbers of test rays by source, and the light of all.
 struct TestedSources {
     std::vector<float> sent, arrived;
+    double light_sent = 0, light_arrived = 0;
 };
 
 /// About one per point, a small part of the rays of its light.
