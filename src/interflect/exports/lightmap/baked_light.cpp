@@ -23,12 +23,11 @@ SampledLight no_light(int width, int height) {
 }
 
 /// Removes noise of direct light in a grid.
-void filter(const PointGrid& grid, std::span<const Gauge> gauges, std::span<const GaugeLight> light, float spacing,
+void filter(const PointGrid& grid, std::span<const Gauge> gauges, std::span<const GaugeLight> light,
             std::span<Rgb> irradiance) {
     const int width = grid.width, height = static_cast<int>(grid.points.size()) / width;
     PictureLayers layers;
     layers.is_indirect_interpolated = true;
-    layers.pixel_size = spacing;
     for (Image* image : {&layers.emitted, &layers.albedo, &layers.normal, &layers.position})
         *image = Image(width, height);
     for (SampledLight* l : {&layers.reflected, &layers.halves[0], &layers.halves[1]}) *l = no_light(width, height);
@@ -37,6 +36,7 @@ void filter(const PointGrid& grid, std::span<const Gauge> gauges, std::span<cons
         const std::uint32_t point = grid.points[i];
         if (point == none) continue;
         layers.depth[i] = 1;
+        layers.pixel_size = std::max(layers.pixel_size, gauges[point].spacing());
         layers.albedo.pixels[i] = Rgb(1);
         layers.normal.pixels[i] = gauges[point].normal;
         layers.position.pixels[i] = gauges[point].position;
@@ -77,7 +77,7 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std:
         std::vector<Rgb> values;
         values.reserve(light.size());
         for (const GaugeLight& l : light) values.push_back(l.irradiance());
-        for (const PointGrid& grid : grids) filter(grid, places, light, spacing, values);
+        for (const PointGrid& grid : grids) filter(grid, places, light, values);
         return values;
     }
     if (options_.shading == Shading::gather) return gathered(points, spacing, monitor);
