@@ -111,6 +111,8 @@ TEST(Schedule, StartsWithFewRaysButSomeForEveryPatch) {
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 400'000);
     options.limits.rays = 80'000;
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 10'000) << "an eighth of the budget";
+    EXPECT_EQ(Schedule(options, 100'000).start_rays(3), 3'333) << "an eighth in all";
+    EXPECT_EQ(Schedule(options, 100).start_rays(2), 5'000);
     options.experimental.rays_per_iteration = 77;
     EXPECT_EQ(Schedule(options, 100'000).start_rays(), 77);
     options.experimental.rays_per_iteration = 1'000'000;

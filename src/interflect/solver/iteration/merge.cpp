@@ -27,13 +27,20 @@ Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
     return {Rgb(fx, fy, fz), Rgb(ox, oy, oz)};
 }
 
+/// Rays of the mean so far: rays averaged into an element, up to a limit, plus the rays of a first estimate.
+struct Earlier {
+    float most = std::numeric_limits<float>::infinity(), first = 0;
+
+    float rays(float history) const { return std::min(history, most) + first; }
+};
+
 template <class T>
 void merge_into(const SolverState& state, std::vector<T>& mean, const std::vector<T>& received,
-                const IterationPlan& plan, float max_history = std::numeric_limits<float>::infinity()) {
+                const IterationPlan& plan, const Earlier& earlier = {}) {
     const ElementForest& forest = *state.forest;
     const auto rays = static_cast<float>(plan.rays);
     const auto merge_one = [&](std::uint32_t e) {
-        const float tau = plan.warms_up ? 1.0f : rays / (std::min(state.history[e], max_history) + rays);
+        const float tau = plan.warms_up ? 1.0f : rays / (earlier.rays(state.history[e]) + rays);
         mean[e] += tau * (received[e] - mean[e]);
     };
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
@@ -86,9 +93,11 @@ void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const s
 
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
            const IterationPlan& plan) {
-    if (state.rays_of_other_views == 0) return merge_into(state, mean, received, plan);
-    const std::int64_t of_these_views = state.schedule.averaged_rays() - state.rays_of_other_views;
-    merge_into(state, mean, received, plan, static_cast<float>(of_these_views));
+    Earlier earlier;
+    earlier.first = static_cast<float>(state.rays_of_first_importance);
+    if (state.rays_of_other_views > 0)
+        earlier.most = static_cast<float>(state.schedule.averaged_rays() - state.rays_of_other_views);
+    merge_into(state, mean, received, plan, earlier);
 }
 
 void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan) {

@@ -14,6 +14,8 @@ namespace {
 
 /// Share of unshot importance at which the transport ends.
 constexpr double negligible_importance = 0.005;
+/// Most that the next bounce is expected to receive of the importance of the last one, as in BounceBudget.
+constexpr double most_received_again = 0.99;
 
 }  // namespace
 
@@ -21,18 +23,25 @@ void transport_importance(SolverState& state, std::int64_t rays) {
     Solution& solution = state.solution;
     std::vector<float> unshot = solution.view_importance;
     BounceBudget budget(rays, 0);
-    double left = 1;  // importance received in a bounce; initially all of V
+    const std::int64_t rays_before = state.importance_rays;
+    double left = 1, decay = 0;  // importance received in a bounce; initially all of V
     while (left > negligible_importance && !budget.has_planned_last_bounce()) {
         TransportStep step(plan_importance(state.materials, solution, Importance(unshot),
                                            std::max<std::int64_t>(1, budget.next(left).expected)));
         state.importance_rays += step.rays;
         unshot = run_step(state, std::move(step)).importance;
-        left = 0;
+        const double before = std::exchange(left, 0);
         for (std::uint32_t e = 0; e < state.forest->size(); ++e) {
             solution.indirect_importance[e] += unshot[e];
             if (e < state.forest->patch_count()) left += static_cast<double>(unshot[e]) * state.forest->area(e);
         }
+        decay = std::min(most_received_again, left / before);
     }
+    // The untraced bounces are a geometric series with the distribution of the last one.
+    const auto rest = static_cast<float>(decay / (1 - decay));
+    for (std::uint32_t e = 0; e < state.forest->size() && rest > 0; ++e)
+        solution.indirect_importance[e] += rest * unshot[e];
+    state.rays_of_first_importance = state.importance_rays - rays_before;
 }
 
 }  // namespace interflect::detail

@@ -78,9 +78,12 @@ bool oracle_refines_passes(const SolverState& state) {
 void Passes::prepare(SolverState& state) {
     set_estimate(state, zero_estimate(state));  // IterationStart keeps the light of an interrupted preparation
     if (state.options.limits.rays < fewest_rays_with_preparation) return;
-    const std::int64_t rays = state.schedule.start_rays();
+    const bool needs_importance = importance_use(state.solution) == ImportanceUse::full;
+    // With importance, all passes share an eighth of the rays. Without, meshes of 20,000 rays need an eighth each.
+    const std::int64_t passes = !needs_importance ? 1 : state.options.method.refines ? 3 : 1;
+    const std::int64_t rays = state.schedule.start_rays(passes);
     total_unshot_ = 0;
-    if (importance_use(state.solution) == ImportanceUse::full) transport_importance(state, rays);
+    if (needs_importance) transport_importance(state, rays);
     aim_outdoor_light(state);
     if (state.options.method.refines)  // the first pass estimates the light that the oracle needs
         for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));

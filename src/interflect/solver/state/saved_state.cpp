@@ -99,6 +99,7 @@ void SolverState::archive(StateArchive& archive) {
     archive("importance_rays", importance_rays);
     archive("escaped_rays", escaped_rays);
     archive("rays_of_other_views", rays_of_other_views);
+    archive("rays_of_first_importance", rays_of_first_importance);
     archive("escaped_power", escaped_power);
     archive("escaped_power_rays", escaped_power_rays);
     if (!archive.reads()) return;

@@ -26,10 +26,10 @@ Schedule::Schedule(const SolveOptions& options, std::size_t patches) : options_(
     smallest_ = options.experimental.rays_per_iteration > 0 ? options.experimental.rays_per_iteration : first_rays_;
 }
 
-std::int64_t Schedule::start_rays() const {
+std::int64_t Schedule::start_rays(std::int64_t passes) const {
     constexpr std::int64_t rays_of_a_moment = 1 << 18;
     return std::min({smallest_, std::max(first_rays_, rays_of_a_moment),
-                     std::max<std::int64_t>(1, options_.limits.rays / budget_over_first_rays)});
+                     std::max<std::int64_t>(1, options_.limits.rays / budget_over_first_rays / passes)});
 }
 
 void Schedule::record_start(std::int64_t averaged_rays, std::int64_t other_rays) {

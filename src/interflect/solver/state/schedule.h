@@ -25,8 +25,8 @@ class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Returns the rays per pass before the first iteration: at most an eighth of all.
-    std::int64_t start_rays() const;
+    /// Returns the rays of each of `passes` passes before the first iteration: together at most an eighth of all.
+    std::int64_t start_rays(std::int64_t passes = 1) const;
     /// Records these passes; `averaged_rays` are in the first mean.
     void record_start(std::int64_t averaged_rays, std::int64_t other_rays);
     /// Respects the time limit. @param seconds  Since the run began.

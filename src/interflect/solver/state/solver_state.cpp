@@ -102,6 +102,7 @@ void compute_view_importance(SolverState& state) {
                                state.options.importance.camera_rays);
     state.solution.view_importance.clear();
     state.solution.indirect_importance.clear();
+    state.rays_of_first_importance = 0;
     if (state.view.empty()) return;
     if (state.neighbourhoods.empty()) state.neighbourhoods = Neighbourhoods(*state.forest);
     state.solution.view_importance =

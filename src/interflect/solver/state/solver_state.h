@@ -62,10 +62,11 @@ struct SolverState {
     RiskCheck risk_check;
     PayloadHistogram payloads;  // of the last iteration
     std::int64_t power_rays = 0, importance_rays = 0, escaped_rays = 0;
-    std::int64_t rays_of_other_views = 0;  // averaged before the views changed
-    RgbD escaped_power{0, 0, 0};           // mean, averaged like irradiance
-    double escaped_power_rays = 0;         // rays in this mean
-    double discarded_hits = 0;             // see IterationReport
+    std::int64_t rays_of_other_views = 0;       // averaged before the views changed
+    std::int64_t rays_of_first_importance = 0;  // of transport_importance() for these views
+    RgbD escaped_power{0, 0, 0};                // mean, averaged like irradiance
+    double escaped_power_rays = 0;              // rays in this mean
+    double discarded_hits = 0;                  // see IterationReport
 
     // The work in progress, which alone may be shared with other ranks:
     Monitor monitor;
