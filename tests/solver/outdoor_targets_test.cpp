@@ -110,7 +110,7 @@ class SmallHole : public testing::TestWithParam<std::tuple<Source, std::string, 
 };
 
 TEST_P(SmallHole, LetsLightInWithoutBias) {
-    constexpr int runs = 8;
+    constexpr int runs = 16;
     const Scene scene = room_in_a_landscape(source.luminaire);
     const RayCaster ray_caster(scene);
     std::vector<double> found;

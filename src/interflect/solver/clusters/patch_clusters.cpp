@@ -17,95 +17,116 @@ namespace {
 
 constexpr std::size_t trees = 4;
 
-using Place = std::array<float, 6>;  // position and normal
-using Range = std::span<std::uint32_t>;
+using Place = std::array<float, 7>;  // position, normal, openness: 0 in gaps, 1 in the open
+struct Placed {
+    Place place;
+    std::uint32_t patch;
+};
+using Range = std::span<Placed>;
 
 V3f centre(const PatchGeometry& geometry) { return geometry.point(Cell().centre(geometry.is_triangle())); }
 
-/// Returns the median distance from surfaces to those opposite, which does not depend on their tessellation [m].
-float distance_of_surfaces(const ElementForest& forest, const RayCaster& ray_caster) {
-    constexpr int rays = 1024;
-    double area = 0;
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) area += forest.area(p);
-    std::vector<Ray> normals;
-    double below = 0;
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
-        below += forest.area(p);
-        const PatchGeometry& geometry = forest.geometry(p);
-        const Ray ray{centre(geometry) + geometry.normal() * ray_caster.ray_offset(p), geometry.normal()};
-        while (normals.size() < rays && (static_cast<double>(normals.size()) + 0.5) * area < below * rays)
-            normals.push_back(ray);
-    }
-    std::vector<Hit> hits(normals.size());
-    ray_caster.trace(normals, hits);
-    std::vector<float> distances;
-    for (const Hit& hit : hits)
-        if (hit.patch != none) distances.push_back(hit.distance);
-    if (distances.empty()) return static_cast<float>(std::sqrt(area));
-    const auto median = distances.begin() + std::ssize(distances) / 2;
-    std::nth_element(distances.begin(), median, distances.end());
-    return *median;
+/// Returns the distance from the centre of each patch to the surface before it, along the normal [m].
+std::vector<float> distances(const ElementForest& forest, const RayCaster& ray_caster) {
+    constexpr std::size_t patches_per_task = 1 << 12;
+    std::vector<float> distances(forest.patch_count(), std::numeric_limits<float>::infinity());
+    parallel_for_ranges(forest.patch_count(), patches_per_task, [&](std::size_t begin, std::size_t end) {
+        std::vector<Ray> normals;
+        for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p) {
+            const V3f normal = forest.geometry(p).normal();
+            normals.push_back({centre(forest.geometry(p)) + normal * ray_caster.ray_offset(p), normal});
+        }
+        std::vector<Hit> hits(normals.size());
+        ray_caster.trace(normals, hits);
+        for (std::size_t i = 0; i < hits.size(); ++i)
+            if (hits[i].patch != none) distances[begin + i] = hits[i].distance;
+    });
+    return distances;
 }
 
-std::vector<Place> places(const ElementForest& forest, float length, float turn) {
+/// Returns half of the distance between opposite surfaces [m]: the median, weighted by area and distance, because light
+/// does not enter narrow gaps.
+float distance_of_change(const ElementForest& forest, std::span<const float> distances) {
+    std::vector<std::uint32_t> bounded;
+    double area = 0, twice = 0;
+    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+        area += forest.area(p);
+        if (!std::isfinite(distances[p])) continue;
+        bounded.push_back(p);
+        twice += static_cast<double>(forest.area(p)) * distances[p];
+    }
+    std::ranges::sort(bounded, {}, [&](std::uint32_t p) { return distances[p]; });
+    double below = 0;
+    for (const std::uint32_t p : bounded)
+        if ((below += static_cast<double>(forest.area(p)) * distances[p]) >= twice / 2) return distances[p] / 2;
+    return static_cast<float>(std::sqrt(area)) / 2;
+}
+
+std::vector<Placed> places(const ElementForest& forest, std::span<const std::uint32_t> patches,
+                           std::span<const float> distances, float length, float turn) {
+    constexpr float weight_of_openness = 2;  // the distance of opposite normals
     Imath::M44f rotation;
     rotation.setAxisAngle(V3f(1, 1, 1).normalized(), turn);
-    std::vector<Place> places(forest.patch_count());
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+    std::vector<Placed> places;
+    places.reserve(patches.size());
+    for (const std::uint32_t p : patches) {
         V3f position, normal;
         rotation.multDirMatrix(centre(forest.geometry(p)) / length, position);
         rotation.multDirMatrix(forest.geometry(p).normal(), normal);
-        places[p] = {position.x, position.y, position.z, normal.x, normal.y, normal.z};
+        const float openness = std::isfinite(distances[p]) ? distances[p] / (distances[p] + length) : 1;
+        places.push_back(
+            {{position.x, position.y, position.z, normal.x, normal.y, normal.z, weight_of_openness * openness}, p});
     }
     return places;
 }
 
 /// Moves the patches that are below the median along the widest axis to the front.
-void halve(Range patches, const std::vector<Place>& places) {
-    Place low, high;
-    low.fill(std::numeric_limits<float>::infinity()), high.fill(-std::numeric_limits<float>::infinity());
-    for (const std::uint32_t p : patches)
+void halve(Range patches) {
+    Place low = patches.front().place, high = low;
+    for (const Placed& p : patches)
         for (std::size_t i = 0; i < low.size(); ++i)
-            low[i] = std::min(low[i], places[p][i]), high[i] = std::max(high[i], places[p][i]);
+            low[i] = std::min(low[i], p.place[i]), high[i] = std::max(high[i], p.place[i]);
     std::size_t axis = 0;
     for (std::size_t i = 1; i < low.size(); ++i)
         if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
     std::nth_element(patches.begin(), patches.begin() + static_cast<std::ptrdiff_t>(patches.size() / 2), patches.end(),
-                     [&](std::uint32_t a, std::uint32_t b) {
-                         return places[a][axis] != places[b][axis] ? places[a][axis] < places[b][axis] : a < b;
+                     [&](const Placed& a, const Placed& b) {
+                         return a.place[axis] != b.place[axis] ? a.place[axis] < b.place[axis] : a.patch < b.patch;
                      });
 }
 
-void divide(Range patches, int halvings, const std::vector<Place>& places, std::vector<Range>& parts) {
+void divide(Range patches, int halvings, std::vector<Range>& parts) {
     if (halvings == 0) return parts.push_back(patches);
-    halve(patches, places);
-    divide(patches.first(patches.size() / 2), halvings - 1, places, parts);
-    divide(patches.subspan(patches.size() / 2), halvings - 1, places, parts);
+    halve(patches);
+    divide(patches.first(patches.size() / 2), halvings - 1, parts);
+    divide(patches.subspan(patches.size() / 2), halvings - 1, parts);
 }
 
 }  // namespace
 
-PatchClusters::PatchClusters(const ElementForest& forest, std::vector<std::uint32_t> patches, float length, float turn)
+PatchClusters::PatchClusters(const ElementForest& forest, std::span<const std::uint32_t> patches,
+                             std::span<const float> distances, float length, float turn)
     : patch_count_(forest.patch_count()) {
-    const std::vector<Place> of_patch = places(forest, length, turn);
-    std::vector<Range> ranges{patches};  // of the nodes
+    std::vector<Placed> placed = places(forest, patches, distances, length, turn);
+    std::vector<Range> ranges{placed};  // of the nodes
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const Range range = ranges[i];
         if (range.size() == 1) {
-            nodes_.push_back({none, range.front()});
+            nodes_.push_back({none, range.front().patch});
             continue;
         }
         const std::size_t before = ranges.size();
         if (range.size() <= most_parts)
             for (std::size_t k = 0; k < range.size(); ++k) ranges.push_back(range.subspan(k, 1));
         else
-            divide(range, range.size() < 2 * std::size_t{most_parts + 1} ? 2 : 3, of_patch, ranges);
+            divide(range, range.size() < 2 * std::size_t{most_parts + 1} ? 2 : 3, ranges);
         nodes_.push_back({static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(ranges.size() - before)});
     }
 }
 
 std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster) {
-    const float length = distance_of_surfaces(forest, ray_caster);
+    const std::vector<float> before_patches = distances(forest, ray_caster);
+    const float length = distance_of_change(forest, before_patches);
     std::vector<std::uint32_t> patches;
     for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
         if (ray_caster.uncovered_share(p) > 0) patches.push_back(p);
@@ -113,7 +134,7 @@ std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const Ra
     std::vector<std::vector<PatchClusters>> made(trees);
     parallel_for_ranges(trees, 1, [&](std::size_t tree, std::size_t) {
         const float turn = static_cast<float>(tree) / trees * 2 * std::numbers::pi_v<float> / 3;
-        made[tree].emplace_back(forest, patches, length, turn);
+        made[tree].emplace_back(forest, patches, before_patches, length, turn);
     });
     std::vector<PatchClusters> all;
     all.reserve(trees);

@@ -10,7 +10,8 @@
 
 namespace interflect::detail {
 
-/// Tree of clusters: groups of patches that are near each other and face alike, groups of groups, up to the scene.
+/// Tree of clusters: groups of patches that are near each other, face alike and are equally open, groups of
+/// groups, up to the scene.
 class PatchClusters {
   public:
     /// Groups of 32 are divided into four of eight.
@@ -24,9 +25,11 @@ class PatchClusters {
     };
 
     /// @param patches  To be divided.
+    /// @param distances  From each patch to the surface before it [m]; faces in gaps receive little light.
     /// @param length  Distance over which irradiance changes about as much as from one direction to the opposite [m].
     /// @param turn  Angle by which the scene is turned before it is divided [radians].
-    PatchClusters(const ElementForest& forest, std::vector<std::uint32_t> patches, float length, float turn);
+    PatchClusters(const ElementForest& forest, std::span<const std::uint32_t> patches, std::span<const float> distances,
+                  float length, float turn);
 
     std::uint32_t patch_count() const { return patch_count_; }
     /// Parents first; children of a node are adjacent.

@@ -78,33 +78,18 @@ double squared_error_of_differences(const RiskCheck& check, double noise_of_diff
                                               : std::max(0.0, check.measured / check.weight);
 }
 
-/// Sets the errors of the means that clusters have reduced, the average over the trees.
+/// Sets the errors of reduced means in the first tree. The average over the trees has slightly smaller errors.
 void set_errors_of_clusters(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {
-    using Errors = ClusterShrinkage::Errors;
     const ElementForest& forest = *state.forest;
-    const std::size_t patches = forest.patch_count(), trees = state.clusters.size();
-    std::vector<float> pixels(patches);  // that a patch covers
-    parallel_for_ranges(patches, elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p)
-            pixels[p] = forest.area(p) / pixel_area(state, p);
+    const PatchClusters& clusters = state.clusters.front();
+    const std::vector<double> pixels =
+        clusters.sums<double>([&](std::uint32_t p) { return forest.area(p) / pixel_area(state, p); });
+    std::vector<ClusterShrinkage::Errors> of_patches(forest.patch_count());
+    ClusterShrinkage(state, clusters, state.solution.irradiance).measure_errors(of_patches, [&](std::size_t node) {
+        return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(pixels[node]);
     });
-    const std::vector<Errors> of_trees = divide_over_ranks<Errors>(
-        state.stop.ranks(), trees, patches, [&](std::size_t tree, std::span<Errors> of_patches) {
-            const PatchClusters& clusters = state.clusters[tree];
-            const std::vector<double> of_node = clusters.sums<double>([&](std::uint32_t p) { return pixels[p]; });
-            ClusterShrinkage(state, clusters, state.solution.irradiance)
-                .measure_errors(of_patches, [&](std::size_t node) {
-                    return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(of_node[node]);
-                });
-        });
-    const float weight = 1 / static_cast<float>(trees);
-    parallel_for_ranges(patches, elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t tree = 0; tree < trees; ++tree)
-            for (std::size_t p = begin; p < end; ++p) {
-                const auto [noise, bias] = of_trees[tree * patches + p];
-                errors.noise[p] += weight * noise, errors.bias[p] += weight * bias;
-            }
-    });
+    for (std::size_t p = 0; p < of_patches.size(); ++p)
+        errors.noise[p] = of_patches[p].noise, errors.bias[p] = of_patches[p].bias;
 }
 
 void set_errors_of_patches(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {

@@ -50,52 +50,55 @@ struct Sample {
 /// Estimates the variance of the true values (Paule and Mandel, Consensus values and weighting factors, 1982): the
 /// least with which the samples' deviations from their weighted mean are as large as expected. Precise samples decide.
 double variance_of_true_values(std::span<const Sample> samples) {
-    const auto excess = [&](double signal) {
-        double weights = 0, mean = 0, sum = 0;
+    constexpr double tolerance = 1e-3;  // relative; the estimate varies by a tenth or more
+    constexpr int most_steps = 20;
+    const double expected = static_cast<double>(samples.size() - 1);
+    double signal = 0;
+    for (int step = 0; step < most_steps; ++step) {  // Newton's method for 1 / sum, which is nearly linear
+        double weights = 0, mean = 0, sum = 0, slope = 0;
         for (const auto& [value, variance] : samples)
             weights += 1 / (signal + variance), mean += value / (signal + variance);
         mean /= weights;
-        for (const auto& [value, variance] : samples) sum += (value - mean) * (value - mean) / (signal + variance);
-        return sum - static_cast<double>(samples.size() - 1);
-    };
-    if (!(excess(0) > 0)) return 0;
-    const auto [least, most] = std::ranges::minmax(samples, {}, &Sample::value);
-    double low = 0, high = (most.value - least.value) * (most.value - least.value);  // excess(high) <= 0
-    constexpr int halvings = 20;
-    for (int i = 0; i < halvings; ++i) {
-        const double middle = (low + high) / 2;
-        (excess(middle) > 0 ? low : high) = middle;
+        for (const auto& [value, variance] : samples) {
+            const double weight = 1 / (signal + variance), square = (value - mean) * (value - mean) * weight;
+            sum += square, slope += square * weight;
+        }
+        if (signal == 0 && !(sum > expected)) break;
+        const double change = (sum - expected) * sum / (expected * slope);
+        signal = std::max(0.0, signal + change);
+        if (std::abs(change) < tolerance * signal) break;
     }
-    return high;
+    return signal;
 }
 
 /// Patches that share a mean of the pictures.
 struct Region {
-    double share = 0, area = 0;  // of the pictures; [m^2]
-    RgbD before{0, 0, 0};        // in the pictures
-    // After the reduction, in the pictures and over the area, and weighted by visibility():
-    RgbD after{0, 0, 0}, after_visible{0, 0, 0}, power{0, 0, 0}, power_visible{0, 0, 0};
+    double share = 0, area = 0;            // of the pictures; [m^2]
+    RgbD before{0, 0, 0}, after{0, 0, 0};  // the reduction, in the pictures
+    // Uncertain light in the pictures and over the area, and weighted by visibility():
+    RgbD shown{0, 0, 0}, shown_visible{0, 0, 0}, power{0, 0, 0}, power_visible{0, 0, 0};
 
     /// 1 for patches that are seen at least as well as the region on average.
     double visibility(double seen) const { return std::min(1.0, seen * area / share); }
 
-    void add(double seen, double patch_area, const RgbD& unreduced, const RgbD& reduced) {
+    /// @param uncertainty  Share of the cluster's mean in the reduced light.
+    void add(double seen, double patch_area, double uncertainty, const RgbD& unreduced, const RgbD& reduced) {
         if (!(share > 0)) return;
         before += seen * patch_area * unreduced, after += seen * patch_area * reduced;
-        power += patch_area * reduced;
-        after_visible += visibility(seen) * seen * patch_area * reduced;
-        power_visible += visibility(seen) * patch_area * reduced;
+        const RgbD uncertain = uncertainty * patch_area * reduced;
+        shown += seen * uncertain, power += uncertain;
+        shown_visible += visibility(seen) * seen * uncertain, power_visible += visibility(seen) * uncertain;
     }
 
-    /// Returns 1 + x (visibility - y), which keeps the power and makes `after` equal to `before`. Where little is
-    /// hidden, y = 0.
-    float factor(double seen, int c) const {
+    /// Returns 1 + x uncertainty (visibility - y), which keeps the power and makes `after` equal to `before`. Where
+    /// little is hidden, y = 0. No patch changes by more than its uncertain light.
+    float factor(double seen, double uncertainty, int c) const {
         constexpr double most = 0.5;  // change of hidden patches
-        const auto change = [&](double y) { return (before[c] - after[c]) / (after_visible[c] - y * after[c]); };
-        if (!(after_visible[c] > 0)) return 1;
+        const auto change = [&](double y) { return (before[c] - after[c]) / (shown_visible[c] - y * shown[c]); };
+        if (!(shown_visible[c] > 0)) return 1;
         double y = power_visible[c] / power[c];
         if (!(std::abs(y * change(y)) <= most)) y = 0;
-        return static_cast<float>(std::max(0.0, 1 + change(y) * (visibility(seen) - y)));
+        return static_cast<float>(1 + std::clamp(change(y), -1.0, 1.0) * uncertainty * (visibility(seen) - y));
     }
 };
 
@@ -149,6 +152,39 @@ void ClusterShrinkage::measure_parts() {
     });
 }
 
+/// Returns reduced means of the parts of a cluster in one channel, with the mean `mean` over the area. Uncertain parts
+/// change most; none changes by more than `most_errors` standard errors (limited translation: Efron and Morris,
+/// Limiting the risk of Bayes and empirical Bayes estimators, 1972).
+/// @param own  Unreduced means of the parts. @param mean  Of the reduced cluster.
+/// @param to_channel  Irradiance of the channel over luminance.
+ClusterShrinkage::Means ClusterShrinkage::reduce_parts(std::span<const Part> parts, const Means& own, float mean,
+                                                       float to_channel) {
+    constexpr float most_errors = 3, tolerance = 1e-6f;
+    constexpr int most_steps = 10;
+    Means reduced;
+    float missing = 0, shared = 0;                   // part of the mean; multiple of kept * variance
+    for (int step = 0; step < most_steps; ++step) {  // Newton's method for a sum that is linear in pieces
+        float slope = 0;
+        missing = mean;
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            const auto [share, kept, variance, signal] = parts[k];
+            const float most = most_errors * std::sqrt(variance) * to_channel, weight = kept * variance,
+                        wanted = (1 - kept) * (mean - own[k]) + shared * weight,
+                        change = std::clamp(wanted, -std::min(most, own[k]), most);
+            reduced[k] = own[k] + change;
+            missing -= share * reduced[k];
+            if (change == wanted) slope += share * weight;
+        }
+        if (!(std::abs(missing) > tolerance * mean) || !(slope > 0)) break;
+        shared += missing / slope;
+    }
+    float variance = 0;
+    for (const Part& part : parts) variance += part.share * part.variance;
+    for (std::size_t k = 0; k < parts.size() && variance > 0; ++k)
+        reduced[k] = std::max(0.0f, reduced[k] + missing * parts[k].variance / variance);
+    return reduced;
+}
+
 /// From the scene to the patches.
 std::vector<Rgb> ClusterShrinkage::reduce() const {
     std::vector<Rgb> means(irradiance_.begin(), irradiance_.begin() + clusters_->patch_count());
@@ -163,36 +199,26 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
     }
     std::vector<Rgb> after(nodes.size());
     after[0] = before[0];
-    std::array<Rgb, PatchClusters::most_parts> differences;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto [first, count] = nodes[i];
         if (first == none) {
             means[count] = after[i];
             continue;
         }
-        Rgb excess(0);
-        float uncertainty = 0;
-        for (std::uint32_t k = 0; k < count; ++k) {
-            const Part& part = parts_[first + k];
-            differences[k] = part.kept * (before[first + k] - after[i]);
-            excess += part.share * differences[k];
-            uncertainty += part.share * part.kept * part.variance;
-        }
-        for (std::uint32_t k = 0; k < count && uncertainty > 0; ++k)
-            differences[k] -= excess * (parts_[first + k].kept * parts_[first + k].variance / uncertainty);
+        const float light = luminance(after[i]);
         for (int c = 0; c < 3; ++c) {
-            float lowest = 0;
-            for (std::uint32_t k = 0; k < count; ++k) lowest = std::min(lowest, differences[k][c]);
-            const float limit = -lowest > after[i][c] ? after[i][c] / -lowest : 1;
-            for (std::uint32_t k = 0; k < count; ++k)
-                after[first + k][c] = std::max(0.0f, after[i][c] + limit * differences[k][c]);
+            Means own;
+            for (std::uint32_t k = 0; k < count; ++k) own[k] = before[first + k][c];
+            const float to_channel = light > 0 ? after[i][c] / light : 0;
+            own = reduce_parts({&parts_[first], count}, own, after[i][c], to_channel);
+            for (std::uint32_t k = 0; k < count; ++k) after[first + k][c] = own[k];
         }
     }
     return means;
 }
 
-/// Clusters preserve the mean over their area, but visible patches may be brighter than hidden ones. Visible patches
-/// are scaled to the mean of the pictures before the reduction, hidden ones to keep the power.
+/// Clusters preserve the mean over their area, but visible patches may be brighter than hidden ones. Scales uncertain
+/// light: of visible patches to keep the mean of the pictures, of hidden patches to keep the power.
 void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
     const ElementForest& forest = *state_->forest;
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
@@ -203,6 +229,7 @@ void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
     const double fewest = fewest_camera_rays / static_cast<double>(state_->view.rays());
     std::vector<Region> regions(nodes.size());
     std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
+    std::vector<float> uncertainty(means.size());
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
         const auto [first, count] = nodes[i];
         if (shares[i] >= fewest) region[i] = i;
@@ -211,13 +238,14 @@ void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
             continue;
         }
         region_of_patch[count] = region[i];
+        uncertainty[count] = 1 - parts_[i].kept;
         regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(count);
     }
     for (std::uint32_t p = 0; p < means.size(); ++p)
-        regions[region_of_patch[p]].add(seen[p], forest.area(p), RgbD(irradiance_[p]), RgbD(means[p]));
+        regions[region_of_patch[p]].add(seen[p], forest.area(p), uncertainty[p], RgbD(irradiance_[p]), RgbD(means[p]));
     for (std::uint32_t p = 0; p < means.size(); ++p) {
         const Region& r = regions[region_of_patch[p]];
-        for (int c = 0; c < 3 && r.share >= fewest; ++c) means[p][c] *= r.factor(seen[p], c);
+        for (int c = 0; c < 3 && r.share >= fewest; ++c) means[p][c] *= r.factor(seen[p], uncertainty[p], c);
     }
 }
 

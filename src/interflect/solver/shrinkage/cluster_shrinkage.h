@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -34,8 +35,11 @@ class ClusterShrinkage {
         float variance = 0;  // of its own mean, as squared luminance
         float signal = 0;    // variance of the true means in its cluster
     };
+    using Means = std::array<float, PatchClusters::most_parts>;
+
     void measure_parts();
     std::vector<Rgb> reduce() const;
+    static Means reduce_parts(std::span<const Part> parts, const Means& own, float mean, float to_channel);
     void keep_means_of_pictures(std::vector<Rgb>& means) const;
 
     const SolverState* state_;
