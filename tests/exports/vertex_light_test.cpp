@@ -12,6 +12,7 @@
 #include "interflect/export.h"
 #include "tests/exports/lightmaps.h"
 #include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
 
 namespace interflect {
 
@@ -151,25 +152,32 @@ TEST(VertexLight, TakesDirectLightFromTheLampAndNotFromTheSolution) {
     }
 }
 
-// In a furnace all surfaces have the irradiance M / (1 - rho). Half of it is direct light.
+/// In a furnace all surfaces have the irradiance M / (1 - rho). Half of it is direct light. Hybrid shading is 0.08%
+/// low, with a standard deviation of 0.16% from seed to seed, because vertices share records.
 TEST(VertexLight, IsEvenInAFurnace) {
     constexpr float exact = 100;
+    constexpr double bias = 1e-3, false_alarm = 1e-3;
     const Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0.5f), Rgb(exact / 2)}});
     const Solution solution = lightmap_testing::uniform(scene, exact);
     for (const Shading shading : {Shading::hybrid, Shading::gather}) {
         ExportOptions options;
         options.bake.shading = shading;
         options.vertices.max_edge = 0.5f;
-        VertexLight light = make_vertex_light(scene, solution, options);
-        double sum = 0, squares = 0, count = 0;
-        for (const MeshTriangle& triangle : triangles_of(light))
-            for (const MeshCorner& corner : triangle) {
-                const double error = static_cast<double>(corner.irradiance.x / exact - 1);
-                sum += error, squares += error * error, ++count;
-            }
-        EXPECT_GT(count, 500);
-        EXPECT_NEAR(sum / count, 0, 2e-3) << static_cast<int>(shading);
-        EXPECT_LT(std::sqrt(squares / count), 0.05) << static_cast<int>(shading);  // most in the corners
+        std::vector<double> means;
+        for (options.bake.seed = 1; options.bake.seed <= 8; ++options.bake.seed) {
+            VertexLight light = make_vertex_light(scene, solution, options);
+            double sum = 0, squares = 0, count = 0;
+            for (const MeshTriangle& triangle : triangles_of(light))
+                for (const MeshCorner& corner : triangle) {
+                    const double error = static_cast<double>(corner.irradiance.x / exact - 1);
+                    sum += error, squares += error * error, ++count;
+                }
+            EXPECT_GT(count, 500);
+            EXPECT_LT(std::sqrt(squares / count), 0.05) << static_cast<int>(shading);  // most in the corners
+            means.push_back(sum / count);
+        }
+        EXPECT_GT(t_test(means, 0, bias), false_alarm) << static_cast<int>(shading);
+        EXPECT_LT(t_test(means, 0.01, bias), false_alarm) << "would notice 1%";
     }
 }
 
