@@ -315,6 +315,32 @@ TEST_P(SampledLightmap, HasLightAtBordersAsAnywhere) {
             }
 }
 
+/// A strip with two columns of texels, on its borders, and a lamp above one border. Together they have the light of the
+/// strip. Seen to fail if points beyond the border are moved to the border (+37%).
+TEST(BakedLight, OfTwoColumnsHasTheMeanOfTheFace) {
+    constexpr float width = 0.2f, height = 0.05f;
+    constexpr int rows = 8;
+    Scene scene;
+    add_rectangle(scene, {0, 0, 0}, {width, 0, 0}, {0, width, 0}, add_material(scene, Rgb(0), Rgb(0)));
+    scene.luminaires = {{"lamp", 0, PointLight{{0, width / 2, height}, Rgb(1)}}};
+    double exact = 0;
+    constexpr int steps = 400;
+    for (int i = 0; i < steps * steps; ++i) {
+        const double x = width * (i % steps + 0.5) / steps, y = width * ((i / steps + 0.5) / steps - 0.5);
+        exact += height / std::pow(x * x + y * y + height * height, 1.5) / (steps * steps);
+    }
+    std::vector<BakedPoint> points;
+    for (int i = 0; i < rows; ++i)
+        for (const float u : {0.0f, 1.0f})
+            points.push_back({0, {u, (static_cast<float>(i) + 0.5f) / rows}, {Parameters{1, 0}, {0, 1.0f / rows}}});
+    const Solution solution = uniform(scene, 0);
+    const BakeOptions options{Shading::hybrid, 1024, 1};
+    const BakedLight light(scene, solution, options, {&DefaultSamples::texel, 0.06, false});
+    double mean = 0;
+    for (const Rgb& e : light.irradiance(points, {}, 0.01f, {})) mean += static_cast<double>(e.x) / (2 * rows);
+    EXPECT_NEAR(mean / exact, 1, 0.02);
+}
+
 /// A black floor below a dark ceiling with a window, in the light of the sky and the sun, whose shadow is sharp.
 class FilteredTexels : public testing::Test {
   protected:

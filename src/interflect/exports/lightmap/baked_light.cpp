@@ -127,13 +127,15 @@ std::vector<Gauge> BakedLight::gauges(std::span<const BakedPoint> points, float 
 }
 
 std::vector<Rgb> BakedLight::gathered(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const {
+    const std::vector<Gauge> places = gauges(points, spacing);
     std::vector<MeasuringPoint> measuring;
     measuring.reserve(points.size());
     for (const BakedPoint& point : points) {
         const PatchGeometry& geometry = solution_.forest->geometry(point.patch);
-        const V3f x = geometry.point(geometry.inset(point.at, inset * spacing));
-        const V3f normal = vertices_.normals().at(geometry, point.patch, point.at);
-        measuring.push_back({scene_.origin + Imath::V3d(x), normal});
+        V3f x(0);  // middle of the gauge's part on the patch
+        for (const float u : {0.25f, 0.75f})
+            for (const float v : {0.25f, 0.75f}) x += places[measuring.size()].point_on(geometry, u, v) / 4;
+        measuring.push_back({scene_.origin + Imath::V3d(x), places[measuring.size()].normal});
     }
     const MeasuringOptions options{.samples = path_options().samples, .seed = options_.seed};
     const std::vector<MeasuredIrradiance> measured =

@@ -22,13 +22,10 @@ constexpr std::uint32_t paths_per_direction = 4;
 /// Lower values reduce variance but lengthen paths; 0.25 to 1 are equally efficient.
 constexpr float roulette_threshold = 0.5f;
 
-/// Uniform in the gauge's parallelogram, moved to its patch and off it.
+/// Returns a point of the gauge, off its patch.
 V3f start_on(const TracedScene& s, const Gauge& gauge, const V3f& normal, float u, float v) {
     if (gauge.patch == none) return gauge.position + normal * gauge.offset;
-    const PatchGeometry& geometry = s.geometry[gauge.patch];
-    const V3f x = gauge.position + (u - 0.5f) * gauge.side_u + (v - 0.5f) * gauge.side_v;
-    return s.lifted(gauge.patch, geometry.point(geometry.inset(geometry.parameters_of(x), gauge.inset))) +
-           normal * gauge.offset;
+    return s.lifted(gauge.patch, gauge.point_on(s.geometry[gauge.patch], u, v)) + normal * gauge.offset;
 }
 
 }  // namespace

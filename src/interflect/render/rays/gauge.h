@@ -9,6 +9,8 @@
 
 namespace interflect::detail {
 
+class PatchGeometry;
+
 /// A small plane, or the mean over an arc of normals.
 struct Gauge {
     V3f position{0, 0, 0};                 // relative to the scene's origin [m]
@@ -21,6 +23,10 @@ struct Gauge {
     float inset = 0;                       // least distance of ray starts from the patch's border [m]
 
     float spacing() const { return std::max(side_u.length(), side_v.length()); }
+    /// Returns a point of the parallelogram on the patch [m]. Outside the patch, the offset from `position` is mirrored
+    /// along one side or both: at the border, the half on the patch is covered evenly and the border has no weight.
+    /// @param u, v  In [0, 1].
+    V3f point_on(const PatchGeometry& geometry, float u, float v) const;
     /// @param u  In [0, 1].
     V3f normal_at(float u) const {
         const float angle = (2 * u - 1) * half_arc;
