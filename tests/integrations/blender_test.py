@@ -1,8 +1,10 @@
-"""The Blender add-on in a headless Blender: bakes rooms repeatedly, imports their light, cancels, and reports errors."""
+"""The Blender add-on in a headless Blender: bakes rooms repeatedly, imports their light, cancels, and reports errors.
+INTERFLECT_BPY: a Python with the package bpy, which is used in place of the program blender."""
 
 import json
 import math
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -10,7 +12,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 INSIDE = Path(__file__).with_name("inside_blender.py")
-
+BPY = os.environ.get("INTERFLECT_BPY")
+BLENDER = [BPY] if BPY else ["blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python"]
 
 TOGETHER = (
     *("vertex", "lightmap", "sheets_vertex", "sheets_lightmap", "sheets_magnified", "moves", "three_vertex", "three_lightmaps"),
@@ -41,7 +44,7 @@ class Addon(unittest.TestCase):
             (addons / "interflect").symlink_to(ROOT / "integrations/blender/interflect")
             out = Path(folder, "found.json")
             done = subprocess.run(
-                ["blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python", INSIDE, "--", command, out, *cases],
+                [*BLENDER, INSIDE, "--", command, out, *cases],
                 # Blender takes its modules from any python3 that comes first.
                 env={
                     "HOME": folder,
@@ -56,6 +59,20 @@ class Addon(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr[-3000:])
             self.assertEqual(list(temporary.glob("interflect-*")), [])
             return json.loads(out.read_text())
+
+    @unittest.skipUnless(BPY, "extensions need Blender 4.2")
+    def test_installs_as_an_extension(self):
+        """The archive is made as the guide says."""
+        with tempfile.TemporaryDirectory() as folder:
+            archive = shutil.make_archive(str(Path(folder, "interflect")), "zip", ROOT / "integrations/blender", "interflect")
+            done = subprocess.run(
+                [*BLENDER, INSIDE.with_name("install_extension.py"), "--", os.environ["INTERFLECT_COMMAND"], archive],
+                env={"HOME": folder, "PATH": "/usr/bin:/bin", "BLENDER_USER_RESOURCES": folder},
+                capture_output=True,
+                text=True,
+                timeout=500,
+            )
+            self.assertEqual(done.returncode, 0, done.stdout[-3000:] + done.stderr[-3000:])
 
     def test_vertex_colours_come_back(self):
         found = self.blender("vertex")

@@ -5,6 +5,7 @@ from contextlib import contextmanager
 
 import bpy
 
+from . import versions
 from .result import is_result
 
 DISC_CORNERS = 32
@@ -100,9 +101,8 @@ def _panel(lamp, matrix, corners, area):
     surface.inputs["Base Color"].default_value = (0, 0, 0, 1)
     factors = (light.use_nodes and _emission(light)) or [1, 1, 1]
     colour = [max(0, own * factor) for own, factor in zip(light.color, factors)]
-    surface.inputs["Emission"].default_value = (*colour, 1)
-    # Cycles gives an area lamp of P watts the radiance P / (4 A), not P / (pi A): it emits 0.785 P.
-    surface.inputs["Emission Strength"].default_value = max(0, light.energy) / (4 * area)
+    versions.emission_colour(surface).default_value = (*colour, 1)
+    surface.inputs["Emission Strength"].default_value = max(0, light.energy) * versions.area_lamp_radiance() / area
     mesh.materials.append(material)
     panel = bpy.data.objects.new(lamp.name, mesh)
     panel.matrix_world = matrix

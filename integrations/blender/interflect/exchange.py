@@ -5,13 +5,9 @@ import struct
 from pathlib import Path
 
 import bpy
-import numpy
 
-from . import area_lamps, lit_sides, result
+from . import area_lamps, lit_sides, result, versions
 from .visibility import only_rendered
-
-if bpy.app.version < (3, 5):
-    numpy.bool = bool  # the importer uses this name, which later versions of NumPy have dropped
 
 LIT_COLLECTION = "Interflect"
 EXPORTED_TYPES = ("MESH", "CURVE", "SURFACE", "FONT", "LIGHT")
@@ -38,7 +34,7 @@ def export_scene(scene, path: Path) -> Exported:
             export_apply=True,
             export_animations=False,
             export_current_frame=True,
-            convert_lighting_mode="COMPAT",
+            **versions.watts_as_lumens(bpy.ops.export_scene.gltf),
         )
         return Exported([o.name for o in objects], warnings)
 
@@ -70,7 +66,7 @@ def import_lit(scene, path: Path, replaced: list[str], warnings: list[str]) -> N
         lit = bpy.data.collections.new(LIT_COLLECTION)
         try:
             with bpy.context.temp_override(scene=temporary, view_layer=temporary.view_layers[0]):
-                bpy.ops.import_scene.gltf(filepath=str(path), convert_lighting_mode="COMPAT")
+                bpy.ops.import_scene.gltf(filepath=str(path), **versions.watts_as_lumens(bpy.ops.import_scene.gltf))
             for made in temporary.objects:
                 made.select_set(False, view_layer=temporary.view_layers[0])
                 if made.type not in ("CAMERA", "LIGHT"):

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import bpy
 
+from . import versions
+
 LIGHTMAP = "MOZ_lightmap"
 
 
@@ -44,9 +46,10 @@ class glTF2ImportUserExtension:
         reflected, emitted, both = (nodes.new(f"ShaderNode{kind}") for kind in ("Emission", "Emission", "AddShader"))
         links.new(product.outputs["Color"], reflected.inputs["Color"])
         reflected.inputs["Strength"].default_value = 1 / pi
-        for name, to in [("Emission", emitted.inputs["Color"]), ("Emission Strength", emitted.inputs["Strength"])]:
-            to.default_value = surface.inputs[name].default_value
-            for link in surface.inputs[name].links:
+        of_surface = versions.emission_colour(surface), surface.inputs["Emission Strength"]
+        for socket, to in zip(of_surface, (emitted.inputs["Color"], emitted.inputs["Strength"])):
+            to.default_value = socket.default_value
+            for link in socket.links:
                 links.new(link.from_socket, to)
         # The exposure brightened the emission, like the 8-bit images.
         emitted.inputs["Strength"].default_value *= 2 ** -notes["exposure"]

@@ -52,7 +52,7 @@ scene.render.image_settings.color_depth = "32"
 scene.render.filepath = picture
 camera = bpy.data.objects.new("north", bpy.data.cameras.new("north"))
 camera.data.type = "PANO"
-camera.data.cycles.panorama_type = "EQUIRECTANGULAR"
+(camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles).panorama_type = "EQUIRECTANGULAR"
 camera.rotation_euler = (math.pi / 2, 0, 0)
 scene.collection.objects.link(camera)
 scene.camera = camera

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import bpy
 
+from . import versions
+
 RENDER_WORLD = Path(__file__).with_name("render_world.py")
 
 
@@ -38,6 +40,5 @@ def rendering(scene, folder: Path, picture: Path) -> list[str]:
     keep the user's last render."""
     file = folder / "world.blend"
     bpy.data.libraries.write(str(file), {scene.world}, path_remap="ABSOLUTE")
-    script = ["--python-exit-code", "1", "--python", str(RENDER_WORLD)]
     where = [str(file), scene.world.name, str(scene.frame_current), str(picture)]
-    return [bpy.app.binary_path, "--background", "--factory-startup", *script, "--", *where]
+    return [*versions.background_command(), str(RENDER_WORLD), "--", *where]
