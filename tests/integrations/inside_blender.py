@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import sys
 import tempfile
 import time
@@ -510,3 +511,4 @@ for case in cases:
     except Exception:
         found[case] = {"error": traceback.format_exc()}
 Path(out).write_text(json.dumps(found))
+os._exit(0)  # the package bpy 4.2 crashes when Python ends
