@@ -394,7 +394,7 @@ TEST_F(FilteredTexels, HaveLessNoiseAndTheSameMeanAndShadow) {
     for (const std::uint64_t seed : {1, 2}) {
         const auto [noisy_mean, noisy_error] = compare(bake(16, seed, false), exact);
         const auto [mean, error] = compare(bake(16, seed, true), exact);
-        EXPECT_LT(error, 0.6 * noisy_error);
+        EXPECT_LT(error, 0.5 * noisy_error);
         EXPECT_NEAR(mean / noisy_mean, 1, 0.002);
     }
 }

@@ -158,11 +158,9 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
             batches.push_back({.pixel = i, .first_point = (records_[i].gathered.groups + group) * half, .size = half});
     PathStart start;
     start.gauges = gauges;
-    PictureOptions options = plan.options;
-    options.seed = mix(options.seed, 0x5ec02d);  // pixels with the index of a record have other random numbers
     const PathPlan gathering{.scene = plan.scene,
                              .start = start,
-                             .options = options,
+                             .options = plan.options,
                              .has_direct = false,
                              .seen_sources = plan.seen_sources,
                              .known = plan.known,
