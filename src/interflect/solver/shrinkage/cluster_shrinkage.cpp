@@ -15,6 +15,9 @@ namespace {
 /// Contributions of a part, found or expected, at which its measured variance has weight 1/2. With fewer, parts tend to
 /// the variance that their area and the mean of the cluster suggest: one without any would seem to be exactly black.
 constexpr double contributions_of_half_trust = 8;
+/// Contributions at which a part keeps at least half of its own mean, however it differs from its cluster; with ten
+/// times as many 99%. The signal is that of most parts, and bright faces beside a lamp exceed it.
+constexpr double contributions_of_own_mean = 80;
 /// In a region of the pictures that keeps its mean. Fewer would bring noise of the unreduced light back.
 constexpr double fewest_camera_rays = 1024;
 constexpr std::size_t clusters_per_task = 1 << 10;
@@ -146,7 +149,10 @@ void ClusterShrinkage::measure_parts() {
             for (std::uint32_t k = 0; k < count; ++k) {
                 Part& part = parts_[first + k];
                 part.variance = static_cast<float>(samples[k].variance), part.signal = static_cast<float>(signal);
-                part.kept = static_cast<float>(signal / (signal + samples[k].variance));
+                const double own = sums[first + k].contributions() / contributions_of_own_mean;
+                const double by_signal = signal / (signal + samples[k].variance),
+                             by_count = own * own / (1 + own * own);
+                part.kept = static_cast<float>(std::max(by_signal, by_count));
             }
         }
     });
