@@ -66,14 +66,16 @@ void MeasuringPlaces::check(Least least) const {
 
 std::vector<MeasuringGrid> MeasuringPlaces::grids(const Scene& scene) const {
     std::vector<MeasuringGrid> grids;
-    for (const std::string& name : tops) grids.push_back(area_grid(scene, find_top(scene, name), grid.options()));
+    GridOptions of_objects = grid.options();
+    if (whole_objects) of_objects.boundary = 0;
+    for (const std::string& name : tops) grids.push_back(area_grid(scene, find_top(scene, name), of_objects));
     for (const double height : planes) {
         const PlanarArea floor = over.empty() ? find_floor(scene, height) : find_top(scene, over);
         grids.push_back(area_grid(scene, floor, grid.options(), height));
         grids.back().name = fmt::format("{}{}z = {:.4g} m", over, over.empty() ? "" : ", ", height);
     }
     for (const std::string& name : surfaces)
-        grids.push_back(area_grid(scene, find_surface(scene, name, facing), grid.options()));
+        grids.push_back(area_grid(scene, find_surface(scene, name, facing), of_objects));
     if (!points.empty()) {
         grids.emplace_back();
         grids.back().name = "points";
@@ -86,6 +88,12 @@ std::vector<MeasuringGrid> MeasuringPlaces::grids(const Scene& scene) const {
     return grids;
 }
 
+std::vector<MeasuringGrid> open_grids(const Scene& scene, const RayCaster& ray_caster,
+                                      std::vector<MeasuringGrid> grids) {
+    for (MeasuringGrid& grid : grids) grid = without_enclosed_points(scene, ray_caster, std::move(grid));
+    return grids;
+}
+
 std::string text_of(const MeasuringGrid& grid) {
     std::string text = fmt::format("{} point{}", grid.points.size(), grid.points.size() == 1 ? "" : "s");
     if (grid.columns > 0)
@@ -93,6 +101,7 @@ std::string text_of(const MeasuringGrid& grid) {
                             grid.row_spacing);
     else if (grid.column_spacing > 0)
         text += fmt::format(", {:.3g} m apart", grid.column_spacing);
+    if (grid.enclosed > 0) text += fmt::format(", without {} inside furniture", grid.enclosed);
     return text;
 }
 

@@ -29,6 +29,7 @@ struct MeasuringPlaces {
     std::vector<Imath::V3d> points;
     std::vector<Line> lines;
     GridArguments grid;
+    bool whole_objects = false;  ///< Whether the boundary strip is for planes, but not for tops and surfaces.
 
     void add_to(CLI::App& app);
     enum class Least { none, one };
@@ -38,7 +39,11 @@ struct MeasuringPlaces {
     std::vector<MeasuringGrid> grids(const Scene& scene) const;
 };
 
-/// Returns "35 points, 7 x 5, 0.2 x 0.19 m apart".
+/// Returns the grids without their points inside furniture.
+std::vector<MeasuringGrid> open_grids(const Scene& scene, const RayCaster& ray_caster,
+                                      std::vector<MeasuringGrid> grids);
+
+/// Returns "35 points, 7 x 5, 0.2 x 0.19 m apart, without 2 inside furniture".
 std::string text_of(const MeasuringGrid& grid);
 
 }  // namespace interflect::command

@@ -145,6 +145,14 @@ Line parse_line(const std::string& text) {
     return line;
 }
 
+Observer parse_observer(const std::string& text) {
+    std::string_view rest = text;
+    Imath::V3d eye, direction;
+    const bool parsed = take_vector(rest, eye) && take(rest, ':') && take_vector(rest, direction) && rest.empty();
+    if (!parsed || direction == Imath::V3d(0)) refuse(text, "an eye and the way that it looks, such as 2,1,1.2:0,1,0");
+    return {eye, V3f(direction)};
+}
+
 Section parse_section(const std::string& text) {
     constexpr const char* expected = "a plane such as x=3 or -y=2.5, or a point on it and a direction, X,Y,Z,DX,DY,DZ";
     std::string_view rest = text;

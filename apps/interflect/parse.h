@@ -11,6 +11,7 @@
 
 #include "interflect/core.h"
 #include "interflect/load.h"
+#include "interflect/measure.h"
 #include "interflect/scene.h"
 
 namespace interflect::command {
@@ -47,6 +48,8 @@ struct Line {
     int count = 11;
 };
 Line parse_line(const std::string& text);
+/// "2,1,1.2:0,1,0" -> eye and line of sight.
+Observer parse_observer(const std::string& text);
 /// "lamp.ies@1,2,3" -> file and position. An aim point, `turn`, `lumens` and `maintenance` (PlacedLuminaire) may
 /// follow, such as ",4,5,0,turn=90".
 PlacedLuminaire parse_luminaire(const std::string& text);

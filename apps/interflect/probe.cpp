@@ -45,6 +45,7 @@ struct ProbeArguments {
     MeasuringPlaces places;
     ProbedQuantity quantity = ProbedQuantity::surface;
     std::vector<Imath::V3d> directions;
+    std::vector<Observer> seats;
     MeasuringOptions measuring;
     std::optional<double> exterior;
     std::filesystem::path output;
@@ -95,10 +96,14 @@ void check_exterior(const ProbeArguments& options) {
         throw UsageError("--exterior", "it has no effect on glare (ugr)");
 }
 
-/// Returns the given directions, by default both ways along x and y.
 std::vector<V3f> lines_of_sight(const ProbeArguments& options) {
-    if (options.directions.empty()) return {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+    if (options.directions.empty()) return usual_directions();
     return {options.directions.begin(), options.directions.end()};
+}
+
+void check_seats(const ProbeArguments& options) {
+    if (!options.seats.empty() && options.quantity != ProbedQuantity::ugr)
+        throw UsageError("--seat", "it has no effect without --quantity ugr");
 }
 
 MeasuringPoint measuring_point(const Imath::V3d& position, const MeasuringGrid& grid, const ProbeArguments& options) {
@@ -173,6 +178,7 @@ Json to_json(const MeasuredGrid& g, const IlluminanceSummary& s, const ProbeArgu
               {"quantity", name_of(options.quantity)},
               {"points", s.points},
               {"missing", g.missing},
+              {"enclosed", g.grid.enclosed},
               {"columns", g.grid.columns},
               {"rows", g.grid.rows},
               {"spacing", {g.grid.column_spacing, g.grid.row_spacing}},
@@ -204,8 +210,8 @@ void measure_and_write(const Scene& scene, const Solution* solution, const RayCa
                        std::vector<MeasuringGrid> grids, const ProbeArguments& options,
                        std::optional<PendingFile>& output) {
     if (options.quantity == ProbedQuantity::ugr) {
-        const std::vector<RatedGrid> rated =
-            rate_grids(scene, solution, ray_caster, grids, lines_of_sight(options), options.measuring);
+        const std::vector<RatedGrid> rated = rate_places(
+            scene, solution, ray_caster, {std::move(grids), options.seats, lines_of_sight(options)}, options.measuring);
         if (output) write_ratings(*output, rated);
         print_ratings(rated, options.json);
     } else {
@@ -224,8 +230,9 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     PathTracerArguments::check_samples(command, options.measuring.samples);
     options.scene.check(command, true);
     options.dimming.require_solution(options.scene.path);
-    options.places.check();
+    options.places.check(options.seats.empty() ? MeasuringPlaces::Least::one : MeasuringPlaces::Least::none);
     check_direction(options);
+    check_seats(options);
     check_exterior(options);
     const std::array<NamedFile, 2> outputs{{{"--output", options.output}, {"--stats", options.solver.stats}}};
     require_distinct_files(input_files(options.scene, {}), outputs);
@@ -245,6 +252,7 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
         solved.scene = options.mesh.cut(std::move(solved.scene), options.scene.read);
     StatsFile stats(options.solver.threads, options.solver.stats);
     const RayCaster ray_caster = make_ray_caster(solved.scene);
+    grids = open_grids(solved.scene, ray_caster, std::move(grids));
     warn_of_setup(solved.scene, ray_caster);
     if (solves) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
 
@@ -276,6 +284,7 @@ void add_quantity(CLI::App& command, ProbeArguments& options) {
              "The way that a vertical plane, half a cylinder or an observer faces (for ugr may be repeated; default: "
              "x, -x, y and -y)")
         ->type_name("X,Y,Z");
+    add_seats(command, options.seats);
     command
         .add_option("--exterior", options.exterior,
                     "Horizontal illuminance outside [lx], for daylight factors (default: that of the scene's sky)")

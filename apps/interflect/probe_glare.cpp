@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <utility>
 
 #include "apps/interflect/csv_file.h"
 #include "apps/interflect/measured_grid.h"
 #include "apps/interflect/measuring_places.h"
 #include "apps/interflect/messages.h"
+#include "apps/interflect/parse.h"
 #include "apps/interflect/path_progress.h"
 #include "apps/interflect/print_views.h"
 #include "apps/interflect/signals.h"
@@ -39,7 +41,7 @@ void warn_of_large_sources(const std::vector<RatedGrid>& grids) {
     for (const RatedGrid& grid : grids)
         for (const GlareRating& rating : grid.ratings)
             for (const GlareSource& source : rating.sources)
-                if (source.solid_angle > (found ? found->solid_angle : largest)) found = &source;
+                if (source.is_rated && source.solid_angle > (found ? found->solid_angle : largest)) found = &source;
     if (found)
         spdlog::warn("'{}' fills up to {:.2g} sr: UGR is made for sources of 0.0003 to {} sr (CIE 117)", found->name,
                      found->solid_angle, largest);
@@ -51,40 +53,79 @@ Json number_or_null(double rating) { return std::isfinite(rating) ? Json(rating)
 Json to_json(const RatedGrid& g) {
     Json json{{"name", g.grid.name}, {"quantity", "UGR"}, {"points", g.observers.size()}, {"missing", g.missing}};
     if (g.ratings.empty()) return json;
-    const GlareRating& worst = g.ratings[g.worst()];
+    const GlareRating& rating = g.ratings[g.reported()];
     Json sources = Json::array();
-    for (const GlareSource& s : worst.sources)
+    for (const GlareSource& s : rating.sources)
         sources.push_back({{"name", s.name},
                            {"luminance", s.luminance},
                            {"solid_angle", s.solid_angle},
                            {"position_index", s.position_index},
-                           {"glare", s.glare}});
-    const Observer& observer = g.observers[g.worst()];
-    json.update({{"max", number_or_null(worst.ugr)},
-                 {"standard_error", number_or_null(worst.standard_error)},
-                 {"background_luminance", worst.background_luminance},
+                           {"glare", s.glare},
+                           {"rated", s.is_rated}});
+    const Observer& observer = g.observers[g.reported()];
+    json.update({{g.is_seat ? "ugr" : "max", number_or_null(rating.ugr)},
+                 {"standard_error", number_or_null(rating.standard_error)},
+                 {"background_luminance", rating.background_luminance},
                  {"eye", json_of(observer.eye)},
                  {"direction", json_of(observer.line_of_sight)},
                  {"sources", sources}});
+    if (g.is_seat)
+        json["worst_direction"] = {{"ugr", number_or_null(g.ratings[g.worst()].ugr)},
+                                   {"direction", json_of(g.observers[g.worst()].line_of_sight)}};
     return json;
+}
+
+void print_source(const char* heading, const GlareSource& s) {
+    print_line("  {:17} {}: {:.4g} cd/m2, {:.3g} sr, position index {:.3g}", heading, s.name, s.luminance,
+               s.solid_angle, s.position_index);
 }
 
 void print_text(const RatedGrid& g) {
     print_line("{}: {}, {} ratings", g.grid.name, text_of(g.grid), g.ratings.size());
     if (g.missing > 0) print_line("  interrupted       {} ratings are missing", g.missing);
     if (g.ratings.empty()) return;
-    const GlareRating& worst = g.ratings[g.worst()];
-    if (!std::isfinite(worst.ugr)) return print_line("  UGR               no source is seen");
-    const Observer& observer = g.observers[g.worst()];
-    print_line("  largest UGR       {:.1f}, standard error {:.2g}", worst.ugr, worst.standard_error);
+    const GlareRating& rating = g.ratings[g.reported()];
+    const Observer& observer = g.observers[g.reported()];
+    if (std::isfinite(rating.ugr))
+        print_line("  {:17} {:.1f}, standard error {:.2g}", g.is_seat ? "UGR" : "largest UGR", rating.ugr,
+                   rating.standard_error);
+    else
+        print_line("  UGR               no source is seen that CIE 117 rates");
     print_line("  observer          at {}, looking {}", text_of(observer.eye), text_of(observer.line_of_sight));
-    print_line("  background        {:.3g} cd/m2", worst.background_luminance);
+    if (g.is_seat && g.worst() != g.reported())
+        print_line("  worst direction   {:.1f}, looking {}", g.ratings[g.worst()].ugr,
+                   text_of(g.observers[g.worst()].line_of_sight));
+    print_line("  background        {:.3g} cd/m2", rating.background_luminance);
     constexpr std::size_t max_reported = 5;
-    for (std::size_t i = 0; i < std::min(worst.sources.size(), max_reported); ++i) {
-        const GlareSource& s = worst.sources[i];
-        print_line("  source            {}: {:.4g} cd/m2, {:.3g} sr, position index {:.3g}", s.name, s.luminance,
-                   s.solid_angle, s.position_index);
+    for (std::size_t i = 0; i < std::min(rating.sources.size(), max_reported); ++i)
+        print_source(rating.sources[i].is_rated ? "source" : "not rated", rating.sources[i]);
+    const auto excluded =
+        std::count_if(rating.sources.begin(), rating.sources.end(), [](const GlareSource& s) { return !s.is_rated; });
+    if (excluded > 0)
+        print_line("  {} of {} sources are not rated: they lie outside of the table of CIE 117 (H/R > 1.9 or T/R > 3)",
+                   excluded, rating.sources.size());
+}
+
+/// Returns places without ratings.
+std::vector<RatedGrid> unrated(const GlarePlaces& places) {
+    std::vector<RatedGrid> result;
+    for (const MeasuringGrid& grid : places.grids) {
+        RatedGrid& rated = result.emplace_back();
+        rated.grid = grid;
+        for (const Imath::V3d& eye : grid.points)
+            for (const V3f& direction : places.directions) rated.observers.push_back({eye, direction});
     }
+    for (const Observer& seat : places.seats) {
+        RatedGrid& rated = result.emplace_back();
+        rated.is_seat = true;
+        rated.grid.name = fmt::format("seat {}", result.size() - places.grids.size());
+        rated.grid.points = {seat.eye};
+        rated.observers = {seat};
+        for (const V3f& direction : places.directions)
+            if (direction.normalized() != seat.line_of_sight.normalized())
+                rated.observers.push_back({seat.eye, direction});
+    }
+    return result;
 }
 
 }  // namespace
@@ -94,37 +135,44 @@ std::size_t RatedGrid::worst() const {
     return static_cast<std::size_t>(std::max_element(ratings.begin(), ratings.end(), less) - ratings.begin());
 }
 
-std::vector<RatedGrid> rate_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
-                                  const std::vector<MeasuringGrid>& grids, std::span<const V3f> directions,
-                                  const MeasuringOptions& options) {
+std::vector<V3f> usual_directions() { return {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}}; }
+
+void add_seats(CLI::App& app, std::vector<Observer>& seats) {
+    add_each(app, "--seat", seats, parse_observer,
+             "An observer of glare: the eye [m] and the way that it looks; may be repeated")
+        ->type_name("X,Y,Z:X,Y,Z");
+}
+
+std::vector<RatedGrid> rate_places(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
+                                   const GlarePlaces& places, const MeasuringOptions& options) {
     warn_of_sources_without_area(scene);
+    std::vector<RatedGrid> result = unrated(places);
     std::vector<Observer> observers;
-    for (const MeasuringGrid& grid : grids)
-        for (const Imath::V3d& eye : grid.points)
-            for (const V3f& direction : directions) observers.push_back({eye, direction});
     std::vector<MeasuringPoint> eyes;
-    for (const MeasuringGrid& grid : grids)
-        for (const Imath::V3d& eye : grid.points) eyes.push_back({eye, {}, Receiver::cylindrical});
+    for (const RatedGrid& grid : result) {
+        observers.insert(observers.end(), grid.observers.begin(), grid.observers.end());
+        for (const Imath::V3d& eye : grid.grid.points) eyes.push_back({eye, {}, Receiver::cylindrical});
+    }
     warn_of_misplaced_points(scene, ray_caster, eyes, {});
     std::vector<GlareRating> ratings;
     CrewLight crew_light(scene, solution);
     with_path_progress(crew_light, [&](const Monitor& monitor) {
         ratings = rate_glare(scene, solution, ray_caster, observers, options, monitor);
     });
-    std::vector<RatedGrid> result;
     std::size_t next = 0, lost = 0;
-    for (const MeasuringGrid& grid : grids) {
-        RatedGrid& rated = result.emplace_back();
-        rated.grid = grid;
-        for (const std::size_t end = next + grid.points.size() * directions.size(); next < end; ++next) {
-            if (!std::isfinite(ratings[next].standard_error)) {
+    for (RatedGrid& rated : result) {
+        const std::vector<Observer> asked = std::exchange(rated.observers, {});
+        for (const Observer& observer : asked) {
+            GlareRating& rating = ratings[next++];
+            const bool is_rated = std::isfinite(rating.standard_error);
+            if (!is_rated || (rated.is_seat && rated.missing > 0)) {
                 ++rated.missing;
-                ++lost;
                 continue;
             }
-            rated.observers.push_back(observers[next]);
-            rated.ratings.push_back(std::move(ratings[next]));
+            rated.observers.push_back(observer);
+            rated.ratings.push_back(std::move(rating));
         }
+        lost += rated.missing;
     }
     if (lost > 0 && lost == observers.size()) throw Stopped("stopped before any observer's glare was rated");
     if (lost > 0) spdlog::warn("{} of {} ratings were not found before the end", lost, observers.size());

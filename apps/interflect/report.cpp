@@ -40,6 +40,7 @@ struct ReportArguments {
     MeasuringPlaces places;
     std::optional<double> exterior;
     bool ugr = false;
+    std::vector<Observer> seats;
     double eye_height = 1.2;  // of seated observers, z [m]
     ViewOptions view;
     Size size{640, 360};
@@ -56,23 +57,23 @@ std::vector<PlanarArea> rooms_of(const Scene& scene, const PlanarArea& floor) {
     return rooms;
 }
 
-std::vector<MeasuringGrid> room_grids(const Scene& scene, const std::vector<PlanarArea>& rooms,
-                                      const ReportArguments& options, double height) {
+std::vector<MeasuringGrid> room_grids(const Scene& scene, const RayCaster& ray_caster,
+                                      const std::vector<PlanarArea>& rooms, const ReportArguments& options,
+                                      double height) {
     std::vector<MeasuringGrid> grids;
     for (const PlanarArea& room : rooms) {
         grids.push_back(area_grid(scene, room, options.places.grid.options(), height));
         grids.back().name += fmt::format(", z = {:.3g} m", height);
     }
-    return grids;
+    return open_grids(scene, ray_caster, std::move(grids));
 }
 
 /// Measures working planes of rooms, then other places.
 std::vector<MeasuredGrid> measure_areas(const SolvedScene& solved, const RayCaster& ray_caster,
                                         const std::vector<PlanarArea>& rooms, const ReportArguments& options) {
-    std::vector<MeasuringGrid> grids = room_grids(solved.scene, rooms, options, options.working_plane);
-    MeasuringPlaces places = options.places;
-    places.grid.boundary.clear();  // the strip is for rooms, which have walls
-    for (MeasuringGrid& grid : places.grids(solved.scene)) grids.push_back(std::move(grid));
+    std::vector<MeasuringGrid> grids = room_grids(solved.scene, ray_caster, rooms, options, options.working_plane);
+    for (MeasuringGrid& grid : open_grids(solved.scene, ray_caster, options.places.grids(solved.scene)))
+        grids.push_back(std::move(grid));
     std::vector<MeasuringPoint> points;
     for (const MeasuringGrid& grid : grids)
         for (const Imath::V3d& p : grid.points) points.push_back({p, grid.normal});
@@ -82,10 +83,10 @@ std::vector<MeasuredGrid> measure_areas(const SolvedScene& solved, const RayCast
 
 std::vector<RatedGrid> rate_rooms(const SolvedScene& solved, const RayCaster& ray_caster,
                                   const std::vector<PlanarArea>& rooms, const ReportArguments& options) {
-    const std::array<V3f, 4> directions = {V3f(1, 0, 0), V3f(-1, 0, 0), V3f(0, 1, 0), V3f(0, -1, 0)};
-    return rate_grids(solved.scene, &solved.solution, ray_caster,
-                      room_grids(solved.scene, rooms, options, options.eye_height), directions,
-                      {.samples = options.samples, .seed = options.seed});
+    GlarePlaces places{{}, options.seats, usual_directions()};
+    if (options.ugr) places.grids = room_grids(solved.scene, ray_caster, rooms, options, options.eye_height);
+    return rate_places(solved.scene, &solved.solution, ray_caster, places,
+                       {.samples = options.samples, .seed = options.seed});
 }
 
 ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
@@ -133,7 +134,7 @@ ReportContent make_content(const SolvedScene& solved, const RayCaster& ray_caste
     content.rooms = rooms_of(solved.scene, floor);
     content.exterior = exterior_of(solved.scene, options.exterior);
     content.areas = measure_areas(solved, ray_caster, content.rooms, options);
-    if (options.ugr) content.glare = rate_rooms(solved, ray_caster, content.rooms, options);
+    if (options.ugr || !options.seats.empty()) content.glare = rate_rooms(solved, ray_caster, content.rooms, options);
     content.facts = facts_of(solved, ray_caster);
     const int plan_samples = std::max(2, options.samples / 4);  // isolines are smoothed
     content.plan = draw_plan(solved.scene, solved.solution, ray_caster, floor, options.working_plane,
@@ -196,6 +197,8 @@ void add_report(CLI::App& app) {
         ->capture_default_str()
         ->type_name("HEIGHT")
         ->check(number_between(-1e15, 1e15));
+    add_seats(command, options->seats);
+    options->places.whole_objects = true;  // desks have no walls
     options->places.add_to(command);
     options->view.add_to(command);
     add_parsed(command, "--size", options->size, parse_size, "Size of the pictures in pixels")

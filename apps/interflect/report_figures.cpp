@@ -61,9 +61,9 @@ std::string begin(const Frame& frame, const Image& picture, double room_below) {
     svg += fmt::format("<path d=\"M1 {0:.1f}v8h{1:.1f}v-8\" fill=\"none\" stroke=\"#1d2430\" stroke-width=\"1.5\"/>\n",
                        y, frame.unit * bar);
     svg += text(frame.unit * bar + 8, y + 9, "start", fmt::format("{:g} m", bar));
-    svg += text(frame.width, y + 9, "end",
-                fmt::format("{:.2f} × {:.2f} m; x to the right, y up", frame.plan.high.x - frame.plan.low.x,
-                            frame.plan.high.y - frame.plan.low.y));
+    svg +=
+        text(frame.width, y + 9, "end",
+             fmt::format("{:.2f} × {:.2f} m; x to the right, y up", frame.plan.floor_size.x, frame.plan.floor_size.y));
     return svg;
 }
 

@@ -94,7 +94,7 @@ std::string key_figures(const ReportContent& content) {
     if (!content.glare.empty()) {
         double worst = -std::numeric_limits<double>::infinity();
         for (const RatedGrid& g : content.glare)
-            if (!g.ratings.empty()) worst = std::max(worst, g.ratings[g.worst()].ugr);
+            if (!g.ratings.empty()) worst = std::max(worst, g.ratings[g.reported()].ugr);
         text += key_figure(std::isfinite(worst) ? fmt::format("{:.1f}", worst) : "–", "largest UGR");
     }
     return text + "</div>\n";
@@ -106,11 +106,13 @@ std::string results(const ReportContent& content) {
         "Measuring area",       "Points",        "Spacing [m]",   "E<sub>mean</sub> [lx]", "E<sub>min</sub> [lx]",
         "E<sub>max</sub> [lx]", "U<sub>0</sub>", "U<sub>d</sub>", "Std. error [lx]",       "Solution’s [lx]"};
     if (content.exterior) heads.push_back("Daylight factor");
+    std::size_t enclosed = 0;
     for (const MeasuredGrid& area : content.areas) {
         const IlluminanceSummary s = summarise(area.measured, area.solution_error);
         const MeasuringGrid& grid = area.grid;
         std::string spacing = "–";
         if (grid.columns > 0) spacing = fmt::format("{:.2f} × {:.2f}", grid.column_spacing, grid.row_spacing);
+        enclosed += grid.enclosed;
         std::vector<std::string> cells = {html_text(grid.name),
                                           fmt::format("{}", s.points),
                                           spacing,
@@ -129,10 +131,19 @@ std::string results(const ReportContent& content) {
                "<p class=\"soft\">U<sub>0</sub> = E<sub>min</sub>/E<sub>mean</sub>, U<sub>d</sub> = "
                "E<sub>min</sub>/E<sub>max</sub>. Grids by EN 12464-1, p = 0.2 · 5<sup>log<sub>10</sub> d</sup> "
                "m unless told otherwise. The standard error is that of the mean, from sampling at the "
-               "points; the error of the solution comes on top of it.{}</p>\n",
+               "points; the error of the solution comes on top of it.{}{}</p>\n",
+               enclosed > 0 ? fmt::format(" {} points inside furniture are left out.", enclosed) : "",
                content.exterior
                    ? fmt::format(" Daylight factors are relative to {} lx outside.", number(*content.exterior))
                    : "");
+}
+
+std::string glare_row(const RatedGrid& g, std::size_t rating, const std::string& name) {
+    const Observer& observer = g.observers[rating];
+    const double ugr = g.ratings[rating].ugr;
+    return row({name, fmt::format("{}", g.ratings.size()),
+                std::isfinite(ugr) ? fmt::format("{:.1f}", ugr) : "no source is rated", text_of(observer.eye),
+                text_of(observer.line_of_sight), number(g.ratings[rating].background_luminance)});
 }
 
 std::string glare(const ReportContent& content) {
@@ -140,28 +151,26 @@ std::string glare(const ReportContent& content) {
     std::string rows, sources;
     for (const RatedGrid& g : content.glare) {
         if (g.ratings.empty()) continue;
-        const GlareRating& worst = g.ratings[g.worst()];
-        const Observer& observer = g.observers[g.worst()];
-        rows += row({html_text(g.grid.name), fmt::format("{}", g.ratings.size()),
-                     std::isfinite(worst.ugr) ? fmt::format("{:.1f}", worst.ugr) : "no source is seen",
-                     text_of(observer.eye), text_of(observer.line_of_sight), number(worst.background_luminance)});
+        const GlareRating& rating = g.ratings[g.reported()];
+        rows += glare_row(g, g.reported(), html_text(g.grid.name));
+        if (g.is_seat && g.worst() != g.reported())
+            rows += glare_row(g, g.worst(), html_text(g.grid.name) + ", worst direction");
         constexpr std::size_t max_reported = 4;
-        for (std::size_t i = 0; i < std::min(worst.sources.size(), max_reported); ++i) {
-            const GlareSource& s = worst.sources[i];
-            sources += row({html_text(g.grid.name), html_text(s.name), number(s.luminance),
-                            fmt::format("{:.3g}", s.solid_angle), fmt::format("{:.2f}", s.position_index)},
-                           2);
+        for (std::size_t i = 0; i < std::min(rating.sources.size(), max_reported); ++i) {
+            const GlareSource& s = rating.sources[i];
+            sources += row(
+                {html_text(g.grid.name), html_text(s.name) + (s.is_rated ? "" : " (not rated)"), number(s.luminance),
+                 fmt::format("{:.3g}", s.solid_angle), fmt::format("{:.2f}", s.position_index)},
+                2);
         }
     }
     return "<h2>Glare</h2>\n" +
-           table("glare", {"Observers", "Ratings", "Largest UGR", "Eye [m]", "Looking", "L<sub>b</sub> [cd/m²]"},
-                 rows) +
-           (sources.empty()
-                ? ""
-                : table("glare-sources", {"Observers", "Source, for the largest UGR", "L [cd/m²]", "ω [sr]", "p"},
-                        sources, 2)) +
-           "<p class=\"soft\">Unified Glare Rating by CIE 117: UGR = 8 log<sub>10</sub>(0.25/L<sub>b</sub> Σ L²ω/p²), "
-           "for observers on a grid, looking along ±x and ±y.</p>\n";
+           table("glare", {"Observers", "Ratings", "UGR", "Eye [m]", "Looking", "L<sub>b</sub> [cd/m²]"}, rows) +
+           (sources.empty() ? ""
+                            : table("glare-sources", {"Observers", "Source", "L [cd/m²]", "ω [sr]", "p"}, sources, 2)) +
+           "<p class=\"soft\">Unified Glare Rating by CIE 117: UGR = 8 log<sub>10</sub>(0.25/L<sub>b</sub> Σ L²ω/p²). "
+           "Grids show the largest rating of observers that look along ±x and ±y. Sources outside of the standard's "
+           "table of position indices (H/R > 1.9 or T/R > 3) are not rated.</p>\n";
 }
 
 std::string rooms(const ReportContent& content) {

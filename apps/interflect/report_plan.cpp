@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "apps/interflect/path_progress.h"
@@ -108,6 +109,15 @@ class CellValues {
             if (count > 0) values_[cell] = sum / count, is_known_[cell] = true;
         }
     }
+    /// Returns the index of the cell at a position, at most half a cell outside of the grid.
+    std::size_t cell_at(const Imath::V3d& p) const {
+        const Imath::V3d d = p - grid_.corner;
+        const auto index = [](double x, int count) {
+            return static_cast<std::size_t>(std::clamp(std::floor(x), 0.0, count - 1.0));
+        };
+        return index(grid_.along_column.dot(d) / grid_.row_spacing, grid_.rows) * columns_ +
+               index(grid_.along_row.dot(d) / grid_.column_spacing, grid_.columns);
+    }
     /// Interpolates bilinearly between the centres of cells. @param p  World position.
     float at(const Imath::V3d& p) const {
         const Imath::V3d d = p - grid_.corner;
@@ -127,11 +137,15 @@ class CellValues {
     std::vector<bool> is_known_;
 };
 
-/// Computes the illuminance of pixels over the floor [lx]; 0 elsewhere.
+/// Computes the illuminance of pixels over the floor [lx]; 0 elsewhere. @param mask  Loses the pixels inside furniture.
 Image illuminance_over(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                        const PlanarArea& floor, double height, const MeasuringOptions& options, const Raster& raster,
-                       const std::vector<bool>& mask) {
-    const MeasuringGrid grid = area_grid(scene, floor, {.spacing = std::sqrt(floor.area / plan_points)}, height);
+                       std::vector<bool>& mask) {
+    const MeasuringGrid whole = area_grid(scene, floor, {.spacing = std::sqrt(floor.area / plan_points)}, height);
+    const MeasuringGrid grid = without_enclosed_points(scene, ray_caster, whole);
+    std::vector<std::uint32_t> enclosed;
+    std::set_difference(whole.cells.begin(), whole.cells.end(), grid.cells.begin(), grid.cells.end(),
+                        std::back_inserter(enclosed));
     std::vector<MeasuringPoint> points;
     for (const Imath::V3d& p : grid.points) points.push_back({p});
     std::vector<MeasuredIrradiance> measured;
@@ -145,9 +159,14 @@ Image illuminance_over(const Scene& scene, const Solution& solution, const RayCa
     for (int row = 0; row < raster.height; ++row)
         for (int column = 0; column < raster.width; ++column) {
             const V2d p = raster.centre(column, row);
-            if (mask[static_cast<std::size_t>(row) * static_cast<std::size_t>(raster.width) +
-                     static_cast<std::size_t>(column)])
-                values.at(column, row) = Rgb(cells.at({p.x, p.y, height}));
+            const Imath::V3d place(p.x, p.y, height);
+            const std::size_t pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(raster.width) +
+                                      static_cast<std::size_t>(column);
+            if (!mask[pixel]) continue;
+            if (std::binary_search(enclosed.begin(), enclosed.end(), cells.cell_at(place)))
+                mask[pixel] = false;
+            else
+                values.at(column, row) = Rgb(cells.at(place));
         }
     return values;
 }
@@ -197,11 +216,11 @@ ReportPlan draw_plan(const Scene& scene, const Solution& solution, const RayCast
     for (const std::vector<V2d>& face : faces)
         for (const V2d& p : face) box.extendBy(p);
     const Raster raster = raster_around(box);
-    const std::vector<bool> mask = floor_mask(raster, faces);
+    std::vector<bool> mask = floor_mask(raster, faces);
     const Image values = illuminance_over(scene, solution, ray_caster, floor, height, options, raster, mask);
 
-    ReportPlan plan{
-        raster.low, raster.high, outlines_below(scene, ray_caster, raster, height + cut_above_plane), {}, {}};
+    ReportPlan plan{raster.low, raster.high, box.size(), {}, {}, {}};
+    plan.outlines = outlines_below(scene, ray_caster, raster, height + cut_above_plane);
     std::vector<float> numbers;
     for (const Rgb& value : values.pixels) numbers.push_back(value.x);
     plan.scale = fit_round_scale(std::move(numbers));

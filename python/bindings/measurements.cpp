@@ -120,6 +120,7 @@ void bind_grids(py::module_& m) {
         .def_readonly("along_row", &MeasuringGrid::along_row, "Unit vector from cell to cell.")
         .def_readonly("along_column", &MeasuringGrid::along_column, "Unit vector from row to row.")
         .def_readonly("cells", &MeasuringGrid::cells, docs::MeasuringGrid_cells)
+        .def_readonly("enclosed", &MeasuringGrid::enclosed, "Number of points inside furniture, which are left out.")
         .def("__repr__", [](const MeasuringGrid& g) {
             return fmt::format("<MeasuringGrid '{}': {} points>", g.name, g.points.size());
         });
@@ -142,13 +143,18 @@ void bind_grids(py::module_& m) {
         "area_grid",
         [](const Scene& s, const PlanarArea& area, const std::optional<double>& spacing, double boundary,
            const std::optional<double>& height) {
-            return area_grid(s, area, {spacing, boundary}, height);
+            return long_work(py::none(), 0, [&](const Monitor&) {
+                return without_enclosed_points(s, RayCaster(s), area_grid(s, area, {spacing, boundary}, height));
+            });
         },
         scene, py::arg("area"), py::arg("spacing") = py::none(), py::arg("boundary") = 0.0,
         py::arg("height") = py::none(),
         Documented(docs::area_grid, {{"area", "Result of find_surface(), find_top() or find_floor()."},
                                      {"spacing", "Maximum point distance [m], > 0; None: grid_spacing() of the area."},
-                                     {"boundary", docs::GridOptions_boundary}}));
+                                     {"boundary", docs::GridOptions_boundary}})
+            .returns(
+                "A MeasuringGrid without the points that lie inside furniture and other solids, where no light can "
+                "arrive; `enclosed` is their number."));
     m.def("line_grid", &line_grid, py::arg("a"), py::arg("b"), py::arg("count"),
           Documented(docs::line_grid, {{"a", "First point, in world coordinates [m]."},
                                        {"b", "Last point, in world coordinates [m]."},
@@ -162,6 +168,7 @@ void bind_glare(py::module_& m) {
         .def_readonly("solid_angle", &GlareSource::solid_angle, docs::GlareSource_solid_angle)
         .def_readonly("position_index", &GlareSource::position_index, docs::GlareSource_position_index)
         .def_readonly("glare", &GlareSource::glare, docs::GlareSource_glare)
+        .def_readonly("is_rated", &GlareSource::is_rated, docs::GlareSource_is_rated)
         .def("__repr__", [](const GlareSource& s) {
             return fmt::format("<GlareSource '{}': {:.4g} cd/m^2, {:.3g} sr>", s.name, s.luminance, s.solid_angle);
         });

@@ -103,6 +103,27 @@ class Report(CommandTest):
         )["areas"]
         self.assertAlmostEqual(glare["office.floor, z = 1.1 m"], max(area["max"] for area in ratings), delta=0.2)
 
+    def test_planes_have_the_strip_along_walls_and_desks_do_not(self):
+        places = ("--plane", "0.7", "--over", "office.floor", "--boundary", "--spacing", "0.3")
+        (plane,) = self.json("probe", "rooms.h5", *places, "--samples", "16")["areas"]
+        page = self.report(*places, "--grid", "office.floor")
+        rows = {row[0]: int(row[1]) for row in page.tables["results"][1:]}
+        self.assertEqual(rows["office.floor, z = 0.7 m"], plane["points"])
+        self.assertGreater(rows["office.floor"], plane["points"])
+
+    def test_captions_have_the_size_of_the_floor(self):
+        self.assertEqual(self.report().text.count("6.00 × 3.00 m; x to the right"), 2)
+
+    def test_rates_seats_by_their_own_direction(self):
+        seat = ("--seat", "1,1,1.2:0,1,0")
+        (rating,) = self.json("probe", "rooms.h5", "--quantity", "ugr", *seat, "--samples", "256")["areas"]
+        rows = self.report(*seat, samples=256).tables["glare"][1:]
+        self.assertEqual([row[0] for row in rows], ["seat 1", "seat 1, worst direction"])
+        self.assertAlmostEqual(float(rows[0][2]), rating["ugr"], delta=0.2)
+        self.assertAlmostEqual(float(rows[1][2]), rating["worst_direction"]["ugr"], delta=0.2)
+        self.assertEqual(rows[0][4], "0 1 0")
+        self.assertGreater(rating["worst_direction"]["ugr"], rating["ugr"])
+
     def test_needs_nothing_else_and_escapes_names(self):
         page = self.report("--title", "<script>alert('&')</script>", "--date", "1 < 2")
         self.assertIn("<script>alert('&')</script>", page.text)

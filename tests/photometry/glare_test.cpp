@@ -40,10 +40,28 @@ TEST(PositionIndex, IsSmallerToTheSide) {
     EXPECT_TRUE(std::isinf(position_index({-1, 0, 1}, {1, 0, 0})));
 }
 
+/// The table ends at H/R = 1.9 and at T/R = 3, on both sides of the line of sight.
+TEST(PositionIndex, IsTabulatedAheadOfTheObserver) {
+    for (const float sign : {1.0f, -1.0f}) {
+        EXPECT_TRUE(has_position_index({1, 0, 1.89f * sign}, {1, 0, 0}));
+        EXPECT_FALSE(has_position_index({1, 0, 1.91f * sign}, {1, 0, 0}));
+        EXPECT_TRUE(has_position_index({1, 2.99f * sign, 1}, {2, 0, 0}));
+        EXPECT_FALSE(has_position_index({1, 3.01f * sign, 1}, {2, 0, 0}));
+    }
+    EXPECT_FALSE(has_position_index({-1, 0, 0}, {1, 0, 0}));
+    EXPECT_FALSE(has_position_index({0, 0, 1}, {1, 0, 0}));
+    // The line of sight falls by 45 degrees: a lamp straight ahead is as high above it as it is far along it.
+    EXPECT_TRUE(has_position_index({1, 0, 0}, {1, 0, -1}));
+    EXPECT_FALSE(has_position_index({1, 0, 0.5f}, {1, 0, -1}));
+}
+
 /// 8 log10(0.25 / 40 (6000^2 0.01 / 2^2 + 3000^2 0.02 / 1.5^2)) = 8 log10(1062.5), worked out by hand.
 TEST(UnifiedGlareRating, IsThatOfTheFormula) {
     const std::vector<GlareSource> sources{{"a", 6000, 0.01, 2, 90'000}, {"b", 3000, 0.02, 1.5, 80'000}};
     EXPECT_NEAR(unified_glare_rating(40, sources), 24.211, 1e-3);
+    std::vector<GlareSource> with_unrated = sources;
+    with_unrated.push_back({"c", 9000, 0.02, 1.5, 720'000, false});
+    EXPECT_EQ(unified_glare_rating(40, with_unrated), unified_glare_rating(40, sources));
     EXPECT_EQ(unified_glare_rating(40, {}), -std::numeric_limits<double>::infinity());
 }
 
@@ -102,6 +120,50 @@ TEST(GlareSources, OfPatchesAreGroupedByObject) {
         EXPECT_EQ(sources[0].name, "lamp");
         expect_source(sources[0], 3e4 / pi, omega, position_index({3, 0, 1.5f}, {1, 0, 0}));
     }
+}
+
+/// A luminaire is rated by its centre alone: one disk of 0.8 m at H/R = 1.85, one at 1.95, both 1.5 m above the eye.
+TEST(GlareSources, OfLuminairesOutsideOfTheTableAreNotRated) {
+    for (const float ratio : {1.85f, 1.95f}) {
+        Scene scene = room();
+        Luminaire wide = disk({1 + 1.5f / ratio, 2, 2.7f}, {0, 0, -1});
+        auto web = std::make_shared<PhotometricWeb>(*std::get<MeasuredLight>(wide.kind).web);
+        web->opening.size = {0.8f, 0.8f, 0};
+        std::get<MeasuredLight>(wide.kind).web = web;
+        scene.luminaires = {disk({4, 2, 2.7f}, {0, 0, -1}), wide};
+        scene.luminaires[1].name = "wide";
+        const auto sources = glare_sources(scene, RayCaster(scene), observer);
+        ASSERT_EQ(sources.size(), 2u);
+        const GlareSource& of_wide = sources[0].name == "wide" ? sources[0] : sources[1];
+        EXPECT_EQ(of_wide.is_rated, ratio < 1.9f);
+        EXPECT_GT(of_wide.glare, 0);
+        EXPECT_TRUE(sources[0].is_rated);
+    }
+}
+
+/// A panel from H/R = 1.5 / 0.6 = 2.5 to 1.5 / 1.2 = 1.25 is rated from 1.5 / 1.9 = 0.789 m on: 0.411 / 0.6 of its
+/// area. L = M / pi and omega = integral of 1.5 / r^3 over the part, by the midpoint rule.
+TEST(GlareSources, OfPatchesAreRatedByTheirCells) {
+    Scene scene = room();
+    const std::uint32_t material = add_material(scene, Rgb(0.2f), Rgb(3e4f));
+    add_rectangle(scene, {1.6f, 1.9f, 2.7f}, {0, 0.2f, 0}, {0.6f, 0, 0}, material);
+    scene.patches.back().object = 1;
+    double rated = 0, others = 0;
+    constexpr int steps = 600;
+    for (int i = 0; i < steps; ++i) {
+        const double x = 0.6 + 0.6 * (i + 0.5) / steps, omega = 0.2 * 0.6 / steps * 1.5 / std::pow(x * x + 2.25, 1.5);
+        (x > 1.5 / 1.9 ? rated : others) += omega;
+    }
+    const auto sources = glare_sources(scene, RayCaster(scene), observer);
+    ASSERT_EQ(sources.size(), 2u);
+    EXPECT_TRUE(sources[0].is_rated);
+    EXPECT_FALSE(sources[1].is_rated);
+    for (const GlareSource& source : sources) {
+        EXPECT_EQ(source.name, "lamp");
+        EXPECT_NEAR(source.luminance, 3e4 / pi, 1);
+    }
+    EXPECT_NEAR(sources[0].solid_angle, rated, 0.06 * rated);  // one of 16 rows of cells
+    EXPECT_NEAR(sources[1].solid_angle, others, 0.1 * others);
 }
 
 /// A screen hides the upper half of a panel that stands straight ahead; glass transmits a part of its light.

@@ -124,6 +124,32 @@ TEST(MeasuringGrid, DoesNotDependOnHowFacesAreDivided) {
     }
 }
 
+/// Undersides of table legs lie in the plane of the floor and face up if they are two-sided. They are part of the
+/// floor, also at its edges, so a strip is left out only along the walls.
+TEST(MeasuringGrid, FacesOnTheFloorHaveNoBorderOfTheirOwn) {
+    const auto grid_of = [](const Scene& scene) {
+        return area_grid(scene, find_floor(scene, 0.75), {.spacing = 0.5, .boundary = 0.5}, 0.75);
+    };
+    Scene scene = furnished();
+    const MeasuringGrid empty = grid_of(scene);
+    EXPECT_EQ(empty.points.size(), 80u);
+    for (const V3f& leg : {V3f(1, 2, 0), V3f(2.7f, 2.4f, 0), V3f(4, 4.9f, 0)})
+        add_rectangle(scene, leg, {0.3f, 0, 0}, {0, 0.1f, 0}, 0, 1, 1, true);
+    const MeasuringGrid with_legs = grid_of(scene);
+    EXPECT_EQ(with_legs.points, empty.points);
+}
+
+/// Faces that are cut where others touch them leave strips narrower than the tolerance of the outline.
+TEST(MeasuringGrid, NarrowStripsHaveNoBorder) {
+    Scene scene;
+    scene.materials = {Material{}};
+    scene.objects = {"", "floor"};
+    for (const auto& [from, to] : {std::pair(0.0f, 3.0f), std::pair(3.0f, 3.0001f), std::pair(3.0001f, 6.0f)})
+        add_rectangle(scene, {from, 0, 0}, {to - from, 0, 0}, {0, 5, 0}, 0);
+    const MeasuringGrid grid = area_grid(scene, find_floor(scene, 0), {.spacing = 0.5, .boundary = 0.5});
+    EXPECT_EQ(grid.points.size(), 80u);
+}
+
 TEST(MeasuringGrid, TurnsWithTheArea) {
     Scene scene;
     scene.materials = {Material{}};

@@ -78,6 +78,20 @@ class SameBits(unittest.TestCase):
         self.interflect("solve", "scenes/office.mgf", "--rays", "200k", "--light-groups", "-o", self.folder / "command.h5")
         self.assertEqual((self.folder / "python.h5").read_bytes(), (self.folder / "command.h5").read_bytes())
 
+    def test_of_measuring_grids(self):
+        """In the office, of which one point lies inside a chair, before and after faces are cut for solving."""
+        self.interflect("solve", "scenes/office.mgf", "--rays", "100k", "-o", self.folder / "office.h5")
+        scenes = ifl.load(ROOT / "scenes/office.mgf"), ifl.Solution.open(self.folder / "office.h5").scene
+        for options, boundary in (([], 0), (["--boundary"], 0.5)):
+            grids = [ifl.area_grid(scene, ifl.find_floor(scene, 0.44), boundary=boundary, height=0.44) for scene in scenes]
+            self.assertGreater(grids[0].enclosed, 0)
+            for source in (ROOT / "scenes/office.mgf", self.folder / "office.h5"):
+                self.interflect("probe", source, "--shading", "path", "--samples", "2", "--plane", "0.44", *options, "-o",
+                                self.folder / "grid.csv")
+                points = np.genfromtxt(self.folder / "grid.csv", delimiter=",", skip_header=1, usecols=(0, 1, 2))
+                for grid in grids:
+                    np.testing.assert_allclose(grid.points, points, rtol=1e-9)
+
     def test_of_view_factors(self):
         self.interflect("viewfactors", "scenes/office.mgf", "--groups", "materials", "--rays", "1M", "-o", self.folder / "office.npz")
         command, python = np.load(self.folder / "office.npz"), ifl.view_factors(ROOT / "scenes/office.mgf", "materials", rays=1e6)

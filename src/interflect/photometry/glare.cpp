@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 #include <span>
+#include <tuple>
+#include <utility>
 
 #include "interflect/base/parallel.h"
 #include "interflect/core.h"
@@ -34,6 +36,7 @@ struct Place {
 
 struct Sums {
     std::string name;
+    bool is_rated = true;
     double solid_angle = 0, luminance = 0, squared = 0,
            glare = 0;  // over the solid angle of 1, L, L^2, L^2/p^2
 
@@ -44,7 +47,7 @@ struct Sums {
         glare += l * l * omega / (p * p);
     }
     GlareSource source() const {
-        return {name, luminance / solid_angle, solid_angle, std::sqrt(squared / glare), glare};
+        return {name, luminance / solid_angle, solid_angle, std::sqrt(squared / glare), glare, is_rated};
     }
 };
 
@@ -71,9 +74,10 @@ class SourcePlaces {
         const PatchGeometry geometry(scene_, patch);
         if (!((eye_ - geometry.centre()).dot(geometry.normal()) > 0)) return;
         const float width = std::sqrt(geometry.area()), distance = (eye_ - geometry.centre()).length();
-        const int n = static_cast<int>(std::clamp(std::ceil(cells_per_distance * width / distance),
-                                                  static_cast<float>(fewest), static_cast<float>(most)));
-        const std::size_t source = source_of(patch);
+        const int n = crosses_border_of_table(patch)
+                          ? most
+                          : static_cast<int>(std::clamp(std::ceil(cells_per_distance * width / distance),
+                                                        static_cast<float>(fewest), static_cast<float>(most)));
         for (int i = 0; i < n * n; ++i) {
             const int row = i / n, column = i % n;
             const Parameters p =
@@ -83,8 +87,18 @@ class SourcePlaces {
             const float r = d.length();
             const double cosine = static_cast<double>(-geometry.normal().dot(d) / r);
             add({d / r, r, index, exitance_at(scene_, patch, p) / std::numbers::pi_v<float>,
-                 cosine * static_cast<double>(geometry.area()) / (n * n) / (static_cast<double>(r) * r), 1, source});
+                 cosine * static_cast<double>(geometry.area()) / (n * n) / (static_cast<double>(r) * r), 1,
+                 source_of(patch, is_rated(d))});
         }
+    }
+
+    bool is_rated(const V3f& towards) const { return has_position_index(towards, line_of_sight_); }
+
+    bool crosses_border_of_table(const Patch& patch) const {
+        const auto count = static_cast<std::size_t>(patch.vertex_count());
+        const auto rated = std::count_if(patch.vertices.begin(), patch.vertices.begin() + count,
+                                         [&](std::uint32_t v) { return is_rated(scene_.vertices[v] - eye_); });
+        return rated > 0 && static_cast<std::size_t>(rated) < count;
     }
 
     /// Samples have equal solid angles; the opening's is irradiance / L.
@@ -92,7 +106,7 @@ class SourcePlaces {
         constexpr int per_side = 8, count = per_side * per_side;
         if (light.web->opening.is_point()) return;
         const LuminaireFrame frame(light);
-        sums_.push_back({luminaire.name});
+        sums_.push_back({luminaire.name, is_rated(light.position - eye_)});
         for (int i = 0; i < count; ++i) {
             const int column = i % per_side, row = i / per_side;
             const Illumination seen = illumination(luminaire, eye_, (static_cast<float>(column) + 0.5f) / per_side,
@@ -111,11 +125,11 @@ class SourcePlaces {
         if (std::isfinite(place.position_index) && place.solid_angle > 0) places_.push_back(place);
     }
 
-    std::size_t source_of(const Patch& patch) {
+    std::size_t source_of(const Patch& patch, bool is_rated) {
         const std::string& object = patch.object < scene_.objects.size() ? scene_.objects[patch.object] : no_name_;
         const std::string& name = object.empty() ? scene_.materials[patch.material].name : object;
-        const auto [entry, is_new] = by_name_.try_emplace(name, sums_.size());
-        if (is_new) sums_.push_back({name});
+        const auto [entry, is_new] = by_name_.try_emplace({name, is_rated}, sums_.size());
+        if (is_new) sums_.push_back({name, is_rated});
         return entry->second;
     }
 
@@ -124,7 +138,7 @@ class SourcePlaces {
     V3f eye_, line_of_sight_;
     std::vector<Place> places_;
     std::vector<Sums> sums_;
-    std::map<std::string, std::size_t> by_name_;
+    std::map<std::pair<std::string, bool>, std::size_t> by_name_;  // and whether rated
 };
 
 void require_direction(const Observer& observer) {
@@ -133,12 +147,21 @@ void require_direction(const Observer& observer) {
         throw InputError("an observer needs an eye and a line of sight that are finite, and a direction");
 }
 
+struct SightFrame {
+    Imath::V3d sight, above;  // unit length
+};
+
+SightFrame frame_of_sight(const V3f& line_of_sight, const V3f& up) {
+    const Imath::V3d sight = Imath::V3d(line_of_sight).normalized();
+    return {sight, (Imath::V3d(up) - sight * sight.dot(Imath::V3d(up))).normalized()};
+}
+
 }  // namespace
 
 double position_index(const V3f& towards, const V3f& line_of_sight, const V3f& up) {
     constexpr double degrees = 180 / pi;
-    const Imath::V3d source = Imath::V3d(towards).normalized(), sight = Imath::V3d(line_of_sight).normalized(),
-                     above = (Imath::V3d(up) - sight * sight.dot(Imath::V3d(up))).normalized();
+    const auto [sight, above] = frame_of_sight(line_of_sight, up);
+    const Imath::V3d source = Imath::V3d(towards).normalized();
     const double cosine = source.dot(sight);
     if (!(cosine > 0)) return std::numeric_limits<double>::infinity();
     const Imath::V3d across = source - sight * cosine;
@@ -150,9 +173,18 @@ double position_index(const V3f& towards, const V3f& line_of_sight, const V3f& u
                     (21 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
 }
 
+bool has_position_index(const V3f& towards, const V3f& line_of_sight, const V3f& up) {
+    constexpr double highest = 1.9, widest = 3;  // relative to R
+    const auto [sight, above] = frame_of_sight(line_of_sight, up);
+    const Imath::V3d source(towards);
+    const double r = source.dot(sight), h = std::abs(source.dot(above)), t = std::abs(source.dot(sight.cross(above)));
+    return r > 0 && h <= highest * r && t <= widest * r;
+}
+
 double unified_glare_rating(double background_luminance, std::span<const GlareSource> sources) {
     double sum = 0;
-    for (const GlareSource& source : sources) sum += source.glare;
+    for (const GlareSource& source : sources)
+        if (source.is_rated) sum += source.glare;
     if (!(sum > 0)) return -std::numeric_limits<double>::infinity();
     return 8 * std::log10(0.25 / background_luminance * sum);
 }
@@ -173,8 +205,9 @@ std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_
     std::vector<GlareSource> sources;
     for (const Sums& sums : seen.sums())
         if (sums.glare > 0) sources.push_back(sums.source());
-    std::stable_sort(sources.begin(), sources.end(),
-                     [](const GlareSource& a, const GlareSource& b) { return a.glare > b.glare; });
+    std::stable_sort(sources.begin(), sources.end(), [](const GlareSource& a, const GlareSource& b) {
+        return std::tuple(a.is_rated, a.glare) > std::tuple(b.is_rated, b.glare);
+    });
     return sources;
 }
 

@@ -65,6 +65,53 @@ double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
     return best;
 }
 
+/// Interval of a segment, as distances from its start [m].
+using Interval = std::pair<double, double>;
+
+/// Part of a segment within a convex, counter-clockwise face enlarged by a margin; first > second if none.
+Interval part_within(const std::vector<V2d>& face, const PlanarSegment& segment, double margin) {
+    const V2d along = (segment.b - segment.a) / segment.length();
+    Interval part{0, segment.length()};
+    for (std::size_t i = 0; i < face.size(); ++i) {
+        const V2d side = face[(i + 1) % face.size()] - face[i];
+        const double from_side = side.cross(segment.a - face[i]) + margin * side.length(), change = side.cross(along);
+        if (std::abs(change) <= on_line * side.length()) {
+            if (from_side < 0) return {1, 0};
+        } else if (change > 0) {
+            part.first = std::max(part.first, -from_side / change);
+        } else {
+            part.second = std::min(part.second, -from_side / change);
+        }
+    }
+    return part;
+}
+
+/// Adds the parts of an edge beyond which no face continues: none has an opposite edge there, or lies across it.
+void add_uncovered(const std::vector<std::vector<V2d>>& faces, const PlanarSegment& edge, double tolerance,
+                   std::vector<PlanarSegment>& border) {
+    const double length = edge.length();
+    const V2d along = (edge.b - edge.a) / length, outwards = V2d(along.y, -along.x) * (3 * tolerance);
+    const PlanarSegment beyond{edge.a + outwards, edge.b + outwards};
+    std::vector<Interval> covered;
+    for (const std::vector<V2d>& face : faces) {
+        for (std::size_t i = 0; i < face.size(); ++i) {
+            const V2d c = face[i] - edge.a, d = face[(i + 1) % face.size()] - edge.a;
+            if (std::abs(along.cross(c)) <= tolerance && std::abs(along.cross(d)) <= tolerance)
+                covered.emplace_back(along.dot(d), along.dot(c));
+        }
+        covered.push_back(part_within(face, beyond, -tolerance));
+    }
+    std::erase_if(covered, [](const Interval& part) { return part.second <= part.first; });
+    std::sort(covered.begin(), covered.end());
+    covered.emplace_back(length, length);
+    double from = 0;
+    for (const auto& [begin, end] : covered) {
+        const double to = std::min(begin, length);
+        if (to > from + 4 * tolerance) border.push_back({edge.a + along * from, edge.a + along * to});
+        from = std::max(from, end);
+    }
+}
+
 }  // namespace
 
 PlanarOutline outline_of(const Scene& scene, const PlanarArea& area) {
@@ -109,29 +156,12 @@ bool PlanarOutline::holds(const V2d& p) const {
 
 std::vector<PlanarSegment> PlanarOutline::border() const {
     const double tolerance = tolerance_of(box);
-    std::vector<PlanarSegment> edges;
-    for (const std::vector<V2d>& face : faces)
-        for (std::size_t i = 0; i < face.size(); ++i) edges.push_back({face[i], face[(i + 1) % face.size()]});
     std::vector<PlanarSegment> border;
-    for (const PlanarSegment& edge : edges) {
-        const double length = edge.length();
-        if (!(length > tolerance)) continue;
-        const V2d along = (edge.b - edge.a) / length;
-        std::vector<std::pair<double, double>> shared;  // by opposite faces, distances from edge.a [m]
-        for (const PlanarSegment& other : edges) {
-            const V2d c = other.a - edge.a, d = other.b - edge.a;
-            if (std::abs(along.cross(c)) > tolerance || std::abs(along.cross(d)) > tolerance) continue;
-            if (along.dot(d) < along.dot(c)) shared.emplace_back(along.dot(d), along.dot(c));
+    for (const std::vector<V2d>& face : faces)
+        for (std::size_t i = 0; i < face.size(); ++i) {
+            const PlanarSegment edge{face[i], face[(i + 1) % face.size()]};
+            if (edge.length() > tolerance) add_uncovered(faces, edge, tolerance, border);
         }
-        std::sort(shared.begin(), shared.end());
-        shared.emplace_back(length, length);
-        double from = 0;
-        for (const auto& [begin, end] : shared) {
-            const double to = std::min(begin, length);
-            if (to > from + tolerance) border.push_back({edge.a + along * from, edge.a + along * to});
-            from = std::max(from, end);
-        }
-    }
     return border;
 }
 

@@ -19,7 +19,7 @@ struct PlanarOutline {
     Imath::V3d point(const Imath::V2d& p) const { return origin + u * p.x + v * p.y; }
     /// Includes borders.
     bool holds(const Imath::V2d& p) const;
-    /// Includes holes. O(edges^2).
+    /// Border of the union of all faces, including holes. O(edges^2).
     std::vector<PlanarSegment> border() const;
 };
 
