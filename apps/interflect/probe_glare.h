@@ -14,7 +14,7 @@ struct RatedGrid {
     std::vector<Observer> observers;
     std::vector<GlareRating> ratings;
     std::size_t missing = 0;  ///< Ratings that were not reached.
-    bool is_seat = false;     ///< One eye; the first rating is that of the seat's own line of sight.
+    bool is_seat = false;     ///< The first rating belongs to the seat's own line of sight.
 
     /// Returns the index of the largest of at least one rating.
     std::size_t worst() const;

@@ -14,7 +14,7 @@ namespace interflect::command {
 /// Plan of a floor, and of the illuminance on a plane above it. x points right, y up.
 struct ReportPlan {
     Imath::V2d low{0, 0}, high{0, 0};  ///< World corners of the pictures [m].
-    Imath::V2d floor_size{0, 0};       ///< Of the floor, without the pictures' margin [m].
+    Imath::V2d floor_size{0, 0};       ///< Size of the floor [m]; excludes the margin.
     Image outlines;                    ///< Outlines of objects, black on white.
     Image illuminance;                 ///< The outlines over false colours with isolines; white inside furniture.
     detail::ColourScale scale;         ///< Scale of the false colours [lx].

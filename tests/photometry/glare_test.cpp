@@ -162,7 +162,7 @@ TEST(GlareSources, OfPatchesAreRatedByTheirCells) {
         EXPECT_EQ(source.name, "lamp");
         EXPECT_NEAR(source.luminance, 3e4 / pi, 1);
     }
-    EXPECT_NEAR(sources[0].solid_angle, rated, 0.06 * rated);  // one of 16 rows of cells
+    EXPECT_NEAR(sources[0].solid_angle, rated, 0.06 * rated);  // the width of a cell
     EXPECT_NEAR(sources[1].solid_angle, others, 0.1 * others);
 }
 

@@ -79,7 +79,7 @@ class SameBits(unittest.TestCase):
         self.assertEqual((self.folder / "python.h5").read_bytes(), (self.folder / "command.h5").read_bytes())
 
     def test_of_measuring_grids(self):
-        """In the office, of which one point lies inside a chair, before and after faces are cut for solving."""
+        """Grids of the office, before and after faces are cut for solving. Some points lie inside chairs."""
         self.interflect("solve", "scenes/office.mgf", "--rays", "100k", "-o", self.folder / "office.h5")
         scenes = ifl.load(ROOT / "scenes/office.mgf"), ifl.Solution.open(self.folder / "office.h5").scene
         for options, boundary in (([], 0), (["--boundary"], 0.5)):

@@ -68,7 +68,8 @@ double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
 /// Interval of a segment, as distances from its start [m].
 using Interval = std::pair<double, double>;
 
-/// Part of a segment within a convex, counter-clockwise face enlarged by a margin; first > second if none.
+/// Clips a segment to a convex, counter-clockwise face, enlarged by a margin. Returns first > second if nothing is
+/// left.
 Interval part_within(const std::vector<V2d>& face, const PlanarSegment& segment, double margin) {
     const V2d along = (segment.b - segment.a) / segment.length();
     Interval part{0, segment.length()};
@@ -86,7 +87,7 @@ Interval part_within(const std::vector<V2d>& face, const PlanarSegment& segment,
     return part;
 }
 
-/// Adds the parts of an edge beyond which no face continues: none has an opposite edge there, or lies across it.
+/// Adds the parts of an edge that no face covers: no face has an opposite edge there or extends across the edge.
 void add_uncovered(const std::vector<std::vector<V2d>>& faces, const PlanarSegment& edge, double tolerance,
                    std::vector<PlanarSegment>& border) {
     const double length = edge.length();
