@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -176,6 +177,31 @@ TEST(Obj, FilesOutsideTheFolderAreRefused) {
     expect_in(message("mtllib a.mtl\n"), "a.mtl:2: the texture '../secret.png' lies outside the scene's folder");
 }
 
+/// Each was refused.
+TEST(Obj, OddLinesOfExportersGiveAWarning) {
+    const auto kind_of = [](const std::string& text) {
+        const Scene scene = read(text);
+        EXPECT_EQ(scene.patches.size(), 2u) << text;
+        EXPECT_EQ(patch_area(scene, scene.patches[0]), 2) << text;
+        EXPECT_EQ(scene.warnings.entries().size(), 1u) << text;
+        return scene.warnings.entries().empty() ? "" : scene.warnings.entries()[0].kind;
+    };
+    EXPECT_EQ(kind_of(square + "f 1 2\nf 1\nf\nf 1 2 3 4\n"), "degenerate-face");
+    EXPECT_EQ(kind_of("f 1 2 3 4\n" + square), "later-vertices");
+    EXPECT_EQ(kind_of(square.substr(0, 16) + "f 1//1 2//1 3//1 4//1\n" + square.substr(16) + "vn 0 0 1\n"),
+              "later-vertices");
+    EXPECT_EQ(kind_of(square + "vt nan inf\nvn nan nan nan\nf 1/1/1 2/1/1 3/1/1 4/1/1\n"), "invalid-coordinates");
+}
+
+TEST(Obj, NegativeIndicesCountBackFromTheirLineAfterReadingAhead) {
+    const Scene scene = read("f 5 6 7\n" + square + "f -4 -3 -2 -1\nv 0 0 5\nv 1 0 5\nv 0 1 5\nf -3 -2 -1\n");
+    ASSERT_EQ(scene.patches.size(), 6u);
+    std::vector<float> areas;
+    for (const Patch& patch : scene.patches) areas.push_back(patch_area(scene, patch));
+    std::sort(areas.begin(), areas.end());
+    EXPECT_EQ(areas, (std::vector<float>{0.5f, 0.5f, 0.5f, 0.5f, 2, 2}));
+}
+
 class ObjBadText : public testing::TestWithParam<BadText> {};
 TEST_P(ObjBadText, IsNamedWithItsFault) {
     const std::string error = message_of([] { read(square + GetParam().text); });
@@ -190,7 +216,8 @@ INSTANTIATE_TEST_SUITE_P(
                     BadText{"BeyondSixtyFourBits", "f 1 2 99999999999999999999", "expected the number of a vertex"},
                     BadText{"BeforeTheFirst", "f -1 -2 -5", "there is no vertex -5"},
                     BadText{"Zero", "f 0 1 2", "expected the number of a vertex, not '0'"},
-                    BadText{"Word", "f a b c", "not 'a'"}, BadText{"TwoVertices", "f 1 2", "a face of 2 vertices"},
+                    BadText{"Word", "f a b c", "not 'a'"},
+                    BadText{"BadLaterVertex", "f 5 6 7\nv 1 2", ":6: a vertex needs"},
                     BadText{"CutVertex", "v 1 2", ":5: a vertex needs three coordinates"},
                     BadText{"NaN", "v nan 0 0", "expected a finite number, not 'nan'"},
                     BadText{"Infinity", "v 1e999 0 0", "not '1e999'"}, BadText{"Junk", "v 1x 0 0", "not '1x'"},

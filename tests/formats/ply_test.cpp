@@ -98,6 +98,61 @@ TEST(Ply, OneColourOfAllVerticesIsTheReflectance) {
     EXPECT_EQ(mixed.warnings.entries().at(0).kind, "vertex-colours");
 }
 
+const std::string strips_header =
+    "element vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
+    "property list int int vertex_indices\nend_header\n";
+
+/// Two strips of a plane, the second one with a repeated vertex, which makes a triangle without area.
+/// The scene was empty.
+TEST(Ply, TriangleStripsAlternateTheirOrientation) {
+    std::string bytes = "ply\nformat binary_little_endian 1.0\n" + strips_header;
+    for (const auto& [x, y] : {std::pair{0.f, 0.f}, {3.f, 0.f}, {0.f, 1.f}, {3.f, 1.f}, {0.f, 3.f}}) {
+        append(bytes, x, std::endian::little);
+        append(bytes, y, std::endian::little);
+        append(bytes, 0.f, std::endian::little);
+    }
+    for (const std::int32_t i : {9, 0, 1, 2, 3, -1, 2, 3, 4, 4}) append(bytes, i, std::endian::little);
+    const Scene scene = read(bytes);
+    double area = 0;
+    for (std::size_t i = 0; i < scene.patches.size(); i += 2) {
+        area += patch_area(scene, scene.patches[i]);
+        EXPECT_EQ(PatchGeometry(scene, scene.patches[i]).normal(), V3f(0, 0, 1)) << i;
+    }
+    EXPECT_FLOAT_EQ(static_cast<float>(area), 3 + 3);
+    EXPECT_TRUE(scene.warnings.entries().empty());
+}
+
+TEST(Ply, StripsMustReferToVertices) {
+    const std::string text = "ply\nformat ascii 1.0\n" + strips_header + "0 0 0\n3 0 0\n0 1 0\n3 1 0\n0 3 0\n4 0 1 2 ";
+    expect_in(message_of([&] { read(text + "5\n"); }), "a face has vertex 5, but there are 5");
+    expect_in(message_of([&] { read(text + "-2\n"); }), "-2 is no number of a vertex");
+    expect_in(message_of([&] { read(text + "3\n", {.max_patches = 1}); }), "max_patches");
+}
+
+/// Was read as the next face, and refused.
+TEST(Ply, ValuesBeyondThoseOfTheHeaderAreSkippedIfElementsHaveLines) {
+    const Scene scene = read(header("ascii", "4", "2") + square + "7 3 0 1 2 9 9 9 1\n\n7 3 0 2 3 9 9 9 1\n");
+    ASSERT_EQ(scene.patches.size(), 2u);
+    EXPECT_EQ(patch_area(scene, scene.patches[0]), 2);
+    ASSERT_EQ(scene.warnings.entries().size(), 1u);
+    EXPECT_EQ(scene.warnings.entries()[0].kind, "surplus-data");
+    EXPECT_EQ(scene.warnings.entries()[0].count, 2u);
+    // Elements over several lines, and several on a line.
+    for (const std::string body :
+         {"0 0\n0 2 0\n0 2 1 0\n0 1 0\n7 4\n0 1 2 3\n", "0 0 0 2 0 0 2 1 0 0 1 0\n7 4 0 1 2 3"}) {
+        const Scene loose = read(header("ascii") + body);
+        ASSERT_EQ(loose.patches.size(), 2u);
+        EXPECT_EQ(patch_area(loose, loose.patches[0]), 2);
+        EXPECT_TRUE(loose.warnings.entries().empty());
+    }
+}
+
+TEST(Ply, FacesOfTwoVerticesAreLeftOut) {
+    const Scene scene = read(header("ascii", "4", "2") + square + "7 2 0 1\n" + face);
+    EXPECT_EQ(scene.patches.size(), 2u);
+    EXPECT_EQ(scene.warnings.entries().at(0).kind, "degenerate-face");
+}
+
 class PlyBadText : public testing::TestWithParam<BadText> {};
 TEST_P(PlyBadText, IsNamedWithItsFault) {
     const std::string error = message_of([] { read(GetParam().text); });
@@ -130,7 +185,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"OutOfRange", header("ascii") + square + "7 3 0 1 4\n",
                 "part.ply:16: a face has vertex 4, but there are 4"},
         BadText{"NegativeIndex", header("ascii") + square + "7 3 0 1 -1", "-1 is no number of a vertex"},
-        BadText{"TwoVertices", header("ascii") + square + "7 2 0 1", "part.ply:16: a face has 2 vertices"},
         BadText{"EndlessList", header("ascii") + square + "7 1e21 0 1 2", "1e+21 is no length of a list"},
         BadText{"LongList", header("ascii") + square + "7 255 0 1 2", "ends within a list of 255"},
         BadText{"NaN", header("ascii") + "nan 0 0\n2 0 0\n2 1 0\n0 1 0\n" + face,

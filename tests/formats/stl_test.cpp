@@ -56,6 +56,25 @@ TEST(Stl, EveryCutOfABinaryFileIsRefused) {
         EXPECT_NE(message_of([&] { read(whole.substr(0, size)); }), "no error") << size;
 }
 
+/// Each was refused.
+TEST(Stl, VariantsOfOtherProgramsAreRead) {
+    const std::string text = "solid part\n" + facet + "endsolid part\n", bom = "\xef\xbb\xbf";
+    std::string upper = text;
+    for (char& c : upper)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    for (const std::string& variant :
+         {upper, "\n \r\n  " + text, bom + text, "solid " + std::string(1000, '/') + "\n" + facet, binary(1, 0)}) {
+        const Scene scene = read(variant);
+        ASSERT_EQ(scene.patches.size(), 2u) << variant.substr(0, 20);
+        EXPECT_EQ(patch_area(scene, scene.patches[0]), 1);
+        EXPECT_TRUE(scene.warnings.entries().empty());
+    }
+    const Scene longer = read(binary() + "\r\n");
+    EXPECT_EQ(longer.patches.size(), 2u);
+    ASSERT_EQ(longer.warnings.entries().size(), 1u);
+    EXPECT_EQ(longer.warnings.entries()[0].kind, "surplus-data");
+}
+
 class StlBadText : public testing::TestWithParam<BadText> {};
 TEST_P(StlBadText, IsNamedWithItsFault) {
     const std::string error = message_of([] { read(GetParam().text); });
@@ -67,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadText{"Empty", "", "this is no STL file"}, BadText{"NoFacet", "solid a\nendsolid a\n", "the scene is empty"},
         BadText{"NoSolid", "solidity\nvertex 0 0 0\n", "is no word of an STL file"},
-        BadText{"MoreTrianglesThanThereAre", binary(1, 2), "this is not a text file"},
+        BadText{"MoreTrianglesThanThereAre", binary(1, 2), "for each triangle that it counts"},
         BadText{"BillionTriangles", "x" + binary(1, 1000000000).substr(1), "for each triangle that it counts"},
         BadText{"NaN", binary(std::numeric_limits<float>::quiet_NaN()), "triangle 1 is not finite"},
         BadText{"Word", "solid a\nfacet\nvertex 0 x 0\n", ":3: expected a finite number, not 'x'"},

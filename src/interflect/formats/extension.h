@@ -2,14 +2,20 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace interflect::detail {
 
-inline std::string lower_case_extension(const std::filesystem::path& path) {
-    std::string text = path.extension().string();
-    for (char& c : text)
+/// Of ASCII letters.
+inline std::string lower_case(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
+    return result;
+}
+
+inline std::string lower_case_extension(const std::filesystem::path& path) {
+    return lower_case(path.extension().string());
 }
 
 }  // namespace interflect::detail

@@ -37,14 +37,10 @@ std::uint32_t index_of(std::int64_t number, std::size_t count) {
     return exists ? static_cast<std::uint32_t>(index) : none;
 }
 
-std::uint32_t resolved(std::string_view text, std::size_t count, std::string_view of) {
-    const std::optional<std::int64_t> number = whole_number(text);
-    if (!number || *number == 0)
-        throw std::invalid_argument(fmt::format("expected the number of a {}, not '{}'", of, text));
-    const std::uint32_t index = index_of(*number, count);
-    if (index == none)
-        throw std::invalid_argument(fmt::format("there is no {} {}: {} precede this line", of, *number, count));
-    return index;
+/// Words up to a comment.
+Words words_of(const LineReader& lines) {
+    const Words all = lines.words();
+    return {all.begin(), std::find_if(all.begin(), all.end(), [](auto word) { return word.starts_with('#'); })};
 }
 
 }  // namespace
@@ -57,12 +53,12 @@ ObjReader::ObjReader(const std::filesystem::path& path, const ReadOptions& optio
 }
 
 void ObjReader::read(std::string_view text) {
-    for (LineReader lines(text); lines.next();) {
+    LineReader lines(text);
+    lines_ = &lines;
+    while (lines.next()) {
         const Location where{&model_.file, lines.line()};
         try {
-            const Words all = lines.words();
-            const auto comment = std::find_if(all.begin(), all.end(), [](auto word) { return word.starts_with('#'); });
-            if (comment != all.begin()) read_line(lines, {all.begin(), comment}, where);
+            if (const Words words = words_of(lines); !words.empty()) read_line(lines, words, where);
         } catch (const std::invalid_argument& fault) {
             throw where.error(fault.what());
         }
@@ -76,12 +72,9 @@ void ObjReader::read_line(const LineReader& line, Words words, const Location& w
         mesh_ = none;
         return std::string(line.rest());
     };
-    if (key == "v") {
-        vertex(words);
-    } else if (key == "vt") {
-        coordinate(words);
-    } else if (key == "vn") {
-        normal(words);
+    if (key == "v" || key == "vt" || key == "vn") {
+        if (!has_all_vertices_) read_vertex_data(words, where);
+        ++(key == "v" ? preceding_.positions : key == "vt" ? preceding_.coordinates : preceding_.normals);
     } else if (key == "f") {
         face(words.subspan(1), where);
     } else if (key == "o") {
@@ -102,6 +95,43 @@ void ObjReader::read_line(const LineReader& line, Words words, const Location& w
     }
 }
 
+void ObjReader::read_vertex_data(Words words, const Location& where) {
+    if (words[0] == "v") vertex(words);
+    if (words[0] == "vt") coordinate(words, where);
+    if (words[0] == "vn") normal(words);
+}
+
+/// Reads the vertices of all lines that follow.
+void ObjReader::read_ahead() {
+    has_all_vertices_ = true;
+    for (LineReader lines = *lines_; lines.next();) {
+        const Location where{&model_.file, lines.line()};
+        try {
+            if (const Words words = words_of(lines); !words.empty()) read_vertex_data(words, where);
+        } catch (const std::invalid_argument& fault) {
+            throw where.error(fault.what());
+        }
+    }
+}
+
+/// @param number  From 1, over the whole file; or backwards from -1, over the lines before this one.
+std::uint32_t ObjReader::resolved(std::string_view text, std::size_t Counts::*of, std::string_view name,
+                                  const Location& where) {
+    const std::optional<std::int64_t> number = whole_number(text);
+    if (!number || *number == 0)
+        throw std::invalid_argument(fmt::format("expected the number of a {}, not '{}'", name, text));
+    if (const std::uint32_t index = index_of(*number, preceding_.*of); index != none) return index;
+    if (*number > 0) {
+        if (!has_all_vertices_) read_ahead();
+        const Counts all{positions_.size(), coordinates_.size(), normals_.size()};
+        if (const std::uint32_t index = index_of(*number, all.*of); index != none) {
+            model_.warnings.add("later-vertices", "faces refer to vertices of later lines", where.text());
+            return index;
+        }
+    }
+    throw std::invalid_argument(fmt::format("there is no {} {}: {} precede this line", name, *number, preceding_.*of));
+}
+
 void ObjReader::vertex(Words words) {
     if (words.size() < 4) throw std::invalid_argument("a vertex needs three coordinates");
     if (positions_.size() >= none) throw std::invalid_argument("there are more vertices than 32 bits can count");
@@ -109,11 +139,15 @@ void ObjReader::vertex(Words words) {
     uses_.emplace_back();
 }
 
-void ObjReader::coordinate(Words words) {
+/// Exporters write NaN for degenerate faces.
+void ObjReader::coordinate(Words words, const Location& where) {
     if (words.size() < 2) throw std::invalid_argument("texture coordinates need a number");
     if (coordinates_.size() >= none) throw std::invalid_argument("there are more coordinates than 32 bits can count");
-    const double v = words.size() > 2 ? coordinate_value(words[2]) : 0;
-    coordinates_.emplace_back(static_cast<float>(coordinate_value(words[1])), static_cast<float>(v));
+    const auto u = parse_number(words[1]), v = words.size() > 2 ? parse_number(words[2]) : 0;
+    if (!u || !v)
+        model_.warnings.add("invalid-coordinates", "texture coordinates that are no finite numbers are read as (0, 0)",
+                            where.text());
+    coordinates_.push_back(u && v ? V2f(static_cast<float>(*u), static_cast<float>(*v)) : V2f(0));
 }
 
 /// Invalid normals count as missing; only shading uses them.
@@ -133,7 +167,12 @@ void ObjReader::normal(Words words) {
 }
 
 std::uint32_t ObjReader::normal_index(std::string_view text, const Location& where) {
-    const std::uint32_t index = index_of(whole_number(text).value_or(0), normals_.size());
+    const std::int64_t number = whole_number(text).value_or(0);
+    std::uint32_t index = index_of(number, preceding_.normals);
+    if (index == none && number > 0) {
+        if (!has_all_vertices_) read_ahead();
+        index = index_of(number, normals_.size());
+    }
     if (index == none)
         model_.warnings.add("missing-normals", "a face refers to a normal that does not exist: it is ignored",
                             where.text());
@@ -141,7 +180,11 @@ std::uint32_t ObjReader::normal_index(std::string_view text, const Location& whe
 }
 
 void ObjReader::face(Words words, const Location& where) {
-    if (words.size() < 3 || words.size() > options_.max_face_vertices)
+    if (words.size() < 3) {
+        model_.warnings.add("degenerate-face", "faces with fewer than three vertices are left out", where.text());
+        return;
+    }
+    if (words.size() > options_.max_face_vertices)
         throw std::invalid_argument(
             fmt::format("a face of {} vertices; expected 3 to {}", words.size(), options_.max_face_vertices));
     if (mesh_ == none) mesh_ = mesh();
@@ -154,14 +197,14 @@ void ObjReader::face(Words words, const Location& where) {
 std::uint32_t ObjReader::corner(std::string_view word, const Location& where) {
     const std::size_t slash = word.find('/');
     const std::size_t second_slash = slash == word.npos ? word.npos : word.find('/', slash + 1);
-    const std::uint32_t position = resolved(word.substr(0, slash), positions_.size(), "vertex");
+    const std::uint32_t position = resolved(word.substr(0, slash), &Counts::positions, "vertex", where);
     std::uint32_t coordinate = none;
     Mesh& target = model_.meshes[mesh_];
     const bool is_textured = model_.materials[target.material].is_textured();
     if (slash != word.npos && is_textured) {
         const std::string_view rest = word.substr(slash + 1);
         const std::string_view text = rest.substr(0, rest.find('/'));
-        if (!text.empty()) coordinate = resolved(text, coordinates_.size(), "texture coordinate");
+        if (!text.empty()) coordinate = resolved(text, &Counts::coordinates, "texture coordinate", where);
     }
     const std::string_view normal_text = second_slash == word.npos ? "" : word.substr(second_slash + 1);
     const std::uint32_t normal = normal_text.empty() ? none : normal_index(normal_text, where);

@@ -27,11 +27,18 @@ class ObjReader {
     struct Use {
         std::uint32_t mesh = none, index = 0, coordinate = none, normal = none;
     };
+    struct Counts {
+        std::size_t positions = 0, coordinates = 0, normals = 0;
+    };
     void read_line(const LineReader& line, std::span<const std::string_view> words, const Location& where);
+    void read_vertex_data(std::span<const std::string_view> words, const Location& where);
+    void read_ahead();
     void vertex(std::span<const std::string_view> words);
-    void coordinate(std::span<const std::string_view> words);
+    void coordinate(std::span<const std::string_view> words, const Location& where);
     void normal(std::span<const std::string_view> words);
     std::uint32_t normal_index(std::string_view text, const Location& where);
+    std::uint32_t resolved(std::string_view text, std::size_t Counts::*of, std::string_view name,
+                           const Location& where);
     void face(std::span<const std::string_view> words, const Location& where);
     void libraries(const LineReader& line, std::span<const std::string_view> words, const Location& where);
     std::uint32_t corner(std::string_view word, const Location& where);
@@ -45,6 +52,9 @@ class ObjReader {
     std::vector<V2f> coordinates_;
     std::vector<Imath::V3d> normals_;
     std::vector<Use> uses_;  // per position
+    const LineReader* lines_ = nullptr;
+    Counts preceding_;               // before the current line
+    bool has_all_vertices_ = false;  // those of later lines, too
     std::string object_, group_;
     std::uint32_t material_ = 0;
     std::uint32_t mesh_ = none;                                                // current mesh, if used

@@ -32,6 +32,7 @@ class PlyReader {
     }
 
     void read() {
+        has_line_each_ = has_line_for_each_element();
         for (const PlyElement& element : header_.elements) {
             if (element.count > 0 && !values_.may_hold(1, 1)) throw std::invalid_argument(too_short(element));
             if (!element.properties.empty() &&
@@ -42,6 +43,8 @@ class PlyReader {
                 read_vertices(element);
             else if (element.name == "face")
                 read_faces(element);
+            else if (element.name == "tristrips")
+                read_strips(element);
             else
                 skip(element);
         }
@@ -55,6 +58,21 @@ class PlyReader {
 
   private:
     static constexpr std::uint64_t max_elements = std::uint64_t{1} << 40;  // keeps products below 2^64
+
+    /// Text usually has one element a line; then more values on a line than the header declares can be skipped.
+    bool has_line_for_each_element() const {
+        const auto lines = values_.lines_left();
+        std::uint64_t elements = 0;
+        for (const PlyElement& element : header_.elements)
+            if (!element.properties.empty()) elements += std::min(element.count, max_elements);
+        return lines && *lines == elements;
+    }
+
+    void end_element() {
+        if (has_line_each_ && values_.skip_line())
+            model_.warnings.add("surplus-data", "values beyond those that the header declares for a line are left out",
+                                model_.file.string());
+    }
 
     static std::string too_short(const PlyElement& element) {
         return fmt::format("the file is too short for {} of '{}'", element.count, element.name.substr(0, 40));
@@ -75,8 +93,10 @@ class PlyReader {
     }
 
     void skip(const PlyElement& element) {
-        for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i)
+        for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
             for (const PlyProperty& property : element.properties) skip(property);
+            end_element();
+        }
     }
 
     void read_vertices(const PlyElement& element) {
@@ -99,6 +119,7 @@ class PlyReader {
                 else
                     row[p] = values_.next(element.properties[p].type);
             }
+            end_element();
             const Imath::V3d x(row[*place[0]], row[*place[1]], row[*place[2]]);
             if (!std::isfinite(x.x + x.y + x.z)) throw std::invalid_argument(fmt::format("vertex {} is not finite", i));
             mesh_.positions.push_back(x);
@@ -120,35 +141,88 @@ class PlyReader {
                 fmt::format("a face has vertex {}, but there are {}", index, mesh_.positions.size()));
     }
 
-    void read_faces(const PlyElement& element) {
+    static std::size_t vertex_list(const PlyElement& element, const char* owner) {
         const auto named = element.find("vertex_indices");
         const auto list = named ? named : element.find("vertex_index");
         if (!list || !element.properties[*list].count_type)
-            throw std::invalid_argument("a face needs the list vertex_indices");
-        if (element.count > options_.max_patches)
-            throw PatchLimit(fmt::format("{} faces would give more than {} patches (max_patches)", element.count,
-                                         options_.max_patches));
-        for (std::uint64_t i = 0; i < element.count; ++i)
+            throw std::invalid_argument(fmt::format("{} needs the list vertex_indices", owner));
+        return *list;
+    }
+
+    void require_room(std::uint64_t faces) const {
+        if (faces > options_.max_patches)
+            throw PatchLimit(
+                fmt::format("{} faces would give more than {} patches (max_patches)", faces, options_.max_patches));
+    }
+
+    void read_faces(const PlyElement& element) {
+        const std::size_t list = vertex_list(element, "a face");
+        require_room(element.count);
+        for (std::uint64_t i = 0; i < element.count; ++i) {
             for (std::size_t p = 0; p < element.properties.size(); ++p) {
-                if (p == *list)
+                if (p == list)
                     read_face(element.properties[p]);
                 else
                     skip(element.properties[p]);
             }
+            end_element();
+        }
     }
 
     void read_face(const PlyProperty& property) {
         const std::uint64_t size = list_length(property);
-        if (size < 3 || size > options_.max_face_vertices)
+        if (size < 3) {
+            model_.warnings.add("degenerate-face", "faces with fewer than three vertices are left out",
+                                model_.file.string());
+            for (std::uint64_t i = 0; i < size; ++i) values_.next(property.type);
+            return;
+        }
+        if (size > options_.max_face_vertices)
             throw std::invalid_argument(
                 fmt::format("a face has {} vertices; expected 3 to {}", size, options_.max_face_vertices));
         mesh_.face_sizes.push_back(static_cast<std::uint32_t>(size));
-        for (std::uint64_t i = 0; i < size; ++i) {
-            const double index = values_.next(property.type);
-            if (!(index >= 0 && index < none) || index != std::floor(index))
-                throw std::invalid_argument(fmt::format("{} is no number of a vertex", index));
-            if (has_vertices_) require_vertex(index);
-            mesh_.indices.push_back(static_cast<std::uint32_t>(index));
+        for (std::uint64_t i = 0; i < size; ++i) mesh_.indices.push_back(vertex_number(values_.next(property.type)));
+    }
+
+    std::uint32_t vertex_number(double index) const {
+        if (!(index >= 0 && index < none) || index != std::floor(index))
+            throw std::invalid_argument(fmt::format("{} is no number of a vertex", index));
+        if (has_vertices_) require_vertex(index);
+        return static_cast<std::uint32_t>(index);
+    }
+
+    void read_strips(const PlyElement& element) {
+        const std::size_t list = vertex_list(element, "an element 'tristrips'");
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            for (std::size_t p = 0; p < element.properties.size(); ++p) {
+                if (p == list)
+                    read_strip(element.properties[p]);
+                else
+                    skip(element.properties[p]);
+            }
+            end_element();
+        }
+    }
+
+    /// Every vertex after the first two makes a triangle, whose orientation alternates; -1 begins a new strip.
+    void read_strip(const PlyProperty& property) {
+        std::uint64_t length = 0;  // of the current strip
+        std::array<std::uint32_t, 2> last{};
+        for (std::uint64_t left = list_length(property); left > 0; --left) {
+            const double value = values_.next(property.type);
+            if (value == -1) {
+                length = 0;
+                continue;
+            }
+            const std::uint32_t v = vertex_number(value);
+            if (length >= 2 && last[0] != last[1] && last[1] != v && v != last[0]) {
+                require_room(mesh_.face_sizes.size() + 1);
+                const std::size_t odd = length % 2;
+                mesh_.indices.insert(mesh_.indices.end(), {last[odd], last[1 - odd], v});
+                mesh_.face_sizes.push_back(3);
+            }
+            last = {last[1], v};
+            ++length;
         }
     }
 
@@ -173,6 +247,7 @@ class PlyReader {
     const ReadOptions& options_;
     std::optional<RgbD> colour_;  // of the first vertex
     bool varies_ = false, has_bytes_ = false, has_vertices_ = false;
+    bool has_line_each_ = false;  // text with one element a line
 };
 
 }  // namespace

@@ -38,6 +38,20 @@ std::optional<std::int64_t> PlyValues::lines() const {
 
 bool PlyValues::is_at_end() const { return rest_.find_first_not_of(blanks) == rest_.npos; }
 
+std::optional<std::uint64_t> PlyValues::lines_left() const {
+    if (form_ != Form::ascii) return std::nullopt;
+    std::uint64_t count = 0;
+    for (std::size_t begin = rest_.find_first_not_of(blanks); begin != rest_.npos; ++count)
+        begin = rest_.find_first_not_of(blanks, std::min(rest_.find('\n', begin), rest_.size()));
+    return count;
+}
+
+bool PlyValues::skip_line() {
+    const std::string_view line = rest_.substr(0, rest_.find('\n'));
+    rest_.remove_prefix(line.size());
+    return line.find_first_not_of(blanks) != line.npos;
+}
+
 double PlyValues::next(PlyType type) {
     if (form_ == Form::ascii) return next_word();
     const std::size_t size = size_of(type);

@@ -24,6 +24,10 @@ class PlyValues {
     /// Binary values may be infinite or NaN. @throws std::invalid_argument
     double next(PlyType type);
     bool is_at_end() const;
+    /// Counts the lines that are left and not blank; nullopt if binary.
+    std::optional<std::uint64_t> lines_left() const;
+    /// Skips the rest of the line. Returns whether it has values.
+    bool skip_line();
     /// A value in text takes two characters, except the last one.
     bool may_hold(std::uint64_t values, std::uint64_t bytes) const {
         return form_ == Form::ascii ? values <= (rest_.size() + 1) / 2 : bytes <= rest_.size();

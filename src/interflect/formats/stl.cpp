@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "interflect/core.h"
 #include "interflect/formats/byte_order.h"
 #include "interflect/formats/checked_options.h"
+#include "interflect/formats/extension.h"
 #include "interflect/formats/file_to_world.h"
 #include "interflect/formats/line_reader.h"
 #include "interflect/formats/material_limits.h"
@@ -23,13 +26,26 @@ using Imath::V3d;
 
 namespace {
 
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 constexpr std::size_t stl_header = 80, stl_triangle = 50;  // [bytes]
 
-/// Returns nullopt unless the size matches the count.
+/// Blanks and a byte order mark may precede `solid`, in letters of any case.
+bool is_ascii_stl(std::string_view bytes) {
+    constexpr std::string_view blanks = " \t\r\n", keyword = "solid";
+    constexpr std::size_t sample = 1 << 10;  // [bytes]; binary coordinates contain zero bytes
+    if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
+    bytes.remove_prefix(std::min(bytes.find_first_not_of(blanks), bytes.size()));
+    return lower_case(bytes.substr(0, keyword.size())) == keyword && bytes.substr(0, sample).find('\0') == bytes.npos;
+}
+
+/// Number of triangles that the header counts. Returns nullopt for a file that is shorter.
+/// A count of 0 stands for all triangles there are: programs that write as they compute leave it so.
 std::optional<std::size_t> binary_triangles(std::string_view bytes) {
     if (bytes.size() < stl_header + 4) return std::nullopt;
     const std::size_t count = number_of<std::uint32_t>(bytes.substr(stl_header), std::endian::little);
-    return bytes.size() == stl_header + 4 + count * stl_triangle ? std::optional(count) : std::nullopt;
+    const std::size_t there = (bytes.size() - stl_header - 4) / stl_triangle;
+    if (count > there) return std::nullopt;
+    return count > 0 ? count : there;
 }
 
 Mesh& add_solid(Model& model, const std::string& name, const ReadOptions& options) {
@@ -49,6 +65,9 @@ void add_vertex(Mesh& mesh, const V3d& x) {
 
 void read_binary_stl(std::string_view bytes, std::size_t count, Model& model, const ReadOptions& options) {
     Mesh& mesh = add_solid(model, "", options);
+    if (bytes.size() > stl_header + 4 + count * stl_triangle)
+        model.warnings.add("surplus-data", "data after the last triangle that the header counts is left out",
+                           model.file.string());
     mesh.positions.reserve(3 * count);
     mesh.indices.reserve(3 * count);
     for (std::size_t triangle = 0; triangle < count; ++triangle) {
@@ -74,10 +93,10 @@ void read_ascii_stl(std::string_view text, Model& model, const ReadOptions& opti
     for (LineReader lines(text); lines.next();) {
         const auto words = lines.words();
         const auto fail = [&](const std::string& fault) { throw InputError(model.file, lines.line(), fault); };
-        if (words[0] == "solid") {
-            if (lines.rest().size() > options.max_name_length) fail("the name of this solid is too long");
-            solid = &add_solid(model, std::string(lines.rest()), options);
-        } else if (words[0] == "vertex") {
+        const std::string keyword = lower_case(words[0].substr(0, options.max_name_length));
+        if (keyword == "solid") {
+            solid = &add_solid(model, std::string(lines.rest().substr(0, options.max_name_length)), options);
+        } else if (keyword == "vertex") {
             if (!solid) fail("a vertex before the first 'solid'");
             if (words.size() != 4) fail(fmt::format("a vertex has {} coordinates, not 3", words.size() - 1));
             if (vertices % 3 == 0 && vertices / 3 >= options.max_patches / 2)
@@ -92,9 +111,9 @@ void read_ascii_stl(std::string_view text, Model& model, const ReadOptions& opti
             }
             add_vertex(*solid, x);
             ++vertices;
-        } else if (words[0] == "facet" || words[0] == "endloop") {
+        } else if (keyword == "facet" || keyword == "endloop") {
             if (vertices % 3 != 0) fail("a facet must have three vertices");
-        } else if (words[0] != "outer" && words[0] != "endfacet" && words[0] != "endsolid") {
+        } else if (keyword != "outer" && keyword != "endfacet" && keyword != "endsolid") {
             fail(fmt::format("'{}' is no word of an STL file", words[0].substr(0, 20)));
         }
     }
@@ -113,16 +132,18 @@ Scene read_stl_bytes(std::string_view bytes, const fs::path& path, const ReadOpt
     model.file = path;
     model.files.push_back(path.string());
     model.materials.push_back(default_material());
-    if (const auto count = binary_triangles(bytes)) {
+    const bool is_ascii = is_ascii_stl(bytes);
+    if (const auto count = is_ascii ? std::nullopt : binary_triangles(bytes)) {
         if (*count > options.max_patches / 2)
             throw TooManyPatches(
                 path, 0,
                 fmt::format("{} triangles would give more than {} patches (max_patches)", *count, options.max_patches));
         read_binary_stl(bytes, *count, model, options);
     } else {
-        if (!bytes.starts_with("solid"))
+        if (!is_ascii)
             throw InputError(
                 path, 0, "this is no STL file: expected 'solid', or 84 bytes and 50 for each triangle that it counts");
+        if (bytes.starts_with(byte_order_mark)) bytes.remove_prefix(byte_order_mark.size());
         require_text(bytes, path);
         read_ascii_stl(bytes, model, options);
     }
