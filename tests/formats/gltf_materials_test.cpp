@@ -119,6 +119,62 @@ INSTANTIATE_TEST_SUITE_P(
                     Layer{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}, true},
                     Layer{"KHR_materials_anisotropy", json::object(), false}));
 
+/// Colours of vertices were ignored.
+TEST(GltfMaterials, AreMultipliedByTheColoursOfVertices) {
+    GltfBuilder file;
+    file.add_triangle(diffuse({{"baseColorFactor", {0.5, 0.5, 0.8, 1}}}));
+    json& attributes = file.file["meshes"][0]["primitives"][0]["attributes"];
+    attributes["COLOR_0"] = file.add_vectors({{1, 0.5f, 0}, {1, 0.5f, 0}, {1, 0.5f, 0}});
+    const Scene even = file.read();
+    expect_close(even.materials[even.patches.at(0).material].reflectance, {0.5f, 0.25f, 0});
+    EXPECT_THAT(warning_kinds(even), Not(Contains("vertex-colours")));
+
+    attributes["COLOR_0"] = file.add_vectors({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
+    const Scene mixed = file.read();
+    expect_close(mixed.materials[mixed.patches.at(0).material].reflectance, {0.5f / 3, 0.5f / 3, 0.8f / 3});
+    EXPECT_THAT(warning_kinds(mixed), Contains("vertex-colours"));
+
+    attributes["COLOR_0"] = file.add_vectors({{1, 0, 0}, {0, 1, 0}});
+    EXPECT_THAT(file.fault(), HasSubstr("2 colours for 3 vertices"));
+}
+
+TEST(GltfMaterials, TrianglesOfOtherColoursAreOtherFaces) {
+    GltfBuilder file;
+    file.add_triangle(diffuse({{"baseColorFactor", {0.5, 0.5, 0.5, 1}}}));
+    json& primitive = file.file["meshes"][0]["primitives"][0];
+    primitive["attributes"] = {
+        {"POSITION", file.add_vectors({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})},
+        {"COLOR_0", file.add_vectors({{.2f, .2f, .2f}, {.2f, .2f, .2f}, {.2f, .2f, .2f}, {.8f, .2f, .2f}})}};
+    primitive["indices"] = file.add_indices({0, 1, 2, 0, 1, 3});
+    const Scene scene = file.read();
+    ASSERT_EQ(scene.patches.size(), 4u);
+    std::vector<float> reds;
+    for (const Patch& patch : scene.patches) reds.push_back(scene.materials[patch.material].reflectance.x);
+    std::sort(reds.begin(), reds.end());
+    EXPECT_NEAR(reds.front(), 0.1f, 1e-6f);
+    EXPECT_NEAR(reds.back(), 0.2f, 1e-6f);
+}
+
+/// The whole file was refused.
+TEST(GltfMaterials, MissingImagesLeaveTheFactors) {
+    GltfBuilder file;
+    file.add("images", {{"uri", "missing.png"}});
+    file.add("textures", {{"source", 0}});
+    file.add_triangle(diffuse({{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"baseColorTexture", {{"index", 0}}}}));
+    const Scene scene = file.read();
+    EXPECT_EQ(scene.materials[scene.patches.at(0).material].reflectance, Rgb(0.5f));
+    EXPECT_THAT(warning_kinds(scene), Contains("missing-texture"));
+    file.file["images"][0]["uri"] = "../missing.png";
+    EXPECT_THAT(file.fault(), HasSubstr("outside_files"));
+}
+
+TEST(GltfMaterials, RequiredVariantsAreIgnored) {
+    GltfBuilder file;
+    file.add_triangle();
+    file.file["extensionsUsed"] = file.file["extensionsRequired"] = {"KHR_materials_variants"};
+    EXPECT_THAT(warning_kinds(file.read()), Contains("extension"));
+}
+
 TEST(GltfMaterials, FacesWithoutOneAreGrey) {
     GltfBuilder file;
     file.add_triangle();

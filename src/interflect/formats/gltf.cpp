@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 #include <new>
+#include <span>
+#include <string_view>
 
 #include "interflect/core.h"
 #include "interflect/formats/gltf_lights.h"
@@ -46,8 +48,20 @@ constexpr std::string_view known_extensions[] = {
     "MSFT_texture_dds",
 };
 
-bool is_known(const std::string& extension) {
-    return std::find(std::begin(known_extensions), std::end(known_extensions), extension) != std::end(known_extensions);
+/// A file that requires these has the same surfaces, base colours and lights without them.
+constexpr std::string_view ignorable_extensions[] = {
+    "AGI_articulations",      "CESIUM_primitive_outline",
+    "EXT_feature_metadata",   "EXT_instance_features",
+    "EXT_mesh_features",      "EXT_structural_metadata",
+    "KHR_animation_pointer",  "KHR_audio",
+    "KHR_interactivity",      "KHR_materials_dispersion",
+    "KHR_materials_variants", "KHR_node_hoverability",
+    "KHR_node_selectability", "KHR_xmp",
+    "KHR_xmp_json_ld",        "MSFT_lod",
+};
+
+bool is_in(std::span<const std::string_view> extensions, const std::string& extension) {
+    return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
 void require_readable(GltfAsset& asset) {
@@ -57,10 +71,11 @@ void require_readable(GltfAsset& asset) {
         root.fail(fmt::format("asset.version is '{}', expected 2.0", version));
     std::string unknown;
     for (const std::string& name : root.texts("extensionsRequired"))
-        if (!is_known(name)) unknown += (unknown.empty() ? "" : ", ") + name;
+        if (!is_in(known_extensions, name) && !is_in(ignorable_extensions, name))
+            unknown += (unknown.empty() ? "" : ", ") + name;
     if (!unknown.empty()) root.fail(fmt::format("it requires extensions that are not read: {}", unknown));
     for (const std::string& name : root.texts("extensionsUsed"))
-        if (!is_known(name))
+        if (!is_in(known_extensions, name))
             asset.warn("extension", fmt::format("the extension {} is ignored", name), "extensionsUsed");
     if (root.has("animations")) asset.warn("animation", "animations are ignored", "animations");
 }

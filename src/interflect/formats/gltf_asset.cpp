@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <system_error>
 
 #include "interflect/base/escapes.h"
 #include "interflect/core.h"
@@ -16,6 +17,8 @@ namespace interflect::detail {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr std::string_view data_scheme = "data:";
 
 std::uint32_t word(std::string_view bytes, std::size_t offset) {
     std::uint32_t value = 0;  // assumes a little-endian machine
@@ -103,8 +106,8 @@ void GltfAsset::take_bytes(std::uint64_t count, const GltfValue& owner) {
 }
 
 std::string GltfAsset::read_uri(const std::string& uri, const GltfValue& owner) {
-    constexpr std::string_view data = "data:", base64 = ";base64";
-    if (!uri.starts_with(data)) return read_file(uri, owner);
+    constexpr std::string_view base64 = ";base64";
+    if (!uri.starts_with(data_scheme)) return read_file(uri, owner);
     const auto comma = uri.find(',');
     if (comma == uri.npos) owner.fail("its data URI has no comma");
     take_bytes(uri.size(), owner);
@@ -115,7 +118,13 @@ std::string GltfAsset::read_uri(const std::string& uri, const GltfValue& owner) 
     return std::move(*bytes);
 }
 
-std::string GltfAsset::read_file(const std::string& uri, const GltfValue& owner) {
+bool GltfAsset::is_missing(const std::string& uri, const GltfValue& owner) const {
+    if (uri.starts_with(data_scheme)) return false;
+    std::error_code unknown;
+    return !fs::exists(file_of(uri, owner), unknown) && !unknown;
+}
+
+fs::path GltfAsset::file_of(const std::string& uri, const GltfValue& owner) const {
     if (has_scheme(uri)) owner.fail(fmt::format("'{}' is not the name of a file beside this one", cut(uri)));
     if (options_.max_include_depth < 1) owner.fail("no other file may be read (max_include_depth is 0)");
     const std::string name = percent_decoded(uri);
@@ -126,6 +135,11 @@ std::string GltfAsset::read_file(const std::string& uri, const GltfValue& owner)
     if (!stays && !options_.outside_files)
         owner.fail(
             fmt::format("'{}' is outside the folder of this file, which is not allowed (outside_files)", cut(uri)));
+    return file;
+}
+
+std::string GltfAsset::read_file(const std::string& uri, const GltfValue& owner) {
+    const fs::path file = file_of(uri, owner);
     try {
         std::string bytes = read_bytes(file, options_.max_model_bytes - taken_);
         take_bytes(bytes.size(), owner);

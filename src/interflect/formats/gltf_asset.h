@@ -30,6 +30,8 @@ class GltfAsset {
 
     void warn(const char* kind, const std::string& message, const std::string& place);
 
+    /// Whether a URI names a file that does not exist, in the scene's folder.
+    bool is_missing(const std::string& uri, const GltfValue& owner) const;
     /// Reads a data URI, or a file in the scene's folder.
     std::string read_uri(const std::string& uri, const GltfValue& owner);
     /// @throws GltfFault beyond max_model_bytes in total.
@@ -38,6 +40,8 @@ class GltfAsset {
     Model model;
 
   private:
+    /// @throws GltfFault unless it may be read.
+    std::filesystem::path file_of(const std::string& uri, const GltfValue& owner) const;
     std::string read_file(const std::string& uri, const GltfValue& owner);
 
     GltfValue root_;

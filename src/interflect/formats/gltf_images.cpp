@@ -71,6 +71,11 @@ std::uint32_t GltfImages::image_of_texture(std::uint32_t texture) {
         asset_.warn("no-image", "a texture without an image is taken as white", owner.place());
         return none;
     }
+    if (images_[image].has("uri") && asset_.is_missing(images_[image].text("uri"), images_[image])) {
+        asset_.warn("missing-texture", "an image that is missing is taken as white: the factors alone are used",
+                    images_[image].place());
+        return none;
+    }
     return first_alike_[image];
 }
 

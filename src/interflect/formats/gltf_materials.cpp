@@ -259,6 +259,19 @@ const GltfSurface& GltfMaterials::surface(std::uint32_t index, bool textured) {
     return surfaces_.emplace(std::pair(index, textured), make(index, textured)).first->second;
 }
 
+std::uint32_t GltfMaterials::tinted(std::uint32_t material, const Rgb& tint) {
+    if (tint == Rgb(1)) return material;
+    std::vector<Material>& materials = asset_.model.materials;
+    const auto [entry, is_new] =
+        tinted_.try_emplace({material, tint.x, tint.y, tint.z}, static_cast<std::uint32_t>(materials.size()));
+    if (is_new) {
+        Material result = materials[material];
+        result.reflectance *= tint;
+        materials.push_back(std::move(result));
+    }
+    return entry->second;
+}
+
 void GltfMaterials::warn_of_lost() {
     const std::string message = fmt::format(
         "specular reflection of metals is left out: {:.1f}% of all that the materials in use reflect (mean over "

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "interflect/formats/gltf_images.h"
@@ -42,6 +44,9 @@ class GltfMaterials {
     /// @param index  In the file; `none`: default material. @param textured  Else uses means of textures.
     const GltfSurface& surface(std::uint32_t index, bool textured);
 
+    /// Returns the material with its diffuse reflectance multiplied by `tint`. @param material  In Model::materials.
+    std::uint32_t tinted(std::uint32_t material, const Rgb& tint);
+
     /// Call after the last surface().
     void warn_of_lost();
 
@@ -62,6 +67,7 @@ class GltfMaterials {
     GltfImages& images_;
     std::vector<GltfValue> materials_;
     std::map<std::pair<std::uint32_t, bool>, GltfSurface> surfaces_;
+    std::map<std::tuple<std::uint32_t, float, float, float>, std::uint32_t> tinted_;
     double lost_ = 0, all_ = 0;
     std::vector<std::string> losing_;  // places with omitted reflection
 };

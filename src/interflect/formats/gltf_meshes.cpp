@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 
@@ -246,19 +249,70 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
         asset_.warn("no-faces", "a primitive without positions is ignored", primitive.place());
         return;
     }
-    if (primitive.object("attributes").has("COLOR_0"))
-        asset_.warn("vertex-colours", "colours of vertices (COLOR_0) are ignored", primitive.place());
     Vertices vertices = vertices_of(primitive);
     const GltfSurface& surface =
         materials_.surface(primitive.index("material", materials_.count()), vertices.texture_coordinates.has_value());
     if (surface.is_invisible) return;
     read_deformation(primitive, pose, vertices);
 
+    std::vector<std::uint32_t> corners = corners_of(primitive, vertices);
+    for (TintedFaces& faces : by_tint(primitive, std::move(corners), vertices.positions.count)) {
+        result.push_back(static_cast<std::uint32_t>(asset_.model.meshes.size()));
+        asset_.model.meshes.push_back(mesh_of(primitive, vertices, surface, std::move(faces)));
+    }
+}
+
+/// Groups triangles by the mean of COLOR_0 at their corners. Similar colours share a group, whose tint is their mean.
+std::vector<GltfMeshes::TintedFaces> GltfMeshes::by_tint(const GltfValue& primitive, std::vector<std::uint32_t> indices,
+                                                         std::uint64_t vertex_count) {
+    constexpr const char* colour_set = "COLOR_0";
+    if (indices.empty()) return {};
+    if (!primitive.object("attributes").has(colour_set)) return {{Rgb(1), std::move(indices)}};
+    if (primitive.extension("KHR_draco_mesh_compression").exists()) {
+        asset_.warn("vertex-colours", "compressed colours of vertices (COLOR_0) are ignored", primitive.place());
+        return {{Rgb(1), std::move(indices)}};
+    }
+    const GltfElements colours = attribute(primitive, colour_set, "VEC3 VEC4");
+    if (colours.count != vertex_count)
+        primitive.fail(fmt::format("{} colours for {} vertices", colours.count, vertex_count));
+    const auto colour_at = [&](std::uint32_t v) {
+        const V3d colour = vector_at(colours, v);
+        Rgb result;
+        for (int c = 0; c < 3; ++c) result[c] = static_cast<float>(std::clamp(colour[c], 0.0, 1.0));
+        return result;
+    };
+    constexpr float steps = 16;  // of the square root of a channel: up to 6% of white apart
+    std::map<std::array<int, 3>, TintedFaces> groups;
+    bool varies = false;
+    for (std::size_t i = 0; i < indices.size(); i += 3) {
+        const Rgb a = colour_at(indices[i]), b = colour_at(indices[i + 1]), c = colour_at(indices[i + 2]);
+        varies |= a != b || b != c;
+        const Rgb mean = (a + b + c) / 3;
+        const auto step = [&](float x) { return static_cast<int>(std::lround(std::sqrt(x) * steps)); };
+        TintedFaces& group =
+            groups.try_emplace({step(mean.x), step(mean.y), step(mean.z)}, TintedFaces{Rgb(0), {}}).first->second;
+        group.tint += mean;
+        group.indices.insert(group.indices.end(), indices.begin() + static_cast<std::ptrdiff_t>(i),
+                             indices.begin() + static_cast<std::ptrdiff_t>(i + 3));
+    }
+    if (varies)
+        asset_.warn("vertex-colours", "colours of vertices (COLOR_0) are averaged over each triangle",
+                    primitive.place());
+    std::vector<TintedFaces> result;
+    for (auto& [key, group] : groups) {
+        group.tint /= static_cast<float>(group.indices.size() / 3);
+        result.push_back(std::move(group));
+    }
+    return result;
+}
+
+Mesh GltfMeshes::mesh_of(const GltfValue& primitive, const Vertices& vertices, const GltfSurface& surface,
+                         TintedFaces faces) {
     Mesh mesh;
     mesh.name = primitive.place();
-    mesh.material = surface.material;
+    mesh.material = materials_.tinted(surface.material, faces.tint);
     mesh.back_emits = surface.double_sided;
-    mesh.indices = corners_of(primitive, vertices);
+    mesh.indices = std::move(faces.indices);
     const std::vector<std::uint32_t> used = compact(mesh.indices, vertices.positions.count);
     mesh.positions.reserve(used.size());
     for (const std::uint32_t v : used) mesh.positions.push_back(vertices.position(v, primitive));
@@ -277,9 +331,7 @@ void GltfMeshes::add(const GltfValue& primitive, const GltfPose& pose, std::vect
     if (is_outside && !surface.repeats)
         asset_.warn("texture-wrap", "clamped or mirrored texture: repeated outside [0, 1] instead", primitive.place());
     if (vertices.lightmap_coordinates) read_lightmap_coordinates(*vertices.lightmap_coordinates, used, mesh);
-    if (mesh.indices.empty()) return;
-    result.push_back(static_cast<std::uint32_t>(asset_.model.meshes.size()));
-    asset_.model.meshes.push_back(std::move(mesh));
+    return mesh;
 }
 
 void GltfMeshes::read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used,

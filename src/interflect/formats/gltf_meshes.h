@@ -31,7 +31,15 @@ class GltfMeshes {
   private:
     struct Vertices;
 
+    struct TintedFaces {
+        Rgb tint{1, 1, 1};
+        std::vector<std::uint32_t> indices;
+    };
+
     void add(const GltfValue& primitive, const GltfPose& pose, std::vector<std::uint32_t>& result);
+    std::vector<TintedFaces> by_tint(const GltfValue& primitive, std::vector<std::uint32_t> indices,
+                                     std::uint64_t vertex_count);
+    Mesh mesh_of(const GltfValue& primitive, const Vertices& vertices, const GltfSurface& surface, TintedFaces faces);
     std::string texture_set_of(const GltfValue& primitive);
     Vertices vertices_of(const GltfValue& primitive);
     void read_draco(const GltfValue& primitive, const GltfValue& extension, Vertices& vertices);
