@@ -69,7 +69,8 @@ INSTANTIATE_TEST_SUITE_P(
         OpeningCase{"-2 0 1", Shape::cylinder, {2, 2, 1}}, OpeningCase{"-2 3 0", Shape::cylinder, {3, 2, 0}},
         OpeningCase{"-1 -1 -1", Shape::ellipsoid, {1, 1, 1}}, OpeningCase{"-1 2 -1", Shape::cylinder, {2, 1, 1}, 0},
         OpeningCase{"0 2 -1", Shape::cylinder, {2, 1, 1}, 0}, OpeningCase{"2 -1 -1", Shape::cylinder, {1, 2, 1}, 1},
-        OpeningCase{"2 0 -1", Shape::cylinder, {1, 2, 1}, 1}, OpeningCase{"-1 0 -1", Shape::cylinder, {0, 1, 1}, 0}));
+        OpeningCase{"2 0 -1", Shape::cylinder, {1, 2, 1}, 1}, OpeningCase{"-1 0 -1", Shape::ellipsoid, {1, 1, 1}},
+        OpeningCase{"0 -1 -1", Shape::ellipsoid, {1, 1, 1}}));
 
 TEST_P(IesOpening, HasItsShapeAndSize) {
     const LuminousOpening opening = web_of({.opening = GetParam().sizes}).opening;
@@ -78,6 +79,38 @@ TEST_P(IesOpening, HasItsShapeAndSize) {
     EXPECT_EQ(opening.axis, GetParam().axis);
     EXPECT_LT((web_of({.unit = 1, .opening = GetParam().sizes}).opening.size - 0.3048f * GetParam().size).length(),
               1e-6f);
+}
+
+/// A sphere was a disk of no area, and an ellipsoid a cylinder.
+TEST(Ies, RoundHeightsWereEllipsoidsUntil1995) {
+    for (const char* version : {"IESNA:LM-63-1995\n", "IESNA91\n"}) {
+        const LuminousOpening sphere = web_of({.version = version, .opening = "-2 0 -2"}).opening;
+        EXPECT_EQ(sphere.shape, Shape::ellipsoid);
+        EXPECT_EQ(sphere.size, V3f(2, 2, 2));
+        const LuminousOpening ellipsoid = web_of({.version = version, .opening = "-1 3 -2"}).opening;
+        EXPECT_EQ(ellipsoid.shape, Shape::ellipsoid);
+        EXPECT_EQ(ellipsoid.size, V3f(3, 1, 2));
+        EXPECT_EQ(web_of({.version = version, .opening = "-2 0 1"}).opening.shape, Shape::cylinder);
+        EXPECT_EQ(web_of({.version = version, .opening = "0 2 -1"}).opening.axis, 0);
+    }
+}
+
+TEST(Ies, UnlikelyUnitsAreWarnedOf) {
+    const auto kinds = [](int unit, const char* opening) {
+        std::vector<std::string> found;
+        const Read lamp = read(IesText{.unit = unit, .opening = opening}.str());
+        for (const Warnings::Entry& warning : lamp.warnings.entries()) found.push_back(warning.kind);
+        return found;
+    };
+    const std::vector<std::string> none, unit{"ies-unit"};
+    EXPECT_EQ(kinds(1, "0.6 0.6 0"), unit);
+    EXPECT_EQ(kinds(1, "0.297 1.197 0"), unit);
+    EXPECT_EQ(kinds(2, "600 600 0"), unit);
+    EXPECT_EQ(kinds(2, "-600 0 0"), unit);
+    EXPECT_EQ(kinds(2, "0.6 0.6 0"), none);
+    EXPECT_EQ(kinds(1, "2 4 0"), none);
+    EXPECT_EQ(kinds(1, "0.3 0.3 0"), none);
+    EXPECT_EQ(kinds(1, "-0.6 -0.6 0"), none);
 }
 
 TEST(Ies, TwoPlanesAreEnoughOfAHalf) {

@@ -68,7 +68,9 @@ std::string with_line(const LdtText& ldt, int n, const std::string& line) {
 class LdtOddity : public testing::TestWithParam<Oddity> {};
 INSTANTIATE_TEST_SUITE_P(
     All, LdtOddity,
-    testing::Values(Oddity{"ldt-decimal-comma", with_line({}, 24, "1,5")},
+    testing::Values(Oddity{"ldt-decimal-comma", with_line({}, 24, "1,5")}, Oddity{"ldt-empty", with_line({}, 18, "")},
+                    Oddity{"ldt-comment", with_line({}, 29, "1000 lm")},
+                    Oddity{"ldt-comment", with_line({}, 44, "0 degrees")},
                     Oddity{"ldt-lamps", LdtText{.lamp_sets = 3}.str()}, Oddity{"ldt-tilt", LdtText{.tilt = 15}.str()},
                     Oddity{"ldt-angles", LdtText{.gamma = {0, 80}}.str()},
                     Oddity{"ldt-negative", LdtText{.intensity = [](double g, double) { return g > 0 ? -1 : 5; }}.str()},
@@ -78,6 +80,20 @@ TEST_P(LdtOddity, IsToleratedWithOneWarning) {
     const Read found = read(GetParam().text);
     ASSERT_EQ(found.warnings.entries().size(), 1u);
     EXPECT_EQ(found.warnings.entries()[0].kind, GetParam().kind);
+}
+
+/// Each was refused, and empty direct ratios were read as angles.
+TEST(Ldt, EmptyLinesHaveTheUsualValues) {
+    const LdtText text{.length = 1200, .width = 300};
+    const PhotometricWeb usual = read(text.str()).web;
+    for (const int line : {18, 19, 20, 21, 24, 25, 27, 33, 37, 42}) {
+        const PhotometricWeb web = read(with_line(text, line, "")).web;
+        EXPECT_EQ(web.intensities, usual.intensities) << line;
+        EXPECT_EQ(web.lamp_lumens, usual.lamp_lumens) << line;
+        EXPECT_EQ(web.opening.size, usual.opening.size) << line;
+        EXPECT_EQ(web.polar, usual.polar) << line;
+    }
+    EXPECT_TRUE(read(with_line(text, 16, "")).web.opening.size.y == 0);
 }
 
 std::vector<MalformedText> malformed() {
@@ -94,7 +110,8 @@ std::vector<MalformedText> malformed() {
         {"OneIntensity", with_line({}, 6, "1"), ":6: the number of intensities in a C plane is 1"},
         {"TooManyIntensities", with_line({}, 6, "2000000"), ":6: the number of intensities in a C plane is 2000000"},
         {"Length", with_line({}, 16, "long"), ":16: expected the length of the luminous area, found 'long'"},
-        {"EmptyWidth", with_line({}, 17, ""), ":17: expected the width of the luminous area, found ''"},
+        {"EmptyFlux", with_line({}, 29, ""), ":29: expected the flux of the lamps, found ''"},
+        {"Thousands", with_line({}, 29, "1 000"), ":29: expected the flux of the lamps, found '1 000'"},
         {"NegativeLength", with_line({}, 16, "-5"), "the luminous area has a negative size"},
         {"HugeLength", with_line({}, 16, "1e30"), "this luminaire has a luminous opening"},
         {"Height", with_line({}, 19, "?"), ":19: expected the height of the luminous area"},
@@ -105,7 +122,6 @@ std::vector<MalformedText> malformed() {
         {"LampNumber", with_line({}, 27, "two"), ":27: expected the number of lamps, found 'two'"},
         {"DarkLamp", with_line({}, 29, "0"), ":29: the flux of the lamps is 0 lm"},
         {"LampOfWords", with_line({}, 29, "bright"), ":29: expected the flux of the lamps"},
-        {"Ratio", with_line({}, 35, "none"), ":35: expected a direct ratio"},
         {"PlaneAngle", with_line({}, 43, "400"), ":43: a C angle of 400 degrees; expected 0 to 360"},
         {"NegativeGamma", with_line({}, 44, "-1"), ":44: a gamma angle of -1 degrees"},
         {"GammaOrder", with_line({}, 45, "0"), ":45: gamma angles must ascend, but 0 follows 0"},

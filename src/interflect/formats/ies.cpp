@@ -47,9 +47,10 @@ std::optional<std::string_view> tilt_of(std::string_view line) {
     return line.starts_with('=') ? std::optional(trimmed(line.substr(1))) : std::nullopt;
 }
 
-/// Two negative sizes mean a cylinder, three an ellipsoid. Until LM-63-1995, one negative size means a circle if
-/// another is 0.
-LuminousOpening opening_of(const Dimensions& d, bool& is_known) {
+/// Three negative sizes mean an ellipsoid, two a cylinder along the third axis. Until LM-63-1995, one negative size
+/// means a circle if another is 0, a negative height and one other negative size an ellipsoid, or a sphere if the third
+/// is 0.
+LuminousOpening opening_of(const Dimensions& d, int year, bool& is_known) {
     using Shape = LuminousOpening::Shape;
     const bool round[3] = {d.length < 0, d.width < 0, d.height < 0};
     const int count = round[0] + round[1] + round[2];
@@ -58,6 +59,12 @@ LuminousOpening opening_of(const Dimensions& d, bool& is_known) {
     is_known = true;
     if (count == 0) return {Shape::box, size, 2};
     if (count == 3) return {Shape::ellipsoid, size, 2};
+    if (count == 2 && round[2]) {
+        float& third = round[0] ? size.y : size.x;
+        const bool is_sphere = third == 0;
+        if (is_sphere) third = round[0] ? size.x : size.y;
+        if (is_sphere || year <= last_year_of_factor) return {Shape::ellipsoid, size, 2};
+    }
     if (count == 2) return {Shape::cylinder, size, round[0] ? (round[1] ? 2 : 1) : 0};
     if (!round[2]) {
         if (size.x == 0 || size.y == 0) size.x = size.y = std::max(size.x, size.y);
@@ -87,6 +94,7 @@ class IesReader {
     void read_photometry();
     double positive(const char* what);
     void read_opening(double metres);
+    void warn_of_unit(const Dimensions& d, double metres);
     std::vector<float> angles(std::size_t count, const char* kind, float low, float high);
     void read_type_c(std::vector<float> vertical, std::vector<float> horizontal);
     void read_type_a_or_b(std::vector<float> vertical, std::vector<float> horizontal, Type type);
@@ -235,8 +243,31 @@ void IesReader::read_photometry() {
 void IesReader::read_opening(double metres) {
     const std::vector<double> sizes = text_.numbers(3, "a size of the luminous opening");
     bool is_known = false;
-    web_.opening = opening_of({sizes[0] * metres, sizes[1] * metres, sizes[2] * metres}, is_known);
+    web_.opening = opening_of({sizes[0] * metres, sizes[1] * metres, sizes[2] * metres}, year_, is_known);
     if (!is_known) warn("ies-opening", "the luminous opening has no shape of IES LM-63; it is read as a box");
+    warn_of_unit({sizes[0], sizes[1], sizes[2]}, metres);
+}
+
+/// Warns of sizes beyond those of luminaires, and of feet for the widths and lengths of metric ceiling grids.
+void IesReader::warn_of_unit(const Dimensions& d, double metres) {
+    constexpr double largest = 10;  // [m]
+    const double longest = std::max({std::abs(d.width), std::abs(d.length), std::abs(d.height)});
+    if (longest * metres > largest)
+        warn("ies-unit",
+             fmt::format("the luminous opening is {:g} m long: the file may be in another unit", longest * metres));
+    const auto is_module = [](double size) {
+        constexpr std::pair<double, double> modules[] = {{0.295, 0.3}, {0.595, 0.6}, {0.62, 0.625}, {1.195, 1.2}};
+        constexpr double rounding = 1e-6;
+        return std::any_of(std::begin(modules), std::end(modules), [&](const auto& module) {
+            return size >= module.first - rounding && size <= module.second + rounding;
+        });
+    };
+    if (metres != 1 && is_module(d.width) && is_module(d.length) && std::max(d.width, d.length) > 0.5)
+        warn(
+            "ies-unit",
+            fmt::format("the luminous opening of {:g} x {:g} is read in feet, as the file says, but is a usual size in "
+                        "metres",
+                        d.width, d.length));
 }
 
 /// Snaps to multiples of 90 degrees, for exact symmetry tests.
@@ -299,6 +330,15 @@ void IesReader::read_type_a_or_b(std::vector<float> vertical, std::vector<float>
     const bool is_symmetric = horizontal.front() == 0;
     PhotometricPlanes all = planes(std::move(horizontal), vertical.size());
     if (is_symmetric) all.mirror_at_first();
+    if (vertical.front() == 0) {
+        warn("ies-symmetry",
+             "vertical angles of type A or B begin at 0, for which IES LM-63 has no rule; the other half is taken as "
+             "its mirror image");
+        PhotometricPlanes by_vertical(std::move(vertical), all.transposed());
+        by_vertical.mirror_at_first();
+        all = PhotometricPlanes(all.angles(), by_vertical.transposed());
+        vertical = by_vertical.angles();
+    }
     if (type == type_a) {
         all.reverse();
         for (float& angle : vertical) angle += right_angle;

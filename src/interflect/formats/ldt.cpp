@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "interflect/formats/photometric_planes.h"
@@ -16,6 +18,8 @@ namespace interflect::detail {
 namespace {
 
 namespace fs = std::filesystem;
+
+bool is_start_of_number(char c) { return (c >= '0' && c <= '9') || c == '.' || c == ',' || c == '+' || c == '-'; }
 
 class LdtReader {
   public:
@@ -30,6 +34,11 @@ class LdtReader {
 
     std::string_view line(const char* what);
     double number_line(const char* what);
+    double number_in(std::string_view text, const char* what);
+    /// Reads an empty line as `empty`.
+    double optional_line(const char* what, double empty);
+    double next_number(const std::string& what);
+    void skip_ratios();
     std::size_t count_line(const char* what, std::size_t least, std::size_t most);
     void skip_lines(int count);
     void read_opening();
@@ -59,12 +68,12 @@ PhotometricWeb LdtReader::read() {
     skip_lines(8);  // report, name, number, file, date; size of the housing
     read_opening();
     skip_lines(2);  // downward flux, light output ratio
-    factor_ = number_line("the conversion factor");
+    factor_ = optional_line("the conversion factor", 1);
     if (!(factor_ > 0)) text_.refuse(fmt::format("the conversion factor is {}; expected a number above 0", factor_));
-    if (number_line("the tilt") != 0)
+    if (optional_line("the tilt", 0) != 0)
         warn("ldt-tilt", "the luminaire was tilted as it was measured; it is not turned back");
     read_lamps();
-    text_.numbers(10, "a direct ratio");
+    skip_ratios();
 
     if (symmetry > rotation && plane_count % (symmetry == c0_plane ? 2 : 4) != 0)
         text_.refuse(fmt::format("{} C planes do not have the symmetry {}", plane_count, int{symmetry}));
@@ -75,7 +84,7 @@ PhotometricWeb LdtReader::read() {
     const std::vector<float> measured = planes_of(all_planes, symmetry);
     std::vector<float> intensities;
     for (std::size_t i = 0; i < measured.size() * height; ++i) {
-        const double intensity = text_.number("an intensity");
+        const double intensity = next_number("an intensity");
         if (intensity < 0) warn("ldt-negative", "a negative intensity is read as 0");
         intensities.push_back(static_cast<float>(std::max(0.0, intensity) * factor_));
     }
@@ -95,7 +104,49 @@ std::string_view LdtReader::line(const char* what) {
     return *line;
 }
 
-double LdtReader::number_line(const char* what) { return text_.number_of(line(what), what); }
+double LdtReader::number_line(const char* what) { return number_in(line(what), what); }
+
+/// Words may follow the number, such as its unit.
+double LdtReader::number_in(std::string_view text, const char* what) {
+    const std::size_t blank = text.find_first_of(" \t");
+    if (const auto rest = text.find_first_not_of(" \t", std::min(blank, text.size())); rest != text.npos) {
+        if (!is_start_of_number(text[rest])) {
+            warn("ldt-comment", "words after a number are ignored");
+            text = text.substr(0, blank);
+        }
+    }
+    return text_.number_of(text, what);
+}
+
+double LdtReader::optional_line(const char* what, double empty) {
+    const std::string_view text = line(what);
+    if (!text.empty()) return number_in(text, what);
+    warn("ldt-empty", "an empty line in place of a number is read as the usual value");
+    return empty;
+}
+
+/// Words may follow the last number of a line.
+double LdtReader::next_number(const std::string& what) {
+    const std::int64_t line_before = text_.line_number();
+    std::optional<std::string_view> word = text_.word();
+    while (word && text_.line_number() == line_before && !is_start_of_number(word->front())) {
+        warn("ldt-comment", "words after a number are ignored");
+        word = text_.word();
+    }
+    if (!word) text_.refuse(fmt::format("the file ends before {}", what));
+    return text_.number_of(*word, what);
+}
+
+/// The ten direct ratios are not needed. They may be empty, or several on a line.
+void LdtReader::skip_ratios() {
+    for (std::size_t left = 10; left > 0;) {
+        const std::string_view text = line("a direct ratio");
+        std::size_t words = 0;
+        for (std::size_t begin = text.find_first_not_of(" \t"); begin != text.npos; ++words)
+            begin = text.find_first_not_of(" \t", std::min(text.find_first_of(" \t", begin), text.size()));
+        left -= std::clamp<std::size_t>(words, 1, left);
+    }
+}
 
 std::size_t LdtReader::count_line(const char* what, std::size_t least, std::size_t most) {
     const double value = number_line(what);
@@ -111,10 +162,10 @@ void LdtReader::skip_lines(int count) {
 /// Lengths are along C90, widths along C0; width 0 means round.
 void LdtReader::read_opening() {
     constexpr double metres = 1e-3;  // per millimetre
-    const double length = number_line("the length of the luminous area"),
-                 width = number_line("the width of the luminous area");
+    const double length = optional_line("the length of the luminous area", 0),
+                 width = optional_line("the width of the luminous area", 0);
     double height = 0;
-    for (int side = 0; side < 4; ++side) height = std::max(height, number_line("the height of the luminous area"));
+    for (int side = 0; side < 4; ++side) height = std::max(height, optional_line("the height of the luminous area", 0));
     if (length < 0 || width < 0) text_.refuse("the luminous area has a negative size");
     const bool is_round = width == 0 && length > 0;
     const V3f millimetres(static_cast<float>(is_round ? length : width), static_cast<float>(length),
@@ -129,7 +180,7 @@ void LdtReader::read_lamps() {
     const std::size_t sets = count_line("the number of sets of lamps", 1, max_sets);
     if (sets > 1) warn("ldt-lamps", "of several sets of lamps the first is taken");
     for (std::size_t i = 0; i < sets; ++i) {
-        const double lamps = number_line("the number of lamps");
+        const double lamps = optional_line("the number of lamps", 1);
         line("the type of lamp");
         const double lumens = number_line("the flux of the lamps");
         if (!(lumens > 0)) text_.refuse(fmt::format("the flux of the lamps is {} lm; expected more than 0", lumens));
@@ -144,7 +195,7 @@ void LdtReader::read_lamps() {
 std::vector<float> LdtReader::angles(std::size_t count, const char* kind, double most) {
     std::vector<float> result;
     for (std::size_t i = 0; i < count; ++i) {
-        const double angle = text_.number(fmt::format("a {} angle", kind));
+        const double angle = next_number(fmt::format("a {} angle", kind));
         if (angle < 0 || angle > most)
             text_.refuse(fmt::format("a {} angle of {} degrees; expected 0 to {}", kind, angle, most));
         result.push_back(static_cast<float>(angle));
