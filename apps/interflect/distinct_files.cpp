@@ -27,9 +27,10 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
 }
 
 /// Extensions of all files that the command reads or writes, except text. They decide how a file is read.
-constexpr std::array<std::string_view, 27> known_extensions = {
-    ".mgf", ".gltf", ".glb", ".obj", ".mtl", ".ply",  ".stl", ".rad", ".vs3",    ".vf",  ".ies",  ".ldt", ".h5", ".png",
-    ".jpg", ".jpeg", ".exr", ".hdr", ".xml", ".pbrt", ".py",  ".vtu", ".vtkhdf", ".hdf", ".html", ".htm", ".npz"};
+constexpr std::array<std::string_view, 28> known_extensions = {
+    ".mgf",  ".gltf", ".glb", ".obj",    ".mtl", ".ply",  ".stl",  ".rad", ".mat", ".vs3",
+    ".vf",   ".ies",  ".ldt", ".h5",     ".png", ".jpg",  ".jpeg", ".exr", ".hdr", ".xml",
+    ".pbrt", ".py",   ".vtu", ".vtkhdf", ".hdf", ".html", ".htm",  ".npz"};
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 #include "apps/interflect/refused_options.h"
 #include "interflect/base/machine_memory.h"
 #include "interflect/core.h"
+#include "interflect/formats/extension.h"
 #include "interflect/formats/view_files.h"
 #include "interflect/geometry/split.h"
 #include "interflect/prepare.h"
@@ -35,6 +36,9 @@ std::uint64_t patches_in_memory(std::size_t present = 0) { return present + free
 
 void SceneOptions::add_to(CLI::App& app, const std::string& what) {
     app.add_option("SCENE", path, what)->required()->type_name("FILE");
+    app.add_option("MORE", read.further_files,
+                   "More files of a Radiance scene (.rad, .mat), which see the modifiers of earlier ones as in oconv")
+        ->type_name("FILE");
     app.add_option("--curve-divisions", read.curve_divisions, "Flat pieces per quarter circle of curved surfaces")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000));
@@ -110,10 +114,16 @@ void SceneOptions::add_daylight_to(CLI::App& app) {
 
 void SceneOptions::check(const CLI::App& command, bool traces_paths) const {
     refuse_scene_options(command, path, traces_paths);
-    constexpr std::array<std::string_view, 4> of_files = {"--curve-divisions", "--unit", "--up-axis",
+    constexpr std::array<std::string_view, 5> of_files = {"MORE", "--curve-divisions", "--unit", "--up-axis",
                                                           "--outside-files"};
     if (path.string().starts_with("maze:"))
         refuse_options(command, of_files, "it has no effect on a maze, which is made in metres, with z up");
+    for (const std::filesystem::path& file : read.further_files)
+        for (const std::filesystem::path& part : {path, file})
+            if (const std::string extension = lower_case_extension(part); extension != ".rad" && extension != ".mat")
+                throw UsageError("MORE", fmt::format("several files are one scene only if all are Radiance's (.rad, "
+                                                     ".mat), not '{}' and '{}'",
+                                                     path.string(), file.string()));
     check_daylight(command);
 }
 
@@ -261,6 +271,10 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
 
 std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view) {
     std::vector<NamedFile> files = {{"the scene", scene.path}, {"the scene's views", view_list_path(scene.path)}};
+    for (const std::filesystem::path& file : scene.read.further_files) {
+        files.push_back({"a file of the scene", file});
+        files.push_back({"the scene's views", view_list_path(file)});
+    }
     for (const std::filesystem::path& file : view.files) files.push_back({"--view-file", file});
     for (const PlacedLuminaire& placed : scene.luminaires) files.push_back({"--luminaire", placed.file});
     if (scene.daylight.environment) files.push_back({"--environment", scene.daylight.environment->file});

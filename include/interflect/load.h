@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "interflect/core.h"
 #include "interflect/light_sources.h"
@@ -36,6 +37,9 @@ struct ReadOptions {
     std::size_t max_photometric_bytes = 1 << 24;             ///< Size of one photometric file (.ies, .ldt).
     std::uint64_t max_model_bytes = std::uint64_t{1} << 32;  ///< Mesh file, with referenced and unpacked data.
     std::size_t max_json_bytes = 1 << 26;                    ///< Size of the text of a glTF file.
+    /// Radiance files that are read after the scene's file, in any folder. They see the modifiers of earlier files, as
+    /// in `oconv materials.rad room.rad`. Other formats take none.
+    std::vector<std::filesystem::path> further_files{};
     bool outside_files = false;  ///< Whether a glTF, OBJ or Radiance file may refer to files outside its folder.
     std::size_t max_photometric_values = 1'000'000;  ///< In one file; steps of 0.1 by 1 degree give 650,000.
 };

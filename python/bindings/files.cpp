@@ -29,6 +29,7 @@ Axis axis_of(const std::string& name) {
 
 std::shared_ptr<Scene> load(const std::filesystem::path& path, double unit, const std::string& up_axis,
                             int curve_divisions, std::uint64_t max_patches, bool outside_files,
+                            const std::vector<std::filesystem::path>& further_files,
                             const std::vector<PlacedLuminaire>& luminaires, const std::optional<Daylight>& daylight) {
     ReadOptions options;
     options.unit = unit;
@@ -36,6 +37,7 @@ std::shared_ptr<Scene> load(const std::filesystem::path& path, double unit, cons
     options.curve_divisions = curve_divisions;
     options.max_patches = max_patches;
     options.outside_files = outside_files;
+    options.further_files = further_files;
     return long_work(py::none(), 0, [&](const Monitor&) {
         return std::make_shared<Scene>(load_scene(path, options, luminaires, daylight.value_or(Daylight())));
     });
@@ -196,8 +198,8 @@ void bind_files(py::module_& m) {
     bind_added_light(m);
     bind_findings(m);
     m.def("load", &load, py::arg("path"), py::arg("unit"), py::arg("up_axis"), py::arg("curve_divisions"),
-          py::arg("max_patches"), py::arg("outside_files"), py::arg("luminaires"), py::arg("daylight"),
-          Documented("For interflect.load()."));
+          py::arg("max_patches"), py::arg("outside_files"), py::arg("further_files"), py::arg("luminaires"),
+          py::arg("daylight"), Documented("For interflect.load()."));
     m.def(
         "read_radiance_view", &detail::read_radiance_view, py::arg("path"),
         Documented("Reads a view file of Radiance (.vf), with Radiance's defaults; it is named after the file.")

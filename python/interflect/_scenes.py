@@ -13,7 +13,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.
 
 
 def load(path: str | os.PathLike[str], *, unit: float | str = 1.0, up_axis: str = "z", curve_divisions: int = 4,
-         max_patches: int = 50_000_000, outside_files: bool = False,
+         max_patches: int = 50_000_000, outside_files: bool = False, further_files: Sequence[str | os.PathLike[str]] = (),
          luminaires: Sequence[_core.PlacedLuminaire] = (), daylight: _core.Daylight | None = None,
          light_groups: bool | Mapping[str, str] | None = None) -> _core.Scene:
     """Reads a scene: glTF, OBJ, PLY, STL, Radiance or MGF, or `maze:ROOMS[:furniture]`, which is made.
@@ -26,6 +26,7 @@ def load(path: str | os.PathLike[str], *, unit: float | str = 1.0, up_axis: str 
             have its exact area.
         max_patches: Limit of patches.
         outside_files: Whether a file may refer to files outside its folder.
+        further_files: More files of a Radiance scene, which see the modifiers of earlier ones, as with oconv.
         luminaires: Measured light to add.
         daylight: Sun, sky or environment to add.
         light_groups: Groups whose light is kept separate: patterns of names by name of the group, or True for one per
@@ -43,7 +44,8 @@ def load(path: str | os.PathLike[str], *, unit: float | str = 1.0, up_axis: str 
         raise InputError(f"unit: expected one of {', '.join(UNITS)}, or metres, found {unit!r}")
     if not isinstance(path, (str, os.PathLike)):
         raise TypeError(f"expected a scene or the path of one, found {path!r}")
-    scene = _core.load(path, length, up_axis, curve_divisions, max_patches, outside_files, list(luminaires), daylight)
+    scene = _core.load(path, length, up_axis, curve_divisions, max_patches, outside_files, list(further_files),
+                       list(luminaires), daylight)
     for message in scene.warnings:
         warnings.warn(message, Warning, stacklevel=2)
     if light_groups is True:

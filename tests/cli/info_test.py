@@ -5,7 +5,7 @@ import math
 import unittest
 import zlib
 
-from command import BAD_INPUT, ROOT, VIEWS, CommandTest, room, vertices
+from command import BAD_INPUT, ROOT, VIEWS, WRONG_USAGE, CommandTest, room, vertices
 
 
 class Info(CommandTest):
@@ -58,6 +58,23 @@ class Info(CommandTest):
         result = self.interflect("info", "leaf.obj", exit_code=BAD_INPUT)
         self.assertIn("lies outside the scene's folder", result.stderr)
         self.assertIn("--outside-files allows it", result.stderr)
+
+    def test_several_radiance_files_are_one_scene(self):
+        """The second file was an unexpected argument, and the first one alone has no surfaces."""
+        self.write("grey.mat", "void plastic grey\n0\n0\n5 .5 .5 .5 0 0\n")
+        self.write("room/room.rad", "!genbox grey room 4 3 2.5 -i\n")
+        report = self.json("info", "grey.mat", "room/room.rad")
+        self.assertEqual(report["files"], ["grey.mat", "room/room.rad"])
+        self.assertAlmostEqual(report["area"], 59, places=4)
+        self.assertIn("give that file first", self.interflect("info", "room/room.rad", exit_code=BAD_INPUT).stderr)
+        self.write("other.obj", "v 0 0 0\n")
+        message = self.interflect("info", "grey.mat", "other.obj", exit_code=WRONG_USAGE).stderr
+        self.assertIn("only if all are Radiance's", message)
+        for output in ("grey.mat", "room/room.rad"):
+            result = self.interflect("viewfactors", "grey.mat", "room/room.rad", "-o", output, exit_code=WRONG_USAGE)
+            self.assertIn("error: --output", result.stderr)
+        self.interflect("solve", "grey.mat", "room/room.rad", "--sky", "overcast", "--rays", "1k", "-o", "room.h5")
+        self.assertIn("it has no effect", self.interflect("info", "room.h5", "grey.mat", exit_code=WRONG_USAGE).stderr)
 
     def test_refusals_of_outside_files_name_the_option_in_every_format(self):
         self.write("outside.bin", "nothing")

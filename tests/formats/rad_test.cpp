@@ -195,7 +195,7 @@ TEST(Rad, TransmissivityOfGlassIsRadiances) {
 }
 
 TEST(Rad, WhatIsLeftOutIsCounted) {
-    const Scene scene = read(grey + square + "!genbox grey box 1 1 1\n" + "grey source sky 0 0 4 0 0 1 180\n" +
+    const Scene scene = read(grey + square + "!gensurf grey box 1 1 1\n" + "grey source sky 0 0 4 0 0 1 180\n" +
                              "void sphere nothing 0 0 4 0 0 0 1\nvoid BSDF x 6 0 a.xml 0 0 1 . 0 0\n" +
                              "x polygon p 0 0 9 0 0 1  1 0 1  0 1 1\n");
     std::vector<std::string> kinds;
@@ -264,6 +264,137 @@ TEST(Rad, NoCommandIsEverRun) {
         EXPECT_EQ(scene.warnings.entries()[0].kind, "unsupported-command");
         EXPECT_FALSE(fs::exists(target)) << command;
     }
+}
+
+// ---- Several files, generators and luminaires
+
+TEST(Rad, LaterFilesSeeTheModifiersOfEarlierOnes) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder.path() / "rooms");
+    const fs::path materials = folder.write("grey.mat", grey);
+    folder.write("rooms/part.rad", square);
+    const fs::path room = folder.write("rooms/room.rad", square + "!xform -t 0 0 1 part.rad\n");
+    folder.write("rooms/room.views.json", R"({"views": [{"name": "in", "eye": [0, 0, 5], "look_at": [0, 1, 0]}]})");
+    const Scene scene = load_scene(materials, {.further_files = {room}});
+    EXPECT_EQ(scene.patches.size(), 4u);
+    EXPECT_EQ(scene.files.size(), 4u);
+    ASSERT_EQ(scene.views.size(), 1u);
+    EXPECT_EQ(scene.views[0].name, "in");
+    expect_in(message_of([&] { load_scene(room, {.further_files = {materials}}); }), "give that file first");
+    expect_in(message_of([&] { load_scene(materials, {.further_files = {folder.write("a.obj", "")}}); }),
+              "a.obj: several files are read as one scene only if all are Radiance's");
+    expect_in(message_of([&] { load_scene(materials, {.further_files = {folder.path() / "no.rad"}}); }), "no.rad");
+}
+
+/// Areas and volumes of the output of Radiance's own genbox and genprism.
+TEST(Rad, GeneratorsAreBuiltIn) {
+    const auto made = [](const std::string& command) { return read(grey + "!" + command + "\n"); };
+    const Scene box = made("genbox grey box 4 3 2.5");
+    EXPECT_EQ(box.patches.size(), 12u);
+    EXPECT_NEAR(area(box), 59, 1e-5);
+    EXPECT_NEAR(volume(box), 30, 1e-5);
+    EXPECT_EQ(box.objects[box.patches[0].object], "box.1540");
+    EXPECT_TRUE(box.warnings.entries().empty());
+    EXPECT_NEAR(volume(made("genbox grey box 4 3 2.5 -i")), -30, 1e-5);
+    const Scene bevelled = made("genbox grey box 1 2 3 -b .1");
+    EXPECT_EQ(bevelled.patches.size(), 52u);
+    EXPECT_NEAR(area(bevelled), 20.56399, 1e-5);
+    // Less prisms of half a square along the edges, and what they share at the corners.
+    EXPECT_NEAR(volume(bevelled), 6 - 0.005 * 4 * (0.8 + 1.8 + 2.8) - 8 * 5e-3 / 6, 1e-5);
+    const Scene round = made("genbox grey box 1 2 3 -r .1 -n 4");
+    EXPECT_EQ(round.patches.size(), 2u * (6 + 12 * 16 + 8 * 128));
+    const Scene prism = made("genprism grey prism 3 0 0 0 2 3 0 -l 0 0 5");  // clockwise from above
+    EXPECT_EQ(prism.patches.size(), 10u);
+    EXPECT_NEAR(volume(prism), 15, 1e-5);
+    EXPECT_NEAR(volume(made("genprism grey prism 3 0 0 3 0 0 2")), -3, 1e-5);
+    EXPECT_EQ(made("genprism grey prism 4 0 0 1 0 1 1 0 1 -e -c").patches.size(), 6u);
+}
+
+TEST(Rad, GeneratorsAreTransformedByPipes) {
+    const Scene scene =
+        read(grey + "!genbox grey b 1 1 1 | xform -n in -t 1 0 0 | xform -n out -s 2 -a 2 -t 0 0 10 -\n");
+    EXPECT_EQ(scene.patches.size(), 24u);
+    EXPECT_NEAR(area(scene), 2 * 24, 1e-4);
+    EXPECT_EQ(scene.objects[scene.patches.back().object], "out.1.in.b.6457");
+    const TemporaryFolder folder;
+    folder.write("part.rad", square);
+    const Scene piped = load_scene(folder.write("room.rad", grey + "!xform -t 0 0 1 part.rad | xform -s 3\n"));
+    EXPECT_NEAR(area(piped), 9, 1e-5);
+    EXPECT_EQ(V3f(piped.origin).z + piped.vertices[piped.patches[0].vertices[0]].z, 3);
+}
+
+/// 1,000 cd cos(gamma) from a disk, as ies2rad writes it. The light was the peak of the table (5.59) times too weak and
+/// shone by Lambert's law for any table.
+TEST(Rad, LuminairesOfIes2radHaveTheirIntensities) {
+    const TemporaryFolder folder;
+    std::string table = "1\n0 90 19\n";
+    for (int i = 0; i < 19; ++i) table += " " + std::to_string(1000.0 / 179 * std::cos(i * 5 * pi / 180));
+    folder.write("lamp.dat", table);
+    const std::string light =
+        "void brightdata dist 4 flatcorr lamp.dat source.cal src_theta 0 1 31.83098862\n"
+        "dist light lit 0 0 3 1 .5 1\n";
+    folder.write("lamp.rad", light + "lit ring lens 0 0 8 0 0 0 0 0 -1 0 .1\n");
+    const Scene scene = load_scene(
+        folder.write("room.rad", grey + square + "!xform -n a -ry 90 -t 0 0 2 lamp.rad\n!xform -s 2 lamp.rad\n"));
+    EXPECT_EQ(scene.patches.size(), 2u);
+    EXPECT_TRUE(scene.warnings.entries().empty());
+    ASSERT_EQ(scene.luminaires.size(), 2u);
+    EXPECT_EQ(scene.luminaires[0].name, "a.lens");
+    const auto& lamp = std::get<MeasuredLight>(scene.luminaires[0].kind);
+    EXPECT_NEAR(lamp.web->flux() * lamp.factor.x, pi * 1000, 0.002 * pi * 1000);
+    EXPECT_NEAR(lamp.factor.y / lamp.factor.x, 0.5, 1e-6);
+    EXPECT_LT((lamp.direction - V3f(-1, 0, 0)).length(), 1e-6f);
+    EXPECT_LT((V3f(scene.origin) + lamp.position - V3f(0, 0, 2)).length(), 1e-6f);
+    EXPECT_EQ(lamp.web->opening.shape, LuminousOpening::Shape::cylinder);
+    EXPECT_NEAR(lamp.web->opening.size.x, 0.2, 1e-3);
+    const auto& large = std::get<MeasuredLight>(scene.luminaires[1].kind);
+    EXPECT_NEAR(large.web->flux() * large.factor.x, 4 * pi * 1000, 0.002 * 4 * pi * 1000);
+    EXPECT_NEAR(large.web->opening.size.x, 0.4, 2e-3);
+
+    const auto fault = [&](const std::string& text) {
+        return message_of(
+            [&] { load_scene(folder.write("bad.rad", grey + square + text + "lit ring l 0 0 8 0 0 0 0 0 -1 0 1")); });
+    };
+    expect_in(fault("void brightdata dist 4 corr no.dat source.cal src_theta 0 0\ndist light lit 0 0 3 1 1 1\n"),
+              "bad.rad:13: the luminaire's data file 'no.dat'");
+    expect_in(fault("void brightdata dist 4 boxcorr lamp.dat source.cal src_theta 0 1 1\ndist light lit 0 0 3 1 1 1\n"),
+              "boxcorr needs 4 numbers above 0");
+    expect_in(fault("void brightdata dist 4 corr ../x.dat source.cal src_theta 0 0\ndist light lit 0 0 3 1 1 1\n"),
+              "outside_files");
+}
+
+/// The six faces of a box share the intensity by their projected areas, which boxcorr divides out.
+TEST(Rad, BoxesOfIes2radAreOneLight) {
+    const TemporaryFolder folder;
+    folder.write("box.dat", "2\n0 180 3\n0 0 3 0 20 90\n 1 1 1  1 3 1  1 1 1\n");
+    std::string text = grey + square +
+                       "void brightdata dist 9 boxcorr box.dat source.cal src_theta src_phi4 -t 5 0 0\n"
+                       "0 4 1 1.2 .4 .1\ndist light lit 0 0 3 1 1 1\n!genbox lit b 1.2 .4 .1 | xform -t 4.4 -.2 -.05\n";
+    const Scene scene = load_scene(folder.write("room.rad", text));
+    ASSERT_EQ(scene.luminaires.size(), 1u);
+    const auto& lamp = std::get<MeasuredLight>(scene.luminaires[0].kind);
+    EXPECT_LT((lamp.web->opening.size - V3f(1.2f, .4f, .1f)).length(), 1e-5f);
+    EXPECT_LT((V3f(scene.origin) + lamp.position - V3f(5, 0, 0)).length(), 1e-5f);
+    const auto at = [&](double theta, double phi) {
+        const double t = theta * pi / 180, p = phi * pi / 180;
+        const V3f d(static_cast<float>(std::sin(t) * std::cos(p)), static_cast<float>(std::sin(t) * std::sin(p)),
+                    static_cast<float>(-std::cos(t)));
+        return lamp.web->intensity(d) * lamp.factor.x / 179;
+    };
+    EXPECT_NEAR(at(90, 20), 3, 1e-4);
+    EXPECT_NEAR(at(90, 160), 3, 1e-4);
+    EXPECT_NEAR(at(90, 200), 3, 1e-4);
+    EXPECT_NEAR(at(90, 10), 2, 1e-4);
+    EXPECT_NEAR(at(45, 20), 2, 1e-4);
+    EXPECT_NEAR(at(0, 0), 1, 1e-4);
+    EXPECT_NEAR(at(180, 0), 1, 1e-4);
+}
+
+TEST(Rad, OtherPatternsOfLightsAreWarnedOf) {
+    const Scene scene =
+        read("void brightfunc dist 2 1+noise my.cal 0 0\ndist light lit 0 0 3 1 1 1\nlit sphere s 0 0 4 0 0 0 1\n");
+    ASSERT_EQ(scene.warnings.entries().size(), 1u);
+    expect_in(scene.warnings.entries()[0].message, "the power of the light is probably wrong");
 }
 
 TEST(Rad, FilesThatIncludeThemselvesOrLeaveTheFolderAreRefused) {
@@ -346,6 +477,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"UnknownOption", "!xform -q 1 part.rad", ":5: '-q' is no option of xform"},
         BadText{"CutTransform", "!xform -t 1 2", "is cut off"},
         BadText{"BadAngle", "!xform -rx east part.rad", "-rx needs a finite number"},
+        BadText{"BoxOption", "!genbox grey b 1 1 1 -q", ":5: '-q' is no option of genbox"},
+        BadText{"BoxSize", "!genbox grey b 1 0 1", "genbox needs sizes above 0"},
+        BadText{"BoxBevel", "!genbox grey b 1 1 1 -b .6", "at most half of each"},
+        BadText{"CutBox", "!genbox grey b 1 1", "genbox ends where one of three sizes is expected"},
+        BadText{"PrismOfTwo", "!genprism grey p 2 0 0 1 1", "genprism needs 3 to 1024 vertices, not 2"},
+        BadText{"CutPrism", "!genprism grey p 3 0 0 1 1 0", "genprism ends where a coordinate is expected"},
         BadText{"NoScale", "!xform -s 0 part.rad", "-s cannot scale by 0"},
         BadText{"Binary", "\x01", "this is not a text file"}),
     [](const auto& bad) { return bad.param.name; });

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "interflect/base/crc32.h"
 #include "interflect/core.h"
@@ -38,8 +39,9 @@ struct Format {
     Scene (*read)(const fs::path&, const ReadOptions&);
 };
 
-constexpr Format formats[] = {{".mgf", read_mgf}, {".glb", read_gltf}, {".gltf", read_gltf}, {".obj", read_obj},
-                              {".ply", read_ply}, {".rad", read_rad},  {".stl", read_stl},   {".vs3", read_vs3}};
+constexpr Format formats[] = {{".mgf", read_mgf}, {".glb", read_gltf}, {".gltf", read_gltf},
+                              {".obj", read_obj}, {".ply", read_ply},  {".rad", read_rad},
+                              {".mat", read_rad}, {".stl", read_stl},  {".vs3", read_vs3}};
 
 const Format& format_of(const fs::path& path) {
     const std::string extension = lower_case_extension(path);
@@ -50,6 +52,33 @@ const Format& format_of(const fs::path& path) {
     }
     throw InputError(path, 0,
                      fmt::format("no scene format is known by the extension '{}'; known: {}", extension, known));
+}
+
+/// @throws InputError unless all files are Radiance's.
+void require_joinable(const fs::path& first, const std::vector<fs::path>& further) {
+    if (further.empty()) return;
+    const auto require_rad = [](const fs::path& path) {
+        if (format_of(path).read != read_rad)
+            throw InputError(path, 0,
+                             "several files are read as one scene only if all are Radiance's (.rad, .mat): give one "
+                             "file, and join the parts in the program that wrote them");
+    };
+    require_rad(first);
+    for (const fs::path& path : further) {
+        require_regular_file(path);
+        require_rad(path);
+    }
+}
+
+/// Reads the view list of the first file that has one.
+void read_views(Scene& scene, std::vector<fs::path> files) {
+    for (fs::path& file : files) file = view_list_path(file);
+    std::error_code ignored;
+    const auto list =
+        std::find_if(files.begin(), files.end(), [&](const fs::path& f) { return fs::exists(f, ignored); });
+    if (list == files.end()) return;
+    scene.views = read_view_list(*list);
+    scene.files.push_back(list->string());
 }
 
 bool emits(const Scene& scene) {
@@ -137,16 +166,14 @@ Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<con
         return maze;
     }
     require_regular_file(path);
+    require_joinable(path, options.further_files);
     Scene scene = format_of(path).read(path, checked(options));
     warn_of_size(scene);
     add_luminaires(scene, luminaires, options);
     add_daylight(scene, added);
-    const fs::path views = view_list_path(path);
-    std::error_code ignored;
-    if (fs::exists(views, ignored)) {
-        scene.views = read_view_list(views);
-        scene.files.push_back(views.string());
-    }
+    std::vector<fs::path> files = options.further_files;
+    files.insert(files.begin(), path);
+    read_views(scene, std::move(files));
     scene.file_checksums = checksums_of(scene.files);
     if (!emits(scene)) scene.warnings.add("no-light", "nothing in the scene emits light: all pictures will be black");
     return scene;

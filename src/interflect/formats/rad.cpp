@@ -1,6 +1,7 @@
 #include "interflect/formats/rad.h"
 
 #include <string>
+#include <utility>
 
 #include "interflect/formats/checked_options.h"
 #include "interflect/formats/rad_reader.h"
@@ -15,7 +16,12 @@ Scene read_rad(const std::filesystem::path& path, const ReadOptions& options) {
 Scene read_rad_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options) {
     require_text(text, path);
     RadReader reader(path, checked(options));
-    reader.read(std::string(text));
+    reader.read(path, std::string(text));
+    for (const std::filesystem::path& further : options.further_files) {
+        std::string further_text = read_text_file(further);
+        require_text(further_text, further);
+        reader.read(further, std::move(further_text));
+    }
     return scene_of(reader.finish(), options);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "interflect/formats/material_limits.h"
 #include "interflect/scene/limits.h"
@@ -110,7 +111,11 @@ bool RadMaterials::is_modifier(std::string_view type) {
 std::uint32_t RadMaterials::find(std::string_view name, const Location& where) {
     if (name == "void") return none;
     if (const auto entry = index_.find(name); entry != index_.end()) return entry->second;
-    if (!may_miss_) throw std::invalid_argument(fmt::format("modifier '{}' is not defined", name));
+    if (!may_miss_)
+        throw std::invalid_argument(fmt::format(
+            "modifier '{}' is not defined before its use; if another file defines it, give that file first, as "
+            "in 'oconv materials.rad room.rad'",
+            name));
     Modifier missing{{}, where};
     missing.primitive.type = missing_type;
     missing.primitive.name = missing_names_.emplace_back(name);
@@ -140,6 +145,25 @@ void RadMaterials::define(const RadPrimitive& primitive, const Location& where) 
     modifiers_.push_back(std::move(modifier));
 }
 
+std::optional<RadMaterials::PatternedLight> RadMaterials::patterned_light(std::uint32_t modifier) const {
+    if (modifier == none) return std::nullopt;
+    const Modifier& light = modifiers_[modifier];
+    const Type& type = types().at(light.primitive.type);
+    if (type.convert != &RadMaterials::light || light.base == none || light.primitive.numbers.size() < type.numbers)
+        return std::nullopt;
+    const Modifier& pattern = modifiers_[light.base];
+    if (pattern.base != none) return std::nullopt;
+    try {
+        auto known = parse_light_pattern(pattern.primitive);
+        if (!known) return std::nullopt;
+        return PatternedLight{std::move(*known), colour_of(light.primitive) * static_cast<float>(rad_efficacy),
+                              pattern.where};
+    } catch (const std::invalid_argument& fault) {
+        throw pattern.where.error(
+            fmt::format("{} '{}': {}", pattern.primitive.type, pattern.primitive.name, fault.what()));
+    }
+}
+
 std::uint32_t RadMaterials::material(std::uint32_t modifier) {
     // Bases are defined first: the chain ends.
     for (; modifier != none; modifier = modifiers_[modifier].base) {
@@ -151,18 +175,26 @@ std::uint32_t RadMaterials::material(std::uint32_t modifier) {
         }
         if (type.role == Role::material) {
             if (m.material != none) return m.material;
-            for (std::uint32_t i = m.base; i != none; i = modifiers_[i].base) warn_of_pattern(modifiers_[i]);
+            for (std::uint32_t i = m.base; i != none; i = modifiers_[i].base)
+                warn_of_pattern(modifiers_[i], type.convert == &RadMaterials::light);
             return m.material = convert(m, type);
         }
-        warn_of_pattern(m);
+        warn_of_pattern(m, false);
     }
     return none;
 }
 
-void RadMaterials::warn_of_pattern(const Modifier& modifier) {
+void RadMaterials::warn_of_pattern(const Modifier& modifier, bool is_of_light) {
     const std::string_view type = modifier.primitive.type;
     const Role role = types().at(type).role;
-    if (role == Role::pattern)
+    if (role == Role::pattern && is_of_light)
+        warn(
+            "unsupported-modifier",
+            fmt::format("{} of a light is left out, so the power of the light is probably wrong; place the luminaire's "
+                        "photometric file (.ies, .ldt) in its stead",
+                        type),
+            modifier);
+    else if (role == Role::pattern)
         warn("unsupported-modifier", fmt::format("{} is left out, and what it modifies is used as it is", type),
              modifier);
     if (role == Role::mixture)

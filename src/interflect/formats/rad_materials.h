@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -9,6 +10,7 @@
 
 #include "interflect/formats/location.h"
 #include "interflect/formats/model.h"
+#include "interflect/formats/rad_light_pattern.h"
 #include "interflect/formats/rad_statements.h"
 
 namespace interflect::detail {
@@ -37,6 +39,13 @@ class RadMaterials {
 
     /// @return  `none` for "void". @throws std::invalid_argument if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
+    /// Returns the light of `modifier` if a pattern of ies2rad alone modifies it.
+    struct PatternedLight {
+        RadLightPattern pattern;
+        Rgb radiance;    ///< Before the pattern [lm/(m^2 sr)].
+        Location where;  ///< Of the pattern.
+    };
+    std::optional<PatternedLight> patterned_light(std::uint32_t modifier) const;
     /// Returns an index into Model::materials; `none` if invisible. @throws InputError
     std::uint32_t material(std::uint32_t modifier);
 
@@ -65,7 +74,7 @@ class RadMaterials {
     void light(const Modifier& modifier, Material& result);
     void unknown(const Modifier& modifier, Material& result);
     void reflect(const Modifier& modifier, const Rgb& specular, double roughness, Material& result);
-    void warn_of_pattern(const Modifier& modifier);
+    void warn_of_pattern(const Modifier& modifier, bool is_of_light);
     void warn(const std::string& kind, const std::string& message, const Modifier& modifier);
 
     Model& model_;

@@ -61,10 +61,12 @@ RadReader::RadReader(const fs::path& path, const ReadOptions& options)
     object_index_.emplace("", 0);
 }
 
-void RadReader::read(std::string text) {
-    main_ = &sources_.add(model_.file, std::move(text)).first;
-    model_.files.push_back(model_.file.string());
-    read_file({*main_, {{file_to_world(options_), ""}}, ""});
+void RadReader::read(const fs::path& path, std::string text) {
+    const auto& [source, is_new] = sources_.add(path, std::move(text));
+    if (is_new) model_.files.push_back(path.string());
+    main_ = &source;
+    included_.clear();
+    read_file({source, {{file_to_world(options_), ""}}, ""});
 }
 
 void RadReader::read_file(const OpenFile& file) {
@@ -79,6 +81,7 @@ void RadReader::read_file(const OpenFile& file) {
             throw where.error(fault.what());
         }
     }
+    finish_light();
 }
 
 void RadReader::read_statement(RadStatements& statements, RadStatements::Kind kind, const OpenFile& file) {
@@ -98,24 +101,52 @@ void RadReader::read_statement(RadStatements& statements, RadStatements::Kind ki
 }
 
 void RadReader::run(const std::string& command, const OpenFile& file, const Location& where) {
-    const std::optional<RadXform> xform = parse_xform(command);
-    if (!xform) {
-        materials_.allow_missing();
-        const std::string program = command.substr(0, std::min(command.find_first_of(" \t"), options_.max_name_length));
-        model_.warnings.add("unsupported-command",
-                            where.shown(fmt::format("what the command '{}' would make is left out: commands are not "
-                                                    "run, but for xform of files; Radiance's 'xform -e' writes their "
-                                                    "results",
-                                                    program)),
-                            where.text());
-        return;
+    if (const auto pipeline = parse_pipeline(command); pipeline && run_pipeline(*pipeline, file, where)) return;
+    materials_.allow_missing();
+    const std::string program = command.substr(0, std::min(command.find_first_of(" \t"), options_.max_name_length));
+    model_.warnings.add(
+        "unsupported-command",
+        where.shown(fmt::format("what the command '{}' would make is left out: commands are not run, but for xform of "
+                                "files, genbox and genprism; Radiance's 'xform -e' writes their results",
+                                program)),
+        where.text());
+}
+
+/// Reads files with xform, or generates surfaces, and transforms the result. Returns false if that is not possible.
+bool RadReader::run_pipeline(std::span<const std::vector<std::string>> commands, const OpenFile& file,
+                             const Location& where) {
+    const std::optional<GeneratedSurfaces> generated = generate_surfaces(commands.front());
+    std::vector<RadXform> xforms;
+    for (const std::vector<std::string>& words : commands.subspan(generated ? 1 : 0)) {
+        const std::optional<RadXform> xform = parse_xform(words);
+        const bool reads_files = !generated && xforms.empty();
+        if (!xform || xform->files.empty() == reads_files) return false;
+        xforms.push_back(*xform);
+    }
+    // The last command is the outermost.
+    OpenFile inner = file;
+    for (auto xform = xforms.rbegin(); xform != xforms.rend(); ++xform) {
+        inner.copies = copies_of(*xform, inner.copies);
+        if (inner.modifier.empty()) inner.modifier = xform->modifier;
+        inner.is_inverted = inner.is_inverted != xform->inverts;
+    }
+    if (generated) {
+        add_generated(*generated, inner, where);
+        return true;
     }
     if (file.depth >= options_.max_include_depth)
         throw std::invalid_argument(fmt::format("files are nested more than {} deep", options_.max_include_depth));
-    for (const std::string& name : xform->files) {
-        const SourceFile& source = included_file(name, file);
-        read_file({source, copies_of(*xform, file.copies), file.modifier.empty() ? xform->modifier : file.modifier,
-                   file.is_inverted != xform->inverts, &file, file.depth + 1});
+    for (const std::string& name : xforms.front().files)
+        read_file({included_file(name, file), inner.copies, inner.modifier, inner.is_inverted, &file, file.depth + 1});
+    return true;
+}
+
+void RadReader::add_generated(const GeneratedSurfaces& generated, const OpenFile& file, const Location& where) {
+    if (!generated.omission.empty())
+        model_.warnings.add("unsupported-command", generated.omission + " is left out", where.text());
+    for (const GeneratedSurface& surface : generated.surfaces) {
+        if (file.depth > 0) repeated_.add(surface.numbers.size(), static_cast<std::uint64_t>(patches_));
+        add_surface({generated.modifier, surface.type, surface.name, {}, {}, surface.numbers}, file, where);
     }
 }
 
@@ -184,6 +215,11 @@ void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file,
     if (surface.numbers > 0 && primitive.numbers.size() != surface.numbers)
         throw std::invalid_argument(
             fmt::format("a {} needs {} numbers, not {}", primitive.type, surface.numbers, primitive.numbers.size()));
+    if (const auto light = materials_.patterned_light(index)) {
+        // The web needs the exact projected area.
+        constexpr Tessellation fine{.divisions = 32, .keeps_area = true};
+        return add_light(*light, index, primitive, (this->*surface.read)(primitive.numbers, fine), file);
+    }
     const std::uint32_t material = materials_.material(index);
     if (material == none) {
         model_.warnings.add("void-surface", "surface without a material is invisible, and left out", where.text());
@@ -216,6 +252,95 @@ void RadReader::add_mesh(const PolygonMesh& polygons, const RadPrimitive& primit
     model_.meshes.push_back(std::move(mesh));
     for (const Copy& copy : file.copies)
         model_.instances.push_back({index, copy.to_world, object(copy.prefix + std::string(primitive.name))});
+}
+
+/// Joins the surfaces of a box or cylinder for whose size the pattern corrects.
+void RadReader::add_light(const RadMaterials::PatternedLight& light, std::uint32_t modifier,
+                          const RadPrimitive& primitive, PolygonMesh mesh, const OpenFile& file) {
+    const M44d to_luminaire = light.pattern.to_file.inverse();
+    for (V3d& point : mesh.points) point = point * to_luminaire;
+    if (file.is_inverted)
+        for (auto& face : mesh.faces) std::reverse(face.begin(), face.end());
+    const std::vector<double>& sizes = light.pattern.arguments;
+    const auto fits = [&] {
+        if (!open_light_ || open_light_->modifier != modifier || sizes.size() < 3) return false;
+        Imath::Box3d box = open_light_->emitter.bounds();
+        for (const V3d& point : mesh.points) box.extendBy(point);
+        constexpr double tolerance = 1.01;  // ies2rad rounds
+        const V3d size = box.size() * options_.unit,
+                  most(sizes[1], sizes.size() > 3 ? sizes[2] : sizes[1], sizes.back());
+        return size.x <= most.x * tolerance && size.y <= most.y * tolerance && size.z <= most.z * tolerance;
+    };
+    if (!fits()) {
+        finish_light();
+        open_light_ = OpenLight{light, modifier, {}, file.copies, std::string(primitive.name)};
+    }
+    using Shape = LuminousOpening::Shape;
+    RadEmitter& emitter = open_light_->emitter;
+    if (primitive.type == "sphere") emitter.shape = Shape::ellipsoid;
+    if (primitive.type == "ring" || primitive.type == "cylinder") emitter.shape = Shape::cylinder;
+    emitter.surfaces.push_back(std::move(mesh));
+}
+
+/// Adds the lights of all copies.
+void RadReader::finish_light() {
+    if (!open_light_) return;
+    const OpenLight open = *std::exchange(open_light_, std::nullopt);
+    PhotometricWeb web;
+    try {
+        web = make_light_web(open.light.pattern, data_file(open.light), open.emitter);
+    } catch (const std::invalid_argument& fault) {
+        throw open.light.where.error(
+            fmt::format("the luminaire's data file '{}': {}", open.light.pattern.data_file, fault.what()));
+    }
+    if (!(web.flux() > 0)) return;
+    web.name = open.light.pattern.data_file;
+    const V3f size = web.opening.size;
+    std::shared_ptr<const PhotometricWeb> shared;
+    double scale = 0;
+    for (const Copy& copy : open.copies) {
+        const M44d to_world = open.light.pattern.to_file * copy.to_world;
+        const auto direction = [&](const V3d& v) {
+            V3d result;
+            to_world.multDirMatrix(v, result);
+            return V3f(result.normalized());
+        };
+        if (const double next = std::cbrt(std::abs(to_world.determinant())); !shared || next != scale) {
+            scale = next;
+            web.opening.size = size * static_cast<float>(scale);
+            shared = std::make_shared<const PhotometricWeb>(web);
+        }
+        MeasuredLight light;
+        light.web = shared;
+        light.direction = direction({0, 0, -1});
+        light.c0 = direction({1, 0, 0});
+        light.mirrored = to_world.determinant() < 0;
+        light.factor = open.light.radiance * static_cast<float>(scale * scale);
+        Luminaire luminaire{copy.prefix + open.name, object(copy.prefix + open.name), light};
+        if (const std::string fault = luminaire_fault(luminaire); !fault.empty())
+            throw open.light.where.error(fmt::format("luminaire '{}' {}", luminaire.name, fault));
+        model_.lights.push_back({std::move(luminaire), open.emitter.bounds().center() * to_world});
+    }
+}
+
+/// Searches like included_file().
+const RadData& RadReader::data_file(const RadMaterials::PatternedLight& light) {
+    const std::string& name = light.pattern.data_file;
+    std::error_code ignored;
+    const fs::path folder = main_->path.parent_path(), beside_scene = folder / name;
+    const fs::path path = fs::exists(beside_scene, ignored) ? beside_scene : light.where.file->parent_path() / name;
+    const auto [entry, is_new] = data_.try_emplace(path);
+    if (!is_new) return entry->second;
+    if (!options_.outside_files && !is_within(path, folder))
+        throw std::invalid_argument("lies outside the scene's folder, which is not allowed (outside_files)");
+    std::string text;
+    try {
+        text = read_text_file(path);
+    } catch (const InputError& unreadable) {
+        throw std::invalid_argument(unreadable.what());
+    }
+    model_.files.push_back(path.string());
+    return entry->second = parse_rad_data(text, options_.max_photometric_values);
 }
 
 std::uint32_t RadReader::object(const std::string& name) {

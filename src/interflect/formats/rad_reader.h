@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -9,6 +11,7 @@
 
 #include "interflect/formats/curves.h"
 #include "interflect/formats/model.h"
+#include "interflect/formats/rad_generators.h"
 #include "interflect/formats/rad_materials.h"
 #include "interflect/formats/rad_statements.h"
 #include "interflect/formats/rad_xform.h"
@@ -17,11 +20,12 @@
 
 namespace interflect::detail {
 
-/// Reads a file once; array copies become instances.
+/// Reads each file once; array copies become instances.
 class RadReader {
   public:
     RadReader(const std::filesystem::path& path, const ReadOptions& options);
-    void read(std::string text);
+    /// Continues the scene with another file that the user names. It sees the modifiers of earlier files.
+    void read(const std::filesystem::path& path, std::string text);
     Model finish() { return std::move(model_); }
 
   private:
@@ -37,6 +41,14 @@ class RadReader {
         const OpenFile* includer = nullptr;
         int depth = 0;
     };
+    /// Luminaire of ies2rad whose surfaces are being read.
+    struct OpenLight {
+        RadMaterials::PatternedLight light;
+        std::uint32_t modifier = none;
+        RadEmitter emitter;
+        std::vector<Copy> copies;
+        std::string name;
+    };
     using Reader = PolygonMesh (RadReader::*)(const std::vector<double>&, const Tessellation&) const;
     struct Surface {
         std::size_t numbers;  // 0: any
@@ -48,12 +60,18 @@ class RadReader {
     void read_file(const OpenFile& file);
     void read_statement(RadStatements& statements, RadStatements::Kind kind, const OpenFile& file);
     void run(const std::string& command, const OpenFile& file, const Location& where);
+    bool run_pipeline(std::span<const std::vector<std::string>> commands, const OpenFile& file, const Location& where);
+    void add_generated(const GeneratedSurfaces& generated, const OpenFile& file, const Location& where);
     const SourceFile& included_file(const std::string& name, const OpenFile& file);
     void refuse_recursion(const SourceFile& source, const OpenFile& file) const;
     std::vector<Copy> copies_of(const RadXform& xform, const std::vector<Copy>& outer);
     void add_surface(const RadPrimitive& primitive, const OpenFile& file, const Location& where);
     void add_mesh(const PolygonMesh& polygons, const RadPrimitive& primitive, std::uint32_t material,
                   const OpenFile& file, const Location& where);
+    void add_light(const RadMaterials::PatternedLight& light, std::uint32_t modifier, const RadPrimitive& primitive,
+                   PolygonMesh mesh, const OpenFile& file);
+    void finish_light();
+    const RadData& data_file(const RadMaterials::PatternedLight& light);
     std::uint32_t object(const std::string& name);
     void require_room(double faces, std::size_t copies);
 
@@ -68,8 +86,10 @@ class RadReader {
 
     ReadOptions options_;
     SourceFiles sources_;
-    const SourceFile* main_ = nullptr;
+    const SourceFile* main_ = nullptr;  // latest file that the user names
     std::map<std::pair<const SourceFile*, std::string>, const SourceFile*> included_;
+    std::map<std::filesystem::path, RadData> data_;
+    std::optional<OpenLight> open_light_;
     Model model_;
     RadMaterials materials_;
     RepeatedWork repeated_;

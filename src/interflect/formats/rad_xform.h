@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,14 +16,18 @@ struct RadXform {
     std::string modifier;  ///< Overrides the surfaces' own unless empty.
     bool inverts = false;  ///< Swaps front and back.
     TransformSequence transform;
-    std::vector<std::string> files;
+    std::vector<std::string> files;  ///< Empty: standard input.
 
     /// Returns "name.0.2", or "a0.2" without a name; `name` without an array.
     std::string prefix(const std::vector<int>& copy) const;
 };
 
-/// @param command  Without `!`. @return  nullopt for other commands, stdin and shell syntax beyond quotes.
+/// Splits `command` at pipes into commands of words. @param command  Without `!`.
+/// @return  nullopt for an empty command and for shell syntax beyond pipes and quotes.
+std::optional<std::vector<std::vector<std::string>>> parse_pipeline(std::string_view command);
+
+/// @param words  Command and arguments. @return  nullopt for other commands and for arguments in a file (-f).
 /// @throws std::invalid_argument if xform would reject it.
-std::optional<RadXform> parse_xform(std::string_view command);
+std::optional<RadXform> parse_xform(std::span<const std::string> words);
 
 }  // namespace interflect::detail
