@@ -181,7 +181,7 @@ Section parse_section(const std::string& text) {
 
 PlacedLuminaire parse_luminaire(const std::string& text) {
     constexpr const char* expected =
-        "FILE@X,Y,Z[,AX,AY,AZ][,turn=DEGREES][,lumens=LM][,maintenance=FACTOR], such as lamp.ies@2,1.5,2.7";
+        "FILE@X,Y,Z[,AX,AY,AZ][,turn=DEGREES][,lumens=LM][,maintenance=FACTOR][,mount=top], such as lamp.ies@2,1.5,2.7";
     const std::size_t at = text.rfind('@');
     if (at == 0 || at == text.npos) refuse(text, expected);
     PlacedLuminaire placed{.file = text.substr(0, at)};
@@ -209,10 +209,15 @@ PlacedLuminaire parse_luminaire(const std::string& text) {
     };
     while (!rest.empty()) {
         double lumens = 0;
-        if (take_value(",lumens=", lumens))
+        constexpr std::string_view mount = ",mount=top";
+        if (rest.starts_with(mount) && !placed.by_top) {
+            placed.by_top = true;
+            rest.remove_prefix(mount.size());
+        } else if (take_value(",lumens=", lumens)) {
             placed.lumens = lumens;
-        else if (!take_value(",turn=", placed.turn) && !take_value(",maintenance=", placed.maintenance))
+        } else if (!take_value(",turn=", placed.turn) && !take_value(",maintenance=", placed.maintenance)) {
             refuse(text, expected);
+        }
     }
     if (placed.lumens.value_or(0) < 0 || placed.maintenance < 0) refuse(text, "lumens and maintenance of at least 0");
     return placed;

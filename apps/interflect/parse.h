@@ -50,8 +50,8 @@ struct Line {
 Line parse_line(const std::string& text);
 /// "2,1,1.2:0,1,0" -> eye and line of sight.
 Observer parse_observer(const std::string& text);
-/// "lamp.ies@1,2,3" -> file and position. An aim point, `turn`, `lumens` and `maintenance` (PlacedLuminaire) may
-/// follow, such as ",4,5,0,turn=90".
+/// "lamp.ies@1,2,3" -> file and position. An aim point, `turn`, `lumens`, `maintenance` and `mount=top`
+/// (PlacedLuminaire) may follow, such as ",4,5,0,turn=90".
 PlacedLuminaire parse_luminaire(const std::string& text);
 /// "desk=lamps.desk*" -> group "desk" of the sources that match "lamps.desk*".
 LightGroup parse_light_group(const std::string& text);

@@ -19,11 +19,10 @@ std::string text_of(const Finding::Place& place) {
 }
 
 std::string remedy(const Finding& finding) {
-    constexpr std::pair<const char*, const char*> options[] = {{"implausible-size", "--unit"},
-                                                               {"probable-unit", "--unit"},
-                                                               {"probable-up-axis", "--up-axis"},
-                                                               {"maintenance-factor", "maintenance=FACTOR"},
-                                                               {"mixed-photometry", "turn=90"}};
+    constexpr std::pair<const char*, const char*> options[] = {
+        {"implausible-size", "--unit"},    {"probable-unit", "--unit"},
+        {"probable-up-axis", "--up-axis"}, {"maintenance-factor", "maintenance=FACTOR"},
+        {"mixed-photometry", "turn=90"},   {"sunk-luminaire", "mount=top; in MGF: ies FILE -top"}};
     for (const auto& entry : options)
         if (finding.kind == entry.first) return fmt::format("{} ({})", finding.advice, entry.second);
     return finding.advice;

@@ -68,11 +68,13 @@ void SceneOptions::add_to(CLI::App& app, const std::string& what) {
                 throw CLI::ValidationError("--luminaire", e.what());
             }
     };
-    app.add_option_function<std::vector<std::string>>("--luminaire", place,
-                                                      "Place measured light (.ies, .ldt) at X,Y,Z [m], aimed at the "
-                                                      "point AX,AY,AZ (default: straight down, -z), and "
-                                                      "turned about its axis; lumens: of its lamps (may be repeated)")
-        ->type_name("FILE@X,Y,Z[,AX,AY,AZ][,turn=DEGREES][,lumens=LM][,maintenance=FACTOR]")
+    app.add_option_function<std::vector<std::string>>(
+           "--luminaire", place,
+           "Place measured light (.ies, .ldt) at X,Y,Z [m], aimed at the "
+           "point AX,AY,AZ (default: straight down, -z), and "
+           "turned about its axis; lumens: of its lamps; mount=top: by the top of its "
+           "opening, not by the middle (may be repeated)")
+        ->type_name("FILE@X,Y,Z[,AX,AY,AZ][,turn=DEGREES][,lumens=LM][,maintenance=FACTOR][,mount=top]")
         ->allow_extra_args(false);
     add_daylight_to(app);
 }

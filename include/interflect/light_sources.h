@@ -67,6 +67,8 @@ struct LuminousOpening {
     int axis = 2;       ///< Axis of a cylinder, 0 to 2; a cylinder of length 0 is a disk.
 
     bool is_point() const { return size == V3f(0); }
+    /// Distance of the top from the middle [m].
+    float half_height() const { return size.z / 2; }
 };
 
 /// Far-field luminous intensity of a luminaire as a function of direction (IES LM-63, EULUMDAT).

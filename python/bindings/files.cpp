@@ -51,6 +51,7 @@ void bind_added_light(py::module_& m) {
         .field("turn", &PlacedLuminaire::turn, docs::PlacedLuminaire_turn)
         .field("lumens", &PlacedLuminaire::lumens, docs::PlacedLuminaire_lumens)
         .field("maintenance", &PlacedLuminaire::maintenance, docs::PlacedLuminaire_maintenance)
+        .field("by_top", &PlacedLuminaire::by_top, docs::PlacedLuminaire_by_top)
         .finish();
     Fields<Daylight::Sun>(m, "Sun", "The sun of Daylight.")
         .field("azimuth", &Daylight::Sun::azimuth, "Clockwise from north [degrees].")

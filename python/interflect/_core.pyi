@@ -214,8 +214,9 @@ class PlacedLuminaire(_Fields):
     turn: float
     lumens: float | None
     maintenance: float
+    by_top: bool
     def __init__(self, file: _PathArgument = ..., position: _NumbersArgument = ..., aim: _NumbersArgument | None = ...,
-                 turn: float = ..., lumens: float | None = ..., maintenance: float = ...) -> None: ...
+                 turn: float = ..., lumens: float | None = ..., maintenance: float = ..., by_top: bool = ...) -> None: ...
 
 class Sun(_Fields):
     azimuth: float

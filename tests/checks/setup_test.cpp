@@ -136,6 +136,21 @@ bool is_too_wide(Scene room, float length) {
     return testing::Value(kinds(room), testing::Contains("wide-opening"));
 }
 
+/// The middle of a box of 0.2 m lies in the ceiling, its top in the ceiling, or its middle 0.1 m below a wider ceiling.
+TEST(Setup, BoxPlacedInTheCeilingByItsMiddle) {
+    const auto kinds_at = [](float height, float length) {
+        Scene room = two_sided_room(room_size);
+        const auto web = std::make_shared<PhotometricWeb>(*downlight());
+        web->polar = {0, 180};  // to all sides
+        web->opening.size = {length, 0.3f, 0.2f};
+        add_light(room, web, {2, 2.5f, height});
+        return kinds(room);
+    };
+    EXPECT_THAT(kinds_at(3, 0.3f), ElementsAre("sunk-luminaire"));
+    EXPECT_THAT(kinds_at(2.9f, 0.3f), IsEmpty());
+    EXPECT_THAT(kinds_at(3, 5.2f), ElementsAre("wide-opening"));
+}
+
 /// 23% of the longer opening are outside. It was compared with the diagonal of 7.07 m.
 TEST(Setup, OpeningLargerThanTheRoom) {
     EXPECT_FALSE(is_too_wide(two_sided_room(room_size), 3.99f));

@@ -40,11 +40,13 @@ Outcome outcome_of(const Scene& scene, std::span<const Ray> rays, const SightLin
     return result;
 }
 
-bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const SightLines& lines) {
+/// Whether more than a twentieth of a luminaire's light would start behind a wall after a shift.
+bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const SightLines& lines,
+                           const V3f& shift = V3f(0)) {
     constexpr std::size_t step = 4;
     std::size_t outside = 0;
     for (std::size_t i = 0; i < rays.size(); i += step) {
-        const V3f& start = rays[i].origin;
+        const V3f start = rays[i].origin + shift;
         if (!lines.is_clear(middle, start)) outside += lines.is_open(start);
     }
     return 20 * step * outside > rays.size();
@@ -86,6 +88,10 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights
     Finder wide = finder("wide-opening", true,
                          "luminaires have an opening that is larger than the scene or reaches through its walls",
                          "check the unit of the file with their light, that of the scene, and their positions");
+    Finder sunk = finder("sunk-luminaire", true,
+                         "luminaires reach into a ceiling or wall by half of their height, and the light of the hidden "
+                         "half is lost",
+                         "place them by the top of their opening, not by its middle");
     Finder mixed =
         finder("mixed-photometry", false,
                "luminaires of LM-63 and of EULUMDAT are in one scene: lamps usually lie along C0 in LM-63, and "
@@ -110,9 +116,13 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights
         if (!measured) continue;
         const V3f& opening = measured->web->opening.size;
         const float width = std::max({opening.x, opening.y, opening.z});
-        if (width > size ||
-            (width > 0 && shell.is_closed && reaches_through_walls(lights.rays(i), lights.before(i), lines)))
+        if (width > size) {
             add_to(wide);
+        } else if (width > 0 && shell.is_closed && reaches_through_walls(lights.rays(i), lights.before(i), lines)) {
+            constexpr float below_ceiling = 1.05f;  // its upward light starts on the side of the room
+            const V3f shift = below_ceiling * measured->web->opening.half_height() * measured->direction.normalized();
+            add_to(reaches_through_walls(lights.rays(i), lights.before(i), lines, shift) ? wide : sunk);
+        }
         if (!depends_on_planes(*measured->web)) continue;
         (is_eulumdat(*measured->web) ? has_eulumdat : has_lm63) = true;
         if (is_eulumdat(*measured->web)) add_to(mixed);
@@ -120,6 +130,7 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights
     close.append_to(findings);
     outside.append_to(findings);
     wide.append_to(findings);
+    sunk.append_to(findings);
     if (has_eulumdat && has_lm63) mixed.append_to(findings);
     return findings;
 }

@@ -10,7 +10,8 @@
 
 namespace interflect::detail {
 
-/// Finds "close-luminaire", "outside-luminaire", "wide-opening", "mixed-photometry" (docs/formats.md).
+/// Finds "close-luminaire", "outside-luminaire", "wide-opening", "sunk-luminaire", "mixed-photometry"
+/// (docs/formats.md).
 std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights& lights, const SightLines& lines,
                                            const Shell& shell, std::size_t places);
 

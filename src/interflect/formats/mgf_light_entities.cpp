@@ -72,12 +72,19 @@ void MgfReader::luminaire(MgfWords words) {
     MgfColour colour;
     double multiplier = 1;
     constexpr std::size_t option_and_value = 2;
-    for (; words.size() >= option_and_value && (words[0] == "-m" || words[0] == "-c");
-         words = words.subspan(option_and_value)) {
+    bool by_top = false;
+    while (!words.empty()) {
+        if (words[0] == "-top") {
+            by_top = true;
+            words = words.subspan(1);
+            continue;
+        }
+        if (words.size() < option_and_value || (words[0] != "-m" && words[0] != "-c")) break;
         if (words[0] == "-m")
             multiplier = non_negative_argument(words[1]);
         else
             colour = colours_.find(words[1]);
+        words = words.subspan(option_and_value);
     }
     faults_.refuse(colour.fault);
     MeasuredLight light;
@@ -87,7 +94,7 @@ void MgfReader::luminaire(MgfWords words) {
     std::vector<int> copy(sequence.array_sizes().size(), 0);
     const std::string name = std::filesystem::path(file).stem().string();
     do {
-        add_luminaire(light, sequence.matrix(copy) * total_transform(), name);
+        add_luminaire(light, by_top, sequence.matrix(copy) * total_transform(), name);
     } while (next_index(copy, sequence.array_sizes()));
 }
 
@@ -107,7 +114,7 @@ std::shared_ptr<const PhotometricWeb> MgfReader::photometric_web(std::string_vie
     return web;
 }
 
-void MgfReader::add_luminaire(MeasuredLight light, const Imath::M44d& transform, const std::string& name) {
+void MgfReader::add_luminaire(MeasuredLight light, bool by_top, const Imath::M44d& transform, const std::string& name) {
     const auto direction = [&](const V3d& v) {
         V3d result;
         transform.multDirMatrix(v, result);
@@ -115,6 +122,7 @@ void MgfReader::add_luminaire(MeasuredLight light, const Imath::M44d& transform,
     };
     light.position = scene_.position(V3d(0) * transform);
     light.direction = direction({0, 0, -1});
+    if (by_top) light.position += light.web->opening.half_height() * light.direction;
     light.c0 = direction({1, 0, 0});
     light.mirrored = transform.determinant() < 0;
     scene_.add_light({"", objects_.current(), std::move(light)}, name);

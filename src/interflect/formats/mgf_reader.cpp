@@ -15,7 +15,7 @@ const std::unordered_map<std::string_view, MgfReader::Entity>& MgfReader::entiti
     constexpr auto any = static_cast<std::size_t>(-1);
     static const std::unordered_map<std::string_view, Entity> table = {
         {"i", {&MgfReader::include, 1, any, "i file [transform]"}},
-        {"ies", {&MgfReader::luminaire, 1, any, "ies file [-m multiplier] [-c colour] [transform]"}},
+        {"ies", {&MgfReader::luminaire, 1, any, "ies file [-m multiplier] [-c colour] [-top] [transform]"}},
         {"c", {&MgfReader::colour, 0, 3, "c [name [= [template]]]"}},
         {"cxy", {&MgfReader::colour_xy, 2, 2, "cxy x y", Defines::colour}},
         {"cspec", {&MgfReader::colour_spectrum, 4, any, "cspec shortest longest value1 value2 ...", Defines::colour}},

@@ -118,7 +118,7 @@ class MgfReader {
     void perez_sky(MgfWords words);
     std::shared_ptr<const PhotometricWeb> photometric_web(std::string_view name);
     std::shared_ptr<const Texture> environment_image(std::string_view name);
-    void add_luminaire(MeasuredLight light, const Imath::M44d& transform, const std::string& name);
+    void add_luminaire(MeasuredLight light, bool by_top, const Imath::M44d& transform, const std::string& name);
     void add_loop(MgfWords names);
     std::uint32_t usable_material();
     void add_face();
