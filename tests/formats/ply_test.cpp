@@ -147,6 +147,15 @@ TEST(Ply, ValuesBeyondThoseOfTheHeaderAreSkippedIfElementsHaveLines) {
     }
 }
 
+/// An exporter of Blender wrote its comment without the keyword. The file was refused.
+TEST(Ply, UnknownLinesOfTheHeaderAreSkipped) {
+    std::string text = header("ascii") + square + face;
+    text.replace(text.find("comment"), 7, "Created");
+    const Scene scene = read(text);
+    EXPECT_EQ(scene.patches.size(), 2u);
+    EXPECT_EQ(scene.warnings.entries().at(0).kind, "unsupported-entity");
+}
+
 TEST(Ply, FacesOfTwoVerticesAreLeftOut) {
     const Scene scene = read(header("ascii", "4", "2") + square + "7 2 0 1\n" + face);
     EXPECT_EQ(scene.patches.size(), 2u);

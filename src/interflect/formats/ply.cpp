@@ -32,6 +32,9 @@ class PlyReader {
     }
 
     void read() {
+        if (header_.has_unknown_lines)
+            model_.warnings.add("unsupported-entity", "lines of the header that begin with no word of PLY are left out",
+                                model_.file.string());
         has_line_each_ = has_line_for_each_element();
         for (const PlyElement& element : header_.elements) {
             if (element.count > 0 && !values_.may_hold(1, 1)) throw std::invalid_argument(too_short(element));
@@ -70,7 +73,8 @@ class PlyReader {
 
     void end_element() {
         if (has_line_each_ && values_.skip_line())
-            model_.warnings.add("surplus-data", "values beyond those that the header declares for a line are left out",
+            model_.warnings.add("surplus-data",
+                                "values that the header does not declare are left out at the ends of lines",
                                 model_.file.string());
     }
 

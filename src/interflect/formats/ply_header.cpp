@@ -105,7 +105,7 @@ PlyHeader parse_ply_header(std::string_view bytes, std::int64_t& line) {
             header.size = lines.position().offset;
             return header;
         } else if (words[0] != "comment" && words[0] != "obj_info") {
-            throw std::invalid_argument(fmt::format("'{}' is no word of a PLY header", words[0].substr(0, 20)));
+            header.has_unknown_lines = true;
         }
     }
     throw std::invalid_argument("the header has no end");

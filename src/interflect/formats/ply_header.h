@@ -29,7 +29,8 @@ struct PlyElement {
 struct PlyHeader {
     PlyValues::Form form = PlyValues::Form::ascii;
     std::vector<PlyElement> elements;
-    std::size_t size = 0;  ///< [bytes]
+    std::size_t size = 0;            ///< [bytes]
+    bool has_unknown_lines = false;  ///< Lines that begin with no word of PLY, which are skipped.
 };
 
 /// @param line  Set to the last line read. @throws std::invalid_argument
