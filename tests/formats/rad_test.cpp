@@ -206,7 +206,7 @@ TEST(Rad, WhatIsLeftOutIsCounted) {
 }
 
 TEST(Rad, WhatACommandMayHaveDefinedIsGrey) {
-    const Scene scene = read("!gensky 6 21 12\nskyfunc glow sky 0 0 4 1 1 1 0\nsky source dome 0 0 4 0 0 1 180\n" +
+    const Scene scene = read("!mksource env.hdr\nskyfunc glow sky 0 0 4 1 1 1 0\nsky source dome 0 0 4 0 0 1 180\n" +
                              grey + "paint polygon p 0 0 9 0 0 0  1 0 0  0 1 0\n");
     expect_near(scene.materials[scene.patches[0].material].reflectance, Rgb(0.5f));
     EXPECT_EQ(scene.warnings.entries().back().kind, "unsupported-material");
@@ -299,7 +299,7 @@ TEST(Rad, GeneratorsAreBuiltIn) {
     const Scene bevelled = made("genbox grey box 1 2 3 -b .1");
     EXPECT_EQ(bevelled.patches.size(), 52u);
     EXPECT_NEAR(area(bevelled), 20.56399, 1e-5);
-    // Less prisms of half a square along the edges, and what they share at the corners.
+    // The bevels remove prisms of half a square along the edges, and tetrahedra at the corners.
     EXPECT_NEAR(volume(bevelled), 6 - 0.005 * 4 * (0.8 + 1.8 + 2.8) - 8 * 5e-3 / 6, 1e-5);
     const Scene round = made("genbox grey box 1 2 3 -r .1 -n 4");
     EXPECT_EQ(round.patches.size(), 2u * (6 + 12 * 16 + 8 * 128));
@@ -321,6 +321,87 @@ TEST(Rad, GeneratorsAreTransformedByPipes) {
     const Scene piped = load_scene(folder.write("room.rad", grey + "!xform -t 0 0 1 part.rad | xform -s 3\n"));
     EXPECT_NEAR(area(piped), 9, 1e-5);
     EXPECT_EQ(V3f(piped.origin).z + piped.vertices[piped.patches[0].vertices[0]].z, 3);
+}
+
+struct SkyCase {
+    const char* name;
+    const char* command;
+    double sky, sun;   // horizontal illuminance [lx], by Radiance's gensky, oconv and rtrace at 179 lm/W
+    V3f towards_sun;   // by gensky
+    double tolerance;  // relative: gensky writes three digits, and approximates the integral of the intermediate sky
+};
+class RadSky : public testing::TestWithParam<SkyCase> {};
+INSTANTIATE_TEST_SUITE_P(
+    , RadSky,
+    testing::Values(
+        SkyCase{"Clear",
+                "gensky 6 21 14:30 -a 40 -o 98 -m 105 +s",
+                8449.5,
+                55960.9,
+                {-.638999f, -.118263f, .760062f},
+                .006},
+        SkyCase{"NoSun", "gensky -ang 40 30 -s -g .3", 8065.8, 0, V3f(0), .006},
+        SkyCase{"Overcast", "gensky 3 10 +9.5 -a 52 -o -13 -m -15 -c", 8049.3, 0, V3f(0), .006},
+        SkyCase{"Intermediate",
+                "gensky 6 21 14.5 -a 40 -o 98 -m 105 +i",
+                13045,
+                8397.8,
+                {-.638999f, -.118263f, .760062f},
+                .015},
+        SkyCase{"Year",
+                "gensky 9 3 10 -y 2020 -a -33 -o -151 -m -150 +s -t 3",
+                11164.6,
+                46901.8,
+                {.478298f, .581860f, .657776f},
+                .006},
+        SkyCase{"Uniform", "gensky -ang 40 0 -u -B 55.8", 9951.9, 0, V3f(0), .006},
+        SkyCase{
+            "Irradiances", "gensky -ang 50 -20 +s -R 500 -B 80", 14315, 89478, {.219846f, -.604023f, .766044f}, .006},
+        SkyCase{"Turned",
+                "gensky -ang 50 -20 +s -R 500 -B 80 | xform -rz 90",
+                14315,
+                89478,
+                {.604023f, .219846f, .766044f},
+                .006}),
+    [](const auto& sky) { return sky.param.name; });
+
+/// Was left out.
+TEST_P(RadSky, HasTheIlluminanceOfRadiances) {
+    const std::string glow = "skyfunc glow bright 0 0 4 1 1 1 0\n";
+    const Scene scene =
+        read("!" + std::string(GetParam().command) + "\n" + glow +
+             "bright source sky 0 0 4 0 0 1 180\nbright source ground 0 0 4 0 0 -1 180\n" + grey + square);
+    ASSERT_EQ(scene.luminaires.size(), GetParam().sun > 0 ? 2u : 1u);
+    const auto& dome = std::get<SkyDome>(scene.luminaires.back().kind);
+    EXPECT_NEAR(dome.irradiance.x / GetParam().sky, 1, GetParam().tolerance);
+    EXPECT_GT(dome.ground, 0.19f);
+    if (GetParam().sun > 0) {
+        const auto& sun = std::get<DirectionalLight>(scene.luminaires.front().kind);
+        EXPECT_LT((sun.direction + GetParam().towards_sun).length(), 1e-4f);
+        EXPECT_NEAR(sun.irradiance.x * GetParam().towards_sun.z / GetParam().sun, 1, GetParam().tolerance);
+    }
+    const Scene alone = read("!" + std::string(GetParam().command) + "\n" + grey + square);
+    EXPECT_EQ(alone.luminaires.size(), GetParam().sun > 0 ? 1u : 0u);
+}
+
+TEST(Rad, GendaylitWithIrradiancesIsASkyByPerez) {
+    const std::string sky =
+        "!gendaylit -ang 40 30 -W 500 150\nskyfunc glow g 0 0 4 1 1 1 0\ng source s 0 0 4 0 0 1 180\n";
+    const Scene scene = read(sky + grey + square);
+    ASSERT_EQ(scene.luminaires.size(), 2u);
+    const auto& sun = std::get<DirectionalLight>(scene.luminaires[0].kind);
+    const auto& dome = std::get<SkyDome>(scene.luminaires[1].kind);
+    EXPECT_LT((sun.direction - V3f(.383022f, .663414f, -.642788f)).length(), 1e-4f);
+    EXPECT_NEAR((sun.irradiance.x * .642788 + dome.irradiance.x) / 52868, 1, 0.02);  // of gendaylit and rtrace
+    EXPECT_EQ(dome.ground, 0);
+    for (const char* command :
+         {"gendaylit 6 21 12 -G 500 150", "gensky 6 21 12EST", "gensky 6 21 0 +s", "gensky -ang 40 0 -q"})
+        EXPECT_EQ(read("!" + std::string(command) + "\n" + grey + square).warnings.entries().at(0).kind,
+                  "unsupported-command")
+            << command;
+    expect_in(message_of([] { read("!gensky 13 1 12\n" + grey + square); }),
+              "the month: expected a number from 1 to 12");
+    expect_in(message_of([] { read("!gensky 12 1\n" + grey + square); }), "gensky ends where");
 }
 
 /// 1,000 cd cos(gamma) from a disk, as ies2rad writes it. The light was the peak of the table (5.59) times too weak and

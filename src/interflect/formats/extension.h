@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Of ASCII letters.
+/// Converts ASCII letters alone.
 inline std::string lower_case(std::string_view text) {
     std::string result(text);
     for (char& c : result)

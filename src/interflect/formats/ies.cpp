@@ -248,7 +248,7 @@ void IesReader::read_opening(double metres) {
     warn_of_unit({sizes[0], sizes[1], sizes[2]}, metres);
 }
 
-/// Warns of sizes beyond those of luminaires, and of feet for the widths and lengths of metric ceiling grids.
+/// Warns of sizes too large for luminaires, and of feet where width and length fit metric ceiling grids.
 void IesReader::warn_of_unit(const Dimensions& d, double metres) {
     constexpr double largest = 10;  // [m]
     const double longest = std::max({std::abs(d.width), std::abs(d.length), std::abs(d.height)});

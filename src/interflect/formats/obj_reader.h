@@ -54,7 +54,7 @@ class ObjReader {
     std::vector<Use> uses_;  // per position
     const LineReader* lines_ = nullptr;
     Counts preceding_;               // before the current line
-    bool has_all_vertices_ = false;  // those of later lines, too
+    bool has_all_vertices_ = false;  // later lines included
     std::string object_, group_;
     std::uint32_t material_ = 0;
     std::uint32_t mesh_ = none;                                                // current mesh, if used

@@ -34,7 +34,7 @@ class PhotometricText {
     /// Accepts a decimal comma, unless commas are separators.
     double number_of(std::string_view word, const std::string& what);
 
-    std::int64_t line_number() const { return line_; }  ///< Of the latest line or word.
+    std::int64_t line_number() const { return line_; }  ///< Line of the latest word.
     std::string where() const;  ///< As "file:line".
     [[noreturn]] void refuse(const std::string& message) const;
 

@@ -1,5 +1,6 @@
 #include "interflect/formats/rad.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -22,7 +23,10 @@ Scene read_rad_text(std::string_view text, const std::filesystem::path& path, co
         require_text(further_text, further);
         reader.read(further, std::move(further_text));
     }
-    return scene_of(reader.finish(), options);
+    const std::optional<Daylight> daylight = reader.daylight();
+    Scene scene = scene_of(reader.finish(), options);
+    if (daylight) add_daylight(scene, *daylight);
+    return scene;
 }
 
 }  // namespace interflect::detail

@@ -9,12 +9,12 @@
 namespace interflect::detail {
 
 struct GeneratedSurface {
-    std::string_view type;  ///< Of Radiance.
+    std::string_view type;  ///< Radiance type.
     std::string name;
     std::vector<double> numbers;
 };
 
-/// Output of one of Radiance's generators.
+/// Output of a generator.
 struct GeneratedSurfaces {
     std::string modifier;
     std::vector<GeneratedSurface> surfaces;

@@ -115,7 +115,8 @@ double corrected_area(const RadLightPattern& pattern, std::span<const Facet> fac
     return factor * area;
 }
 
-/// Angles of the web [degrees]: those of the table, mirrored at its ends, with steps of at most `step` between them.
+/// Angles of the web [degrees]: the table's coordinates, mirrored at their ends and divided into steps of at most
+/// `step`.
 std::vector<float> angles_of(const std::vector<double>* nodes, double low, double high, double step) {
     std::vector<double> all{low, high};
     if (nodes) {
@@ -175,7 +176,7 @@ Imath::Box3d RadEmitter::bounds() const {
 }
 
 PhotometricWeb make_light_web(const RadLightPattern& pattern, const RadData& data, const RadEmitter& emitter) {
-    // Of a table with fewer dimensions than coordinates, theta is the one that remains.
+    // A table with fewer dimensions than coordinates keeps theta.
     std::vector<Coordinate> coordinates = pattern.coordinates;
     if (data.axes.size() < coordinates.size())
         std::stable_partition(coordinates.begin(), coordinates.end(),

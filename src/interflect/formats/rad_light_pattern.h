@@ -34,7 +34,7 @@ std::optional<RadLightPattern> parse_light_pattern(const RadPrimitive& primitive
 /// Emitting surfaces in the luminaire's frame.
 struct RadEmitter {
     std::vector<PolygonMesh> surfaces;
-    LuminousOpening::Shape shape = LuminousOpening::Shape::box;  ///< Of the opening around them.
+    LuminousOpening::Shape shape = LuminousOpening::Shape::box;  ///< Opening around the surfaces.
 
     Imath::Box3d bounds() const;
 };

@@ -145,6 +145,11 @@ void RadMaterials::define(const RadPrimitive& primitive, const Location& where) 
     modifiers_.push_back(std::move(modifier));
 }
 
+bool RadMaterials::is_modified_by(std::uint32_t modifier, std::string_view name) const {
+    while (modifier != none && modifiers_[modifier].primitive.name != name) modifier = modifiers_[modifier].base;
+    return modifier != none;
+}
+
 std::optional<RadMaterials::PatternedLight> RadMaterials::patterned_light(std::uint32_t modifier) const {
     if (modifier == none) return std::nullopt;
     const Modifier& light = modifiers_[modifier];

@@ -39,11 +39,13 @@ class RadMaterials {
 
     /// @return  `none` for "void". @throws std::invalid_argument if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
+    /// Whether `name` is the modifier, or modifies it.
+    bool is_modified_by(std::uint32_t modifier, std::string_view name) const;
     /// Returns the light of `modifier` if a pattern of ies2rad alone modifies it.
     struct PatternedLight {
         RadLightPattern pattern;
         Rgb radiance;    ///< Before the pattern [lm/(m^2 sr)].
-        Location where;  ///< Of the pattern.
+        Location where;  ///< Place of the pattern.
     };
     std::optional<PatternedLight> patterned_light(std::uint32_t modifier) const;
     /// Returns an index into Model::materials; `none` if invisible. @throws InputError

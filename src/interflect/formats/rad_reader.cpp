@@ -10,8 +10,10 @@
 
 #include "interflect/core.h"
 #include "interflect/formats/file_to_world.h"
+#include "interflect/formats/rad_sky.h"
 #include "interflect/formats/scene_faces.h"
 #include "interflect/formats/text_file.h"
+#include "interflect/scene/web_angles.h"
 
 namespace interflect::detail {
 
@@ -104,23 +106,25 @@ void RadReader::run(const std::string& command, const OpenFile& file, const Loca
     if (const auto pipeline = parse_pipeline(command); pipeline && run_pipeline(*pipeline, file, where)) return;
     materials_.allow_missing();
     const std::string program = command.substr(0, std::min(command.find_first_of(" \t"), options_.max_name_length));
-    model_.warnings.add(
-        "unsupported-command",
-        where.shown(fmt::format("what the command '{}' would make is left out: commands are not run, but for xform of "
-                                "files, genbox and genprism; Radiance's 'xform -e' writes their results",
-                                program)),
-        where.text());
+    model_.warnings.add("unsupported-command",
+                        where.shown(fmt::format(
+                            "the output of the command '{}' is left out: no program is run, and only xform of files, "
+                            "genbox, genprism, gensky and gendaylit -W are built in; Radiance's 'xform -e' writes "
+                            "the output of others",
+                            program)),
+                        where.text());
 }
 
 /// Reads files with xform, or generates surfaces, and transforms the result. Returns false if that is not possible.
 bool RadReader::run_pipeline(std::span<const std::vector<std::string>> commands, const OpenFile& file,
                              const Location& where) {
     const std::optional<GeneratedSurfaces> generated = generate_surfaces(commands.front());
+    const std::optional<Daylight> daylight = parse_sky_command(commands.front());
+    const bool reads_files = !generated && !daylight;
     std::vector<RadXform> xforms;
-    for (const std::vector<std::string>& words : commands.subspan(generated ? 1 : 0)) {
+    for (const std::vector<std::string>& words : commands.subspan(reads_files ? 0 : 1)) {
         const std::optional<RadXform> xform = parse_xform(words);
-        const bool reads_files = !generated && xforms.empty();
-        if (!xform || xform->files.empty() == reads_files) return false;
+        if (!xform || xform->files.empty() == (reads_files && xforms.empty())) return false;
         xforms.push_back(*xform);
     }
     // The last command is the outermost.
@@ -130,6 +134,7 @@ bool RadReader::run_pipeline(std::span<const std::vector<std::string>> commands,
         if (inner.modifier.empty()) inner.modifier = xform->modifier;
         inner.is_inverted = inner.is_inverted != xform->inverts;
     }
+    if (daylight) return add_sky(*daylight, inner.copies.front().to_world, where);
     if (generated) {
         add_generated(*generated, inner, where);
         return true;
@@ -139,6 +144,58 @@ bool RadReader::run_pipeline(std::span<const std::vector<std::string>> commands,
     for (const std::string& name : xforms.front().files)
         read_file({included_file(name, file), inner.copies, inner.modifier, inner.is_inverted, &file, file.depth + 1});
     return true;
+}
+
+/// Defines the modifiers `skyfunc` and `solar` of gensky. Returns false unless z is up.
+bool RadReader::add_sky(const Daylight& daylight, const M44d& to_world, const Location& where) {
+    const auto direction = [&](const V3d& v) {
+        V3d result;
+        to_world.multDirMatrix(v, result);
+        return result.normalized();
+    };
+    constexpr double tolerance = 1e-6;
+    if ((direction({0, 0, 1}) - V3d(0, 0, 1)).length() > tolerance || to_world.determinant() < 0) return false;
+    daylight_ = daylight;
+    const V3d east = direction({1, 0, 0});
+    if (daylight_->sun) daylight_->sun->azimuth -= degrees(std::atan2(east.y, east.x));
+    try {
+        Scene empty;
+        add_daylight(empty, *daylight_);
+    } catch (const InputError& fault) {
+        throw where.error(fault.what());
+    }
+    if (daylight_->cie_sky && daylight_->cie_sky->type == cie_sky_type("intermediate"))
+        model_.warnings.add("approximate-sky", "the intermediate sky of gensky is read as CIE type 7", where.text());
+    materials_.define({"void", "brightfunc", "skyfunc", {}, {"skybr", "skybright.cal"}, {}}, where);
+    materials_.define({"void", "light", "solar", {}, {}, {1, 1, 1}}, where);
+    return true;
+}
+
+/// Returns whether the source shows the sky or the ground of gensky.
+bool RadReader::show_sky(const RadPrimitive& source, std::uint32_t modifier) {
+    if (!daylight_ || !materials_.is_modified_by(modifier, "skyfunc")) return false;
+    if (source.numbers.size() != 4) throw std::invalid_argument("a source needs a direction and an angle");
+    if (source.numbers[3] < half_turn) return false;
+    const bool is_all = source.numbers[3] >= full_turn;
+    shows_sky_ |= is_all || source.numbers[2] > 0;
+    shows_ground_ |= is_all || source.numbers[2] < 0;
+    return true;
+}
+
+std::optional<Daylight> RadReader::daylight() const {
+    std::optional<Daylight> result = daylight_;
+    if (!result) return result;
+    if (!shows_ground_) result->ground_reflectance = 0;
+    if (!shows_sky_) {
+        // The illuminance of a sun by Perez depends on the sky.
+        if (result->perez_sky && !result->sun->illuminance)
+            result->sun->illuminance = perez_daylight(result->perez_sky->direct_normal,
+                                                      result->perez_sky->diffuse_horizontal, result->sun->altitude)
+                                           .sun_illuminance;
+        result->perez_sky.reset();
+        result->cie_sky.reset();
+    }
+    return result;
 }
 
 void RadReader::add_generated(const GeneratedSurfaces& generated, const OpenFile& file, const Location& where) {
@@ -207,6 +264,7 @@ void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file,
     const Surface& surface = surfaces().at(primitive.type);
     const std::string_view modifier = file.modifier.empty() ? primitive.modifier : std::string_view(file.modifier);
     const std::uint32_t index = materials_.find(modifier, where);
+    if (primitive.type == "source" && show_sky(primitive, index)) return;
     if (!surface.read) {
         model_.warnings.add("unsupported-entity", fmt::format("surface of type {} is left out", primitive.type),
                             where.text());

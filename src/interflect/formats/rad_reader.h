@@ -26,6 +26,8 @@ class RadReader {
     RadReader(const std::filesystem::path& path, const ReadOptions& options);
     /// Continues the scene with another file that the user names. It sees the modifiers of earlier files.
     void read(const std::filesystem::path& path, std::string text);
+    /// Daylight of gensky or gendaylit, as far as sources show it.
+    std::optional<Daylight> daylight() const;
     Model finish() { return std::move(model_); }
 
   private:
@@ -61,6 +63,8 @@ class RadReader {
     void read_statement(RadStatements& statements, RadStatements::Kind kind, const OpenFile& file);
     void run(const std::string& command, const OpenFile& file, const Location& where);
     bool run_pipeline(std::span<const std::vector<std::string>> commands, const OpenFile& file, const Location& where);
+    bool add_sky(const Daylight& daylight, const Imath::M44d& to_world, const Location& where);
+    bool show_sky(const RadPrimitive& source, std::uint32_t modifier);
     void add_generated(const GeneratedSurfaces& generated, const OpenFile& file, const Location& where);
     const SourceFile& included_file(const std::string& name, const OpenFile& file);
     void refuse_recursion(const SourceFile& source, const OpenFile& file) const;
@@ -90,6 +94,8 @@ class RadReader {
     std::map<std::pair<const SourceFile*, std::string>, const SourceFile*> included_;
     std::map<std::filesystem::path, RadData> data_;
     std::optional<OpenLight> open_light_;
+    std::optional<Daylight> daylight_;
+    bool shows_sky_ = false, shows_ground_ = false;
     Model model_;
     RadMaterials materials_;
     RepeatedWork repeated_;

@@ -39,7 +39,7 @@ bool is_ascii_stl(std::string_view bytes) {
 }
 
 /// Number of triangles that the header counts. Returns nullopt for a file that is shorter.
-/// A count of 0 stands for all triangles there are: programs that write as they compute leave it so.
+/// A count of 0, which streaming exporters leave, stands for all triangles in the file.
 std::optional<std::size_t> binary_triangles(std::string_view bytes) {
     if (bytes.size() < stl_header + 4) return std::nullopt;
     const std::size_t count = number_of<std::uint32_t>(bytes.substr(stl_header), std::endian::little);
