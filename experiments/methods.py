@@ -12,15 +12,23 @@ METRIC = "relative_mse_smooth"
 
 
 def scenes(config: dict) -> list[dict]:
-    """Returns the scenes with file and view; writes those that are made."""
+    """Returns the scenes with file and view."""
     found = []
     for one in config["scenes"]:
         if "made" in one:
-            scene = AUDIT_SCENES[one["made"]]()
-            path = scene.write(WORK, one["made"], scene.text).relative_to(program.ROOT)
-            one = one | {"scene": str(path), "view": scene.view(), "has_luminaires": True}
+            path = (WORK / f"{one['made']}.mgf").relative_to(program.ROOT)
+            view = AUDIT_SCENES[one["made"]]().view()
+            one = one | {"scene": str(path), "view": view, "has_luminaires": True}
         found.append(one)
     return found
+
+
+def prepare(config: dict) -> None:
+    """Writes the scenes that are made."""
+    for one in config["scenes"]:
+        if "made" in one:
+            scene = AUDIT_SCENES[one["made"]]()
+            scene.write(WORK, one["made"], scene.text)
 
 
 def methods(config: dict, scene: dict) -> list[dict]:

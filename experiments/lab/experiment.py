@@ -31,13 +31,17 @@ COMMITTED = Places(FOLDER / "results", ROOT / "docs/figures")
 
 class Experiment:
     """Its module has `entries(config)`, which returns the tasks, and `draw(config, rows, folder)`, which makes the
-    figures."""
+    figures. `prepare(config)`, if it is there, writes files that the tasks read."""
 
     def __init__(self, name: str, config: Path | None = None, quick: bool = False):
         self.name = name
         self.module: ModuleType = importlib.import_module(name.replace("-", "_"))
         self.config = read_config(config or FOLDER / f"{name}.toml", quick)
         self.entries: list[Entry] = self.module.entries(self.config)
+
+    def prepare(self) -> None:
+        if hasattr(self.module, "prepare"):
+            self.module.prepare(self.config)
 
     def collect(self, store: Store, places: Places) -> None:
         """Writes NAME.csv from the finished tasks, if the experiment has any entries."""

@@ -1,11 +1,13 @@
 """The runs that the experiments' files define, and their order."""
 
+import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "experiments"))
 
 from lab import experiment, work
 from lab.tasks import Entry, Measure, Picture, Reference, Solve, ladder, probe, reference_of
@@ -78,6 +80,25 @@ class Configuration(unittest.TestCase):
         for name in experiment.PAPER + experiment.BEYOND:
             full, quick = (self.rays(experiment.Experiment(name, quick=quick).entries) for quick in (False, True))
             self.assertLessEqual(quick, full / 3, name)
+
+    def test_a_plan_writes_nothing(self):
+        """Python reports each file that is opened. An experiment without a list of runs refuses to make a plan."""
+        watch = (
+            "import runpy, sys\n"
+            "def report(event, arguments):\n"
+            "    if event == 'open' and set(str(arguments[1])) & set('wax+') or event in ('os.mkdir', 'os.rename'):\n"
+            "        print('wrote', arguments[0], file=sys.stderr)\n"
+            "import matplotlib.font_manager, matplotlib.pyplot\n"
+            "sys.argv = sys.argv[1:]\n"
+            "sys.path.insert(0, sys.argv[0].rpartition('/')[0])\n"
+            "sys.addaudithook(report)\n"
+            "runpy.run_path(sys.argv[0], run_name='__main__')\n"
+        )
+        for name, code in (("all", 0), ("pictures", 2), ("acceptance", 2), ("audit", 2)):
+            command = [sys.executable, "-B", "-c", watch, str(ROOT / "experiments/run"), name, "--plan"]
+            result = subprocess.run(command, capture_output=True, text=True, timeout=60)
+            self.assertEqual(result.returncode, code, result.stderr)
+            self.assertNotIn("wrote", result.stderr)
 
     def rays(self, entries: list[Entry]) -> int:
         return sum(solve.rays for solve in work.by_solution(work.with_references(e.task for e in entries)))
