@@ -1,25 +1,17 @@
 #include "apps/interflect/csv_file.h"
 
-#include <fmt/format.h>
-
-#include <stdexcept>
-
 #include "interflect/base/escapes.h"
 
 namespace interflect::command {
 
 using namespace detail;
 
-CsvFile::CsvFile(PendingFile& file, const std::string& header)
-    : file_(file), stream_(file.temporary_path(), std::ios::binary) {
-    add_line(header);
-}
+CsvFile::CsvFile(PendingFile& file, const std::string& header) : file_(file) { add_line(header); }
 
-void CsvFile::add_line(const std::string& line) { stream_ << line << '\n'; }
+void CsvFile::add_line(const std::string& line) { text_.append(line).append("\n"); }
 
 void CsvFile::commit() {
-    stream_.close();
-    if (!stream_) throw std::runtime_error(fmt::format("cannot write '{}'", file_.final_path().string()));
+    file_.write(text_);
     file_.commit();
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <fstream>
 #include <string>
 
 #include "interflect/base/pending_file.h"
@@ -17,10 +16,11 @@ class CsvFile {
 
   private:
     detail::PendingFile& file_;
-    std::ofstream stream_;
+    std::string text_;
 };
 
-/// Returns a field (RFC 4180), escaped(), and quoted if necessary.
+/// Returns a field of text (RFC 4180): escaped(), quoted if necessary, and with a ' where a spreadsheet would
+/// calculate.
 std::string csv_field(const std::string& text);
 
 }  // namespace interflect::command

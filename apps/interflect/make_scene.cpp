@@ -53,8 +53,8 @@ std::vector<PendingFile> write_textures(const Scene& scene, const OutputOptions&
                                         const std::vector<std::string>& names) {
     std::vector<PendingFile> files;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const PendingFile& file = files.emplace_back(output.path.parent_path() / names[i]);
-        write_texture(file.temporary_path(), scene.textures[i]);
+        PendingFile& file = files.emplace_back(output.path.parent_path() / names[i]);
+        file.write_by([&](const fs::path& temporary) { write_texture(temporary, scene.textures[i]); });
         require_replaceable(file, output.force, "texels");
     }
     return files;
@@ -68,8 +68,8 @@ void write(const OutputOptions& output, const std::function<Scene()>& make) {
     PendingFile scene_file(path), view_file(view_list_path(path));
     const Scene scene = make();
     const std::vector<std::string> textures = texture_files(scene, path);
-    write_mgf(scene, scene_file.temporary_path(), textures);
-    write_view_list(scene.views, view_file.temporary_path());
+    scene_file.write_by([&](const fs::path& temporary) { write_mgf(scene, temporary, textures); });
+    view_file.write_by([&](const fs::path& temporary) { write_view_list(scene.views, temporary); });
     require_replaceable(view_file, output.force, "views");
     for (PendingFile& file : write_textures(scene, output, textures)) file.commit();
     scene_file.commit();

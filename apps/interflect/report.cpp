@@ -4,7 +4,6 @@
 
 #include <array>
 #include <chrono>
-#include <fstream>
 #include <memory>
 
 #include "apps/interflect/commands.h"
@@ -143,14 +142,6 @@ ReportContent make_content(const SolvedScene& solved, const RayCaster& ray_caste
     return content;
 }
 
-void write(PendingFile& output, const std::string& page) {
-    std::ofstream file(output.temporary_path(), std::ios::binary);
-    file << page;
-    file.close();
-    if (!file) throw std::runtime_error(fmt::format("cannot write '{}'", output.final_path().string()));
-    output.commit();
-}
-
 /// A signal ends it without output, since half a report is useless.
 void run(const ReportArguments& options) {
     const ThreadLimit threads(options.threads);
@@ -169,7 +160,8 @@ void run(const ReportArguments& options) {
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     warn_of_setup(solved.scene, ray_caster);
     const ReportContent content = make_content(solved, ray_caster, views, options);
-    write(output, report_page(content, solved));
+    output.write(report_page(content, solved));
+    output.commit();
     spdlog::info("{}: {} measuring areas, {} views", options.output.string(), content.areas.size(),
                  content.pictures.size());
 }

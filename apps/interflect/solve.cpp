@@ -34,13 +34,7 @@ void require_solution_name(const std::filesystem::path& path) {
 }
 
 void write(PendingFile& output, const Scene& scene, const Solution& solution) {
-    try {
-        write_solution(output.temporary_path(), scene, solution);
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& e) {
-        throw std::runtime_error(fmt::format("cannot write '{}': {}", output.final_path().string(), e.what()));
-    }
+    output.write_by([&](const std::filesystem::path& path) { write_solution(path, scene, solution); });
     output.commit();
 }
 

@@ -4,10 +4,6 @@
 #include <tbb/info.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <stdexcept>
 
 #include "interflect/exports/records/solve_report.h"
 #include "interflect/geometry/patch_geometry.h"
@@ -53,12 +49,9 @@ StatsFile::StatsFile(int threads, const std::filesystem::path& stats) : threads_
 
 void StatsFile::write(const Scene& scene, const Solution& solution) {
     if (!file_) return;
-    std::ofstream out(file_->temporary_path());
-    out << json_text(header_of(scene, threads_, solution.options, solution.emitted_power)) << '\n';
-    for (const IterationReport& r : solution.iterations) out << json_text(line_of(r, solution.traffic)) << '\n';
-    if (!out.flush())
-        throw std::runtime_error(
-            fmt::format("cannot write '{}': {}", file_->final_path().string(), std::strerror(errno)));
+    std::string text = json_text(header_of(scene, threads_, solution.options, solution.emitted_power)) + '\n';
+    for (const IterationReport& r : solution.iterations) text += json_text(line_of(r, solution.traffic)) + '\n';
+    file_->write(text);
     file_->commit();
 }
 

@@ -69,6 +69,39 @@ TEST(PendingFile, LeavesNothingWhenAbandoned) {
     EXPECT_EQ(entries(folder.path()), 0);
 }
 
+TEST(PendingFile, CreatesItsFileWithoutFollowingALink) {
+    const TemporaryFolder folder;
+    const fs::path victim = folder.write("victim", "old");
+    PendingFile file(folder.path() / "out.csv");
+    const fs::path predicted = file.temporary_path();
+    fs::create_symlink(victim, predicted);
+    file.write_by([&](const fs::path& path) {
+        EXPECT_FALSE(fs::is_symlink(path));
+        write(path, "new");
+    });
+    file.commit();
+    EXPECT_EQ(contents(victim), "old");
+    EXPECT_EQ(contents(folder.path() / "out.csv"), "new");
+}
+
+TEST(PendingFile, NamesTheFinalFileAndTheReason) {
+    const TemporaryFolder folder;
+    PendingFile file(folder.path() / "out.csv");
+    const auto fault_of = [&](const std::string& inner) -> std::string {
+        try {
+            file.write_by([&](const fs::path& path) {
+                throw std::runtime_error(inner.empty() ? "cannot write '" + path.string() + "': No space" : inner);
+            });
+        } catch (const std::runtime_error& e) {
+            return e.what();
+        }
+        return "no error";
+    };
+    const std::string expected = "cannot write '" + (folder.path() / "out.csv").string() + "': ";
+    EXPECT_EQ(fault_of(""), expected + "No space");
+    EXPECT_EQ(fault_of("HDF5: too long"), expected + "HDF5: too long");
+}
+
 TEST(PendingFile, KeepsTheOldFileUntilCommitted) {
     const TemporaryFolder folder;
     const fs::path path = folder.write("out.h5", "old");

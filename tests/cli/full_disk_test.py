@@ -19,7 +19,7 @@ def let_no_file_exceed(size):
 
 
 class FullDisk(CommandTest):
-    def assert_fails(self, name, *arguments):
+    def assert_fails(self, name, *arguments, remaining=("room.mgf",)):
         result = subprocess.run(
             [COMMAND, *arguments],
             cwd=self.folder,
@@ -30,14 +30,40 @@ class FullDisk(CommandTest):
             restore_signals=False,  # including SIGXFSZ
         )
         self.assertEqual(result.returncode, FAILED, result.stderr)
-        self.assertRegex(result.stderr, f"error: cannot write '{name}': (HDF5: .*: )?File too large\n")
-        self.assertEqual(self.files(), ["room.mgf"])
+        self.assertRegex(result.stderr, f"error: cannot write '{name}': (HDF5: .*: |Seek error: )?File too large\n")
+        self.assertEqual(self.files(), list(remaining))
 
     def test_pictures(self):
         self.write("room.mgf", room())
         for kind in ("png", "jpg", "hdr", "exr"):
             path = ("--shading", "path", "--size", "64x36", "--samples", "2")
             self.assert_fails(f"out.{kind}", "render", "room.mgf", "-o", f"out.{kind}", *VIEW, *path)
+
+    def test_other_files(self):
+        """All kinds of output: each is larger than the limit."""
+        self.write("room.mgf", room())
+        factors = ("viewfactors", "room.mgf", "--rays", "10k", "--groups", "facets")
+        for name, *arguments in (
+            ("out.csv", *factors),
+            ("out.npz", *factors),
+            ("out.csv", "probe", "room.mgf", "--shading", "path", "--plane", "0.8", "--samples", "4"),
+            ("out.csv", "probe", "room.mgf", "--shading", "path", "--quantity", "ugr", "--plane", "0.8", "--samples", "4"),
+            ("out.py", "export", "room.mgf"),
+            ("out.mgf", "make-scene", "boxes", "--texture"),
+        ):
+            with self.subTest(name, arguments=arguments):
+                self.assert_fails(name, *arguments, "-o", name)
+
+    def test_files_of_a_solution(self):
+        self.write("room.mgf", room())
+        self.write_solution("room.h5", "room.mgf", *VIEW, "--rays", "20k")
+        for name, *arguments in (
+            ("out.glb", "export", "room.h5", "--shading", "smooth"),
+            ("out.vtkhdf", "export", "room.h5"),
+            ("out.html", "report", "room.h5", "--samples", "2", *SMALL[:2]),
+        ):
+            with self.subTest(name):
+                self.assert_fails(name, *arguments, "-o", name, remaining=["room.h5", "room.mgf"])
 
     def test_solutions(self):
         self.write("room.mgf", room())

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <new>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -118,14 +119,23 @@ void unlist(std::size_t slot) {
 
 }  // namespace
 
+void write_file(const fs::path& path, std::string_view bytes) {
+    errno = 0;
+    std::ofstream file(path, std::ios::binary);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file)
+        throw std::runtime_error("cannot write '" + path.string() +
+                                 "': " + (errno != 0 ? std::strerror(errno) : "it failed"));
+}
+
 PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path)), slot_(slot_count) {
     std::error_code loop;
     const fs::file_status status = fs::status(final_path_, loop);
     if (final_path_.filename().empty() || fs::is_directory(status))
         throw_cannot_write(final_path_, "it names a folder, expected a file name");
-    fs::path folder;
     if (is_standard_output(final_path_)) {
-        folder = fs::temp_directory_path();
+        folder_ = fs::temp_directory_path();
     } else if (loop || !fs::exists(status) || fs::is_regular_file(status)) {
         try {
             replaced_path_ = target_of(final_path_);
@@ -134,30 +144,41 @@ PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path
         } catch (const InputError& e) {
             throw_cannot_write(final_path_, e.what());
         }
-        folder = replaced_path_.has_parent_path() ? replaced_path_.parent_path() : fs::path(".");
-        if (!fs::is_directory(folder)) throw_cannot_write(final_path_, "there is no folder '" + folder.string() + "'");
+        folder_ = replaced_path_.has_parent_path() ? replaced_path_.parent_path() : fs::path(".");
+        if (!fs::is_directory(folder_))
+            throw_cannot_write(final_path_, "there is no folder '" + folder_.string() + "'");
     } else {
         if (::access(final_path_.c_str(), W_OK) != 0) throw_cannot_write(final_path_, std::strerror(errno));
-        folder = fs::temp_directory_path();
+        folder_ = fs::temp_directory_path();
     }
 
-    remove_stale_files(folder);
-    temporary_path_ = folder / temporary_name(final_path_);
-    const int descriptor = ::open(temporary_path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-    if (descriptor < 0) {
+    remove_stale_files(folder_);
+    if (!create()) {
         const std::string reason = std::strerror(errno);
-        temporary_path_.clear();
+        unlist(slot_);
         throw_cannot_write(final_path_, reason);
     }
-    ::close(descriptor);
-    ::unlink(temporary_path_.c_str());
+    ::unlink(temporary_path_.c_str());  // a process that is killed in long work leaves no file
+}
+
+bool PendingFile::create() {
+    unlist(std::exchange(slot_, slot_count));
+    int descriptor = -1;
+    do {
+        temporary_path_ = folder_ / temporary_name(final_path_);
+        descriptor = ::open(temporary_path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    } while (descriptor < 0 && errno == EEXIST);
+    if (descriptor < 0) return false;
     slot_ = list(temporary_path_.c_str());
+    ::close(descriptor);
+    return true;
 }
 
 PendingFile::PendingFile(PendingFile&& other) noexcept
     : final_path_(std::move(other.final_path_)),
       temporary_path_(std::exchange(other.temporary_path_, fs::path())),
       replaced_path_(std::move(other.replaced_path_)),
+      folder_(std::move(other.folder_)),
       slot_(std::exchange(other.slot_, slot_count)) {
     if (slot_ < slot_count) listed_paths[slot_] = temporary_path_.c_str();
 }
@@ -166,6 +187,25 @@ PendingFile::~PendingFile() {
     unlist(slot_);
     std::error_code ignored;
     if (!temporary_path_.empty()) fs::remove(temporary_path_, ignored);
+}
+
+void PendingFile::write(std::string_view bytes) {
+    write_by([bytes](const fs::path& path) { write_file(path, bytes); });
+}
+
+void PendingFile::write_by(const std::function<void(const fs::path&)>& writer) {
+    const std::string fault = "cannot write '" + final_path_.string() + "': ";
+    std::error_code ignored;
+    fs::remove(temporary_path_, ignored);  // of an earlier call
+    if (!create()) throw std::runtime_error(fault + std::strerror(errno));
+    try {
+        writer(temporary_path_);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& e) {
+        const std::string reason = e.what(), same_fault = "cannot write '" + temporary_path_.string() + "': ";
+        throw std::runtime_error(fault + (reason.starts_with(same_fault) ? reason.substr(same_fault.size()) : reason));
+    }
 }
 
 void PendingFile::commit() {

@@ -1,8 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string_view>
 
 namespace interflect::detail {
+
+/// Replaces the content of a file. @throws std::runtime_error with its name and the reason of the system.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// Output file that appears when complete, by renaming a temporary file. Replaces the target of a symbolic link; copies
 /// into devices, pipes and standard output ('-'). A killed process leaves .interflect-HOST-PID-N.part.EXTENSION until
@@ -19,12 +24,21 @@ class PendingFile {
 
     const std::filesystem::path& final_path() const { return final_path_; }
     const std::filesystem::path& temporary_path() const { return temporary_path_; }
+    /// Writes the temporary file. @throws std::runtime_error with the final path and the reason.
+    void write(std::string_view bytes);
+    /// Creates the temporary file, which no other process can have prepared, and calls writer(path).
+    /// @throws std::bad_alloc, and std::runtime_error with the final path and the reason in place of other exceptions.
+    void write_by(const std::function<void(const std::filesystem::path&)>& writer);
     /// @throws std::runtime_error if the file or device cannot be written.
     void commit();
 
   private:
+    /// Creates a temporary file under an unused name. Returns false, and sets errno, if that fails.
+    bool create();
+
     std::filesystem::path final_path_, temporary_path_;
     std::filesystem::path replaced_path_;  // empty for devices, pipes and standard output
+    std::filesystem::path folder_;         // of the temporary file
     std::size_t slot_;                     // in the list of live files
 };
 

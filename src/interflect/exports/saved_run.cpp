@@ -40,7 +40,7 @@ void Solver::save(const std::filesystem::path& path) const {
     PendingFile file(path);
     write_run(*run_, solution(), options(),
               [&](const Scene& scene, const Solution& solution, const StateArchive& state) {
-                  write_solution(file.temporary_path(), scene, solution, &state);
+                  file.write_by([&](const auto& temporary) { write_solution(temporary, scene, solution, &state); });
               });
     file.commit();
 }

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "interflect/base/pending_file.h"
 #include "interflect/core.h"
 #include "interflect/formats/json_text.h"
 #include "interflect/formats/line_reader.h"
@@ -157,9 +157,7 @@ void write_view_list(std::span<const View> views, const fs::path& path) {
     for (const View& v : views)
         lines.push_back(fmt::format(R"(    {{"name": {}, "eye": {}, "look_at": {}, "up": {}, "fov": {}}})",
                                     json(v.name).dump(), vector(v.eye), vector(v.look_at), vector(v.up), v.fov));
-    std::ofstream file(path, std::ios::binary);
-    file << fmt::format("{{\n  \"views\": [\n{}\n  ]\n}}\n", fmt::join(lines, ",\n"));
-    if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+    write_file(path, fmt::format("{{\n  \"views\": [\n{}\n  ]\n}}\n", fmt::join(lines, ",\n")));
 }
 
 View read_radiance_view(const fs::path& path) {

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <ostream>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
+#include "interflect/base/pending_file.h"
 #include "interflect/formats/photometric_planes.h"
 #include "interflect/scene/web_angles.h"
 
@@ -95,9 +96,9 @@ void write_ies(const PhotometricWeb& web, std::ostream& out) {
 }
 
 void write_ies(const PhotometricWeb& web, const std::filesystem::path& path) {
-    std::ofstream file(path, std::ios::binary);
-    write_ies(web, file);
-    if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+    std::ostringstream text;
+    write_ies(web, text);
+    write_file(path, std::move(text).str());
 }
 
 }  // namespace interflect::detail

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <ostream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,6 +13,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "interflect/base/pending_file.h"
 #include "interflect/formats/mgf_colour.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/scene/environment_maps.h"
@@ -300,10 +301,9 @@ void write_mgf(const Scene& scene, std::ostream& out, std::span<const std::strin
 
 void write_mgf(const Scene& scene, const std::filesystem::path& path, std::span<const std::string> textures,
                std::span<const std::string> webs, std::span<const std::string> maps) {
-    std::ofstream file(path, std::ios::binary);
-    if (!file) throw std::runtime_error(path.string() + ": cannot be opened for writing");
-    write_mgf(scene, file, textures, webs, maps);
-    if (!file.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+    std::ostringstream text;
+    write_mgf(scene, text, textures, webs, maps);
+    write_file(path, std::move(text).str());
 }
 
 std::vector<std::shared_ptr<const PhotometricWeb>> photometric_webs(const Scene& scene) {

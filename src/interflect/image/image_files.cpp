@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -39,16 +37,6 @@ std::string read_bytes(const fs::path& path) {
     std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     if (!file.is_open() || file.bad()) throw std::runtime_error("cannot be read");
     return bytes;
-}
-
-void write_bytes(const fs::path& path, const std::string& bytes, const fs::path& name) {
-    errno = 0;
-    std::ofstream file(path, std::ios::binary);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file)
-        throw std::runtime_error(
-            fmt::format("cannot write '{}': {}", name.string(), errno != 0 ? std::strerror(errno) : "it failed"));
 }
 
 std::string encode(ImageFormat format, const Image& image, const ImageMetadata& metadata,
@@ -120,14 +108,14 @@ void write_image(const fs::path& path, const Image& image, const ImageMetadata& 
                  std::span<const ImageLayer> layers) {
     const ImageFormat format = require_image_format(path);
     require_pixels(image);
-    write_bytes(path, encode(format, image, metadata, layers), path);
+    detail::write_file(path, encode(format, image, metadata, layers));
 }
 
 void detail::write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata,
                          std::span<const ImageLayer> layers) {
     const ImageFormat format = require_image_format(file.final_path());
     require_pixels(image);
-    write_bytes(file.temporary_path(), encode(format, image, metadata, layers), file.final_path());
+    file.write(encode(format, image, metadata, layers));
     file.commit();
 }
 

@@ -128,12 +128,10 @@ class NpzFile {
     std::u32string characters_;
 };
 
-}  // namespace
-
-void write_npz(PendingFile& file, const ViewFactors& f) {
+void write_arrays(const std::filesystem::path& path, const ViewFactors& f) {
     const auto groups = static_cast<std::int64_t>(f.size());
     const std::vector<std::int64_t> shape{groups, groups}, rays{f.rays_per_group};
-    NpzFile npz(file.temporary_path());
+    NpzFile npz(path);
     npz.add_names("names", f.names);
     npz.add("areas", f.areas);
     npz.add("shape", shape);
@@ -149,6 +147,12 @@ void write_npz(PendingFile& file, const ViewFactors& f) {
     npz.add("blocked_errors", f.blocked_errors);
     npz.add("rays_per_group", rays);
     npz.commit();
+}
+
+}  // namespace
+
+void write_npz(PendingFile& file, const ViewFactors& factors) {
+    file.write_by([&](const std::filesystem::path& path) { write_arrays(path, factors); });
     file.commit();
 }
 
