@@ -17,6 +17,7 @@ void CsvFile::commit() {
 
 std::string csv_field(const std::string& text) {
     std::string safe = escaped(text);
+    if (safe.find_first_of("=+-@") == 0) safe.insert(0, "'");
     if (safe.find_first_of("\",") == safe.npos) return safe;
     std::string quoted = "\"";
     for (const char c : safe) quoted += c == '"' ? "\"\"" : std::string(1, c);

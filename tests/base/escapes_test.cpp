@@ -12,7 +12,7 @@ namespace {
 
 TEST(Escapes, LeaveValidTextAsItIs) {
     for (const std::string text : {"", "the office.mgf", "wände", "C:\\scenes\\x", "\\", "\\x", "\\x4", "\\xg0",
-                                   "\\xAB", "日本語", "😀", "\u00a0"})
+                                   "\\xAB", "日本語", "😀", "\u00a0", "שלום", "\u200d\u2029\u2065"})
         EXPECT_EQ(escaped(text), text);
 }
 
@@ -26,6 +26,9 @@ TEST(Escapes, ReplaceControlCharactersAndWhatIsNotUtf8) {
         {"\xed\xa0\x80", "\\xed\\xa0\\x80"},           // a surrogate
         {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80"},  // beyond U+10FFFF
         {"\xe6\x97", "\\xe6\\x97"},                    // cut off
+        {"lamp\u202egpj.exe", "lamp\\xe2\\x80\\xaegpj.exe"},  // right-to-left override
+        {"\u061c\u200e\u200f", "\\xd8\\x9c\\xe2\\x80\\x8e\\xe2\\x80\\x8f"},
+        {"\u2066\u2069", "\\xe2\\x81\\xa6\\xe2\\x81\\xa9"},
         {"\\x41", "\\x5cx41"},
         {"\\\\x41", "\\\\x5cx41"}};
     for (const auto& [text, expected] : cases) EXPECT_EQ(escaped(text), expected);

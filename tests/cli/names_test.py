@@ -1,12 +1,13 @@
 """Names of arbitrary bytes: kept in files, escaped in JSON, and without effect on the terminal."""
 
+import csv
 import json
 import os
 import re
 import subprocess
 import unittest
 
-from command import BAD_INPUT, COMMAND, DONE, SMALL, VIEW, VIEWS, WRONG_USAGE, CommandTest, room
+from command import BAD_INPUT, COMMAND, DONE, PAINT, SMALL, VIEW, VIEWS, WRONG_USAGE, CommandTest, room, vertices
 
 LATIN_1, ESCAPED = "büro\x1b[31m.mgf".encode("latin-1"), r"b\xfcro\x1b[31m.mgf"
 COARSE = ("--rays", "10k", "--mesh-size", "none", "--method", "srr")
@@ -63,6 +64,20 @@ class Names(CommandTest):
             with self.subTest(arguments=arguments):
                 message = self.run_bytes(*arguments, exit_code=exit_code).stderr.decode()
                 self.assertRegex(message, r"^error: .*\\x[0-9a-f]{2}")
+
+    def test_change_neither_the_direction_of_text_nor_tables(self):
+        """U+202E reverses the text after it; spreadsheets calculate cells that begin with one of = + - @."""
+        names = ("evil\u202egpj", "=1+2", "+a", "-b", "@c", "'d", "plain")
+        objects = "".join(
+            f"{vertices((0, 0, z), (1, 0, z), (1, 1, z), (0, 1, z))}o {name}\nf v0 v1 v2 v3\no\n"
+            for z, name in enumerate(names)
+        )
+        self.write("names.mgf", PAINT + objects)
+        self.run_bytes("viewfactors", "names.mgf", "-o", "names.csv", "--rays", "10k")
+        found = {row[0] for row in csv.reader((self.folder / "names.csv").read_text().splitlines())}
+        escaped = r"evil\xe2\x80\xaegpj"
+        self.assertEqual(found, {"from", escaped, "'=1+2", "'+a", "'-b", "'@c", "'d", "plain"})
+        self.assertNotIn("\u202e", self.run_bytes("info", "names.mgf").stdout.decode())
 
     def test_can_begin_no_line_of_a_message(self):
         message = self.run_bytes("info", b"no\nerror: fake.mgf", exit_code=BAD_INPUT).stderr.decode()

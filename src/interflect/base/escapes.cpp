@@ -38,7 +38,15 @@ Character first_character(std::string_view text) {
     return {kind->length, code_point};
 }
 
-bool is_control(std::uint32_t code_point) { return code_point < 0x20 || (code_point >= 0x7f && code_point < 0xa0); }
+/// Bidi_Control of Unicode: it would show a name in another order than its bytes.
+bool is_bidirectional_control(std::uint32_t code_point) {
+    return code_point == 0x61c || code_point == 0x200e || code_point == 0x200f ||
+           (code_point >= 0x202a && code_point <= 0x202e) || (code_point >= 0x2066 && code_point <= 0x2069);
+}
+
+bool is_control(std::uint32_t code_point) {
+    return code_point < 0x20 || (code_point >= 0x7f && code_point < 0xa0) || is_bidirectional_control(code_point);
+}
 
 bool is_escape(std::string_view text) {
     return text.size() >= escape_length && text.starts_with("\\x") &&
