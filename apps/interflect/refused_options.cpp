@@ -22,6 +22,13 @@ bool has(Names names, const std::string& name) { return std::find(names.begin(),
 constexpr std::array<std::string_view, 5> solving_groups = {solver_group, limits_group, refinement_group,
                                                             importance_group, experimental_group};
 
+/// Returns the name that the user gave: "--no-mirrors" for the option "--mirrors,!--no-mirrors".
+std::string given_name(const CLI::Option& option) {
+    for (const std::string& negation : option.get_fnames())
+        if (option.results() == CLI::results_t{option.get_flag_value(negation, "")}) return "--" + negation;
+    return option.get_name();
+}
+
 std::vector<std::string_view> options_of_solving(std::initializer_list<std::string_view> others) {
     std::vector<std::string_view> names(solving_groups.begin(), solving_groups.end());
     names.insert(names.end(), others);
@@ -34,7 +41,7 @@ void refuse_options(const CLI::App& command, Names refused, const std::string& r
     for (const CLI::Option* option : command.get_options()) {
         const std::string name = option->get_name();
         const bool is_refused = has(refused, name) || has(refused, option->get_group());
-        if (option->count() > 0 && is_refused && !has(accepted, name)) throw UsageError(name, reason);
+        if (option->count() > 0 && is_refused && !has(accepted, name)) throw UsageError(given_name(*option), reason);
     }
 }
 

@@ -259,7 +259,10 @@ class OptionsWithoutEffect(RenderTest):
                 f"{option}: it has no effect on room.h5, which is solved already: expected a scene",
                 self.refused("--shading", "smooth", option, value),
             )
-        self.assertIn("--contact-cuts", self.refused("--no-contact-cuts"))
+        self.assertIn("--contact-cuts: it has no effect", self.refused("--contact-cuts"))
+        self.assertIn("--no-contact-cuts: it has no effect", self.refused("--no-contact-cuts"))
+        self.assertIn("--mirrors: only --shading", self.refused("--shading", "flat", "--mirrors"))
+        self.assertIn("--no-mirrors: only --shading", self.refused("--shading", "flat", "--no-mirrors"))
         self.assertIn("--rays", self.refused("--shading", "path", "--rays", "5M"))
         self.assertIn("--max-patches", self.refused("--shading", "path", "--max-patches", "1M"))
         for shading in ("path", "gather"):
