@@ -39,6 +39,13 @@ class Faults(CrewTest):
         self.assertIn(f"error: process 1 on {HOST} has not answered", messages)
         self.assertIn(REMEDY, messages)
 
+    def test_a_process_that_stops_before_its_heartbeat_is_reported(self):
+        stopped = ("-x", f"LD_PRELOAD={os.environ['INTERFLECT_STOPPED_START']}")
+        process = self.start_programs(*stopped, "-n", "3", COMMAND, *solve("2M"), "-o", "out.h5")
+        messages = self.end_of(process, [])  # of two processes: mpirun is slow beside their fast clock
+        self.assertIn("error: not all processes have started within a minute: one is stopped", messages)
+        self.assertEqual(self.files(), ["room.mgf"])
+
     def test_a_death_while_drawing_leaves_no_picture(self):
         picture = ("--shading", "path", "--size", "64x48", "--samples", "65536", "-o", "long.exr")
         process = self.start(3, "render", "room.mgf", *VIEW, *picture)

@@ -33,12 +33,18 @@ TEST(Fingerprint, IsTheSameForEqualProcesses) {
 }
 
 TEST(Fingerprint, ShowsAnotherBuild) {
-    EXPECT_THAT(differences({{1, 7}, {1, 7}, {2, 7}}), Each(AllOf(HasSubstr("process 2"), HasSubstr("another build"))));
+    EXPECT_THAT(differences({{1, 7, 5}, {1, 7, 5}, {2, 7, 5}}),
+                Each(AllOf(HasSubstr("process 2"), HasSubstr("another build"))));
 }
 
 TEST(Fingerprint, ShowsAnotherProcessor) {
-    EXPECT_THAT(differences({{1, 7}, {1, 8}, {1, 7}}),
+    EXPECT_THAT(differences({{1, 7, 5}, {1, 8, 5}, {1, 7, 5}}),
                 Each(AllOf(HasSubstr("process 1"), HasSubstr("other instructions"))));
+}
+
+TEST(Fingerprint, ShowsOtherArguments) {
+    EXPECT_THAT(differences({{1, 7, 5}, {1, 7, 5}, {1, 7, 6}}),
+                Each(AllOf(HasSubstr("process 2"), HasSubstr("other arguments"), HasSubstr("mpirun -n 3"))));
 }
 
 }  // namespace

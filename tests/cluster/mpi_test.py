@@ -79,6 +79,14 @@ class Mpi(CrewTest):
         self.assertEqual(messages.count("error: process 2 runs another build"), 1, messages)
         self.assertFalse((self.folder / "out.h5").exists())
 
+    def test_other_arguments_are_refused(self):
+        process = self.start_programs("-n", "1", COMMAND, *solve("500k"), "-o", "out.h5", ":", "-n", "1", COMMAND,
+                                      *solve("600k"), "-o", "out.h5")
+        _, messages = process.communicate()
+        self.assertEqual(process.returncode, FAILED)
+        self.assertEqual(messages.count("error: process 1 has other arguments than process 0"), 1, messages)
+        self.assertFalse((self.folder / "out.h5").exists())
+
     def test_processes_without_connection_are_refused(self):
         """As srun starts them without support of MPI."""
         for variables in ({"SLURM_STEP_NUM_TASKS": "2"}, {"PMI_SIZE": "2"}, {"PMIX_RANK": "1"}):

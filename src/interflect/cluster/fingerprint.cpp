@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -27,7 +28,9 @@ Fingerprint Fingerprint::of_this_process() {
     const std::size_t flags = processor.find("flags");
     const std::string instructions =
         flags == std::string::npos ? "" : processor.substr(flags, processor.find('\n', flags) - flags);
-    return {crc32(program), crc32(instructions)};
+    const std::string command_line = content_of("/proc/self/cmdline");  // each argument ends in a zero
+    const std::string arguments = command_line.substr(std::min(command_line.find('\0'), command_line.size()));
+    return {crc32(program), crc32(instructions), crc32(arguments)};
 }
 
 std::string difference_among(Ranks& ranks, const Fingerprint& own) {
@@ -41,6 +44,11 @@ std::string difference_among(Ranks& ranks, const Fingerprint& own) {
                 "process {} has a processor with other instructions than process 0, so results would differ: use "
                 "machines of one type",
                 r);
+        if (all[r].arguments != all[0].arguments)
+            return fmt::format(
+                "process {} has other arguments than process 0: start all processes with one command line, as in "
+                "`mpirun -n {} interflect solve ...`",
+                r, all.size());
     }
     return {};
 }

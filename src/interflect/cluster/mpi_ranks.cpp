@@ -210,12 +210,11 @@ std::shared_ptr<Ranks> join_ranks(const FaultReport& report) {
     const std::optional<int> launched = launched_processes();
     if (!launched) return nullptr;
     const int rank = launched_rank().value_or(0);  // before MPI_Init_thread(), which sets such variables itself
+    // Before the heartbeat, only this limit detects a stopped process.
+    const TimeLimit limit =
+        common_limit(rank, start_limit, report, "not all processes have started within a minute: one is stopped");
     int provided = 0;
-    {
-        const TimeLimit limit =
-            common_limit(rank, start_limit, report, "not all processes have started within a minute: one is stopped");
-        MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided);
-    }
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_MULTIPLE, &provided);
     const auto ranks = std::make_shared<MpiRanks>(report);
     if (std::max(*launched, rank + 1) > ranks->count())
         throw std::runtime_error(fmt::format(
