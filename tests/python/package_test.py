@@ -23,8 +23,13 @@ class FromTheReadme(unittest.TestCase):
         cls.addClassCleanup(folder.cleanup)
         cls.folder = Path(folder.name)
         cls.commands = re.findall(r"^    \$ ([^#\n]*)", section(), re.MULTILINE)
-        # Debian's Python first; the module is packed from this build; PYTHONPATH would hide a faulty installation.
-        cls.environment = {**os.environ, "PATH": f"/usr/bin:/bin:{os.environ['PATH']}"}
+        # Another Python comes first, which the commands must not use; the module is packed from this build; PYTHONPATH would hide a
+        # faulty installation.
+        other = cls.folder / "bin/python3"
+        other.parent.mkdir()
+        other.write_text("#!/bin/sh\necho 'not the Python of Debian' >&2\nexit 1\n")
+        other.chmod(0o755)
+        cls.environment = {**os.environ, "PATH": f"{other.parent}:/usr/bin:/bin:{os.environ['PATH']}"}
         del cls.environment["PYTHONPATH"]
         for command in cls.commands:
             command = command.strip().replace(".venv", str(cls.folder / "venv"))
