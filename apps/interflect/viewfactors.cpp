@@ -69,10 +69,10 @@ std::vector<FaceGroup> groups_of(const Scene& scene, const ViewFactorArguments& 
         return pattern_groups(scene, patterns, arguments.sides);
     }
     if (arguments.grouping == Grouping::facets) return facet_groups(scene, arguments.sides);
-    std::vector<FaceGroup> groups;
-    if (arguments.grouping != Grouping::materials) groups = object_groups(scene, arguments.sides);
-    if (arguments.grouping == Grouping::materials || (!arguments.grouping && groups.empty()))
-        groups = material_groups(scene, arguments.sides);
+    const auto group = !arguments.grouping                          ? named_groups
+                       : *arguments.grouping == Grouping::materials ? material_groups
+                                                                    : object_groups;
+    std::vector<FaceGroup> groups = group(scene, arguments.sides);
     if (groups.empty())
         throw InputError(scene.name, 0, "its faces have no names to group them by; --groups facets needs none");
     return groups;

@@ -40,6 +40,9 @@ std::vector<FaceGroup> object_groups(const Scene& scene, FaceSides sides = FaceS
 /// One group per named material that has patches, in the order of Scene::materials.
 std::vector<FaceGroup> material_groups(const Scene& scene, FaceSides sides = FaceSides::both);
 
+/// object_groups(), or material_groups() if no object with patches has a name.
+std::vector<FaceGroup> named_groups(const Scene& scene, FaceSides sides = FaceSides::both);
+
 /// A group by the names of its objects or materials.
 struct FacePattern {
     std::string name;

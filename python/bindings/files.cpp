@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "argument.h"
 #include "bindings.h"
 #include "fields.h"
 #include "interflect/checks/up_axis.h"
@@ -38,7 +39,7 @@ std::shared_ptr<Scene> load(const std::filesystem::path& path, double unit, cons
     options.max_patches = max_patches;
     options.outside_files = outside_files;
     options.further_files = further_files;
-    return long_work(py::none(), 0, [&](const Monitor&) {
+    return pure_work(0, [&] {
         return std::make_shared<Scene>(load_scene(path, options, luminaires, daylight.value_or(Daylight())));
     });
 }
@@ -107,7 +108,7 @@ void bind_findings(py::module_& m) {
     m.def(
         "validate",
         [](const std::shared_ptr<Scene>& scene) {
-            return long_work(py::none(), 0, [&](const Monitor&) { return validate(*scene, RayCaster(*scene)); });
+            return pure_work(0, [&] { return validate(*scene, RayCaster(*scene)); });
         },
         py::arg("scene"),
         Documented(docs::validate, {{"scene", "Scene as read by load(), before cut_at_contacts()."}})
@@ -119,11 +120,7 @@ void bind_findings(py::module_& m) {
 template <class Value>
 void take(py::dict& left, const char* name, Value& value) {
     if (!left.contains(name)) return;
-    try {
-        value = py::cast<Value>(left[name]);
-    } catch (const py::cast_error&) {
-        throw py::type_error(std::string(name) + ": cannot take " + std::string(py::repr(left[name])));
-    }
+    value = argument<Value>(left[name], name);
     PyDict_DelItemString(left.ptr(), name);
 }
 
@@ -181,8 +178,7 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
         options.lightmap = texels;
     }
     for (const auto& [name, value] : left)
-        throw py::type_error("export: there is no option '" + py::cast<std::string>(name) + "'" +
-                             (lightmap ? "" : " without lightmap=True"));
+        throw py::type_error("export: there is no option " + found(name) + (lightmap ? "" : " without lightmap=True"));
     options.bake.shading = find_shading(shading, lightmap ? &DefaultSamples::texel : &DefaultSamples::vertex);
     options.bake.samples = samples_of(samples);
     auto files = long_work(progress, threads, [&](const Monitor& monitor) {
@@ -219,7 +215,7 @@ void bind_files(py::module_& m) {
         "cut_at_contacts",
         [](const std::shared_ptr<Scene>& scene, const std::optional<float>& min_extent) {
             if (min_extent && !(*min_extent >= 0)) throw InputError("min_extent: expected 0 m or more");
-            return long_work(py::none(), 0, [&](const Monitor&) {
+            return pure_work(0, [&] {
                 const float usual = static_cast<float>(2 * detail::default_element_size(*scene));
                 return std::make_shared<Scene>(cut_at_contacts(*scene, {.min_extent = min_extent.value_or(usual)}));
             });

@@ -1,5 +1,24 @@
 #include "bindings.h"
 
+namespace interflect::python {
+
+namespace {
+
+/// Refuses pickle for classes without __reduce__. pybind11 would end the process for its oldest two protocols.
+void refuse_pickle(const py::module_& module) {
+    for (const auto& [name, value] : module.attr("__dict__").cast<py::dict>()) {
+        if (!py::isinstance<py::type>(value) || value.attr("__dict__").contains("__reduce__")) continue;
+        const auto refuse = [name = py::cast<std::string>(name)](const py::object&) -> py::object {
+            throw py::type_error("cannot pickle an object of interflect." + name + " (for a copy or another process)");
+        };
+        py::setattr(value, "__reduce__", py::cpp_function(refuse, py::name("__reduce__"), py::is_method(value)));
+    }
+}
+
+}  // namespace
+
+}  // namespace interflect::python
+
 PYBIND11_MODULE(_core, module) {
     using namespace interflect::python;
     module.doc() = "The C++ library. Import interflect, which has the same names and more convenient arguments.";
@@ -17,4 +36,5 @@ PYBIND11_MODULE(_core, module) {
     bind_measurements(module);
     bind_pictures(module);
     bind_view_factors(module);
+    refuse_pickle(module);
 }

@@ -22,19 +22,18 @@ struct Place {
     std::shared_ptr<const Solution> solution;
 };
 
-Place place_of(const py::object& lit) {
+Place place_of(const py::object& lit, int threads) {
     if (py::isinstance<Light>(lit)) {
         const auto light = py::cast<SharedLight>(lit);
         return {light->scene, light->ray_caster, light->solution};
     }
     const auto scene = py::cast<std::shared_ptr<Scene>>(lit);
-    const py::gil_scoped_release released;
-    return {scene, std::make_shared<const RayCaster>(*scene), nullptr};
+    return {scene, pure_work(threads, [&] { return std::make_shared<const RayCaster>(*scene); }), nullptr};
 }
 
 SharedRendering draw(const py::object& lit, const py::object& view, const PictureOptions& options, int threads,
                      const py::object& progress) {
-    const Place place = place_of(lit);
+    const Place place = place_of(lit, threads);
     const View camera = view_of(*place.scene, view);
     return long_work(progress, threads, [&](const Monitor& monitor) {
         return std::make_shared<Rendering>(
@@ -305,7 +304,7 @@ void bind_pictures(py::module_& m) {
         "compare",
         [](const Floats& image, const Floats& reference, bool scale, double field_of_view, bool tone_mapped) {
             const Image a = image_of(image, "image"), b = image_of(reference, "reference");
-            return long_work(py::none(), 0, [&](const Monitor&) {
+            return pure_work(0, [&] {
                 return std::make_shared<detail::ImageDifference>(
                     detail::compare(a, b, {scale, field_of_view, tone_mapped}));
             });

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "argument.h"
 #include "bindings.h"
 #include "fields.h"
 #include "interflect/scene/view.h"
@@ -45,10 +46,9 @@ std::string describe(const Scene& s) {
 
 View view_of(const Scene& scene, const py::object& view) {
     if (py::isinstance<View>(view)) return py::cast<View>(view);
-    if (py::isinstance<py::str>(view)) return detail::find_view(scene, py::cast<std::string>(view));
+    if (py::isinstance<py::str>(view)) return detail::find_view(scene, argument<std::string>(view, "view"));
     if (!view.is_none())
-        throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " +
-                             std::string(py::repr(view)));
+        throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " + found(view));
     return scene.views.empty() ? detail::overview(scene) : scene.views.front();
 }
 

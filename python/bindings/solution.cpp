@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 
+#include "argument.h"
 #include "bindings.h"
 #include "interflect/base/pending_file.h"
 #include "long_work.h"
@@ -87,8 +88,8 @@ py::list iterations_of(const Light& light) {
 SharedLight dimmed_light(const Light& light, const py::object& group, const std::optional<float>& factor) {
     if (py::isinstance<py::dict>(group) == factor.has_value())
         throw py::type_error("dim: expected the name of a group and a factor, or a dict of factors by name");
-    const auto factors = factor ? std::map<std::string, float>{{py::cast<std::string>(group), *factor}}
-                                : py::cast<std::map<std::string, float>>(group);
+    const auto factors = factor ? std::map<std::string, float>{{argument<std::string>(group, "group"), *factor}}
+                                : argument<std::map<std::string, float>>(group, "dim");
     auto scene = std::make_shared<Scene>(*light.scene);
     auto solution = std::make_shared<Solution>(*light.solution);
     for (const auto& [name, scale] : factors) dim(*scene, *solution, name, scale);
@@ -98,14 +99,14 @@ SharedLight dimmed_light(const Light& light, const py::object& group, const std:
 void save(const Light& light, const std::filesystem::path& path) {
     long_work(py::none(), 0, [&](const Monitor&) {
         detail::PendingFile file(path);
-        write_solution(file.temporary_path(), *light.scene, *light.solution);
+        file.write_by([&](const auto& temporary) { write_solution(temporary, *light.scene, *light.solution); });
         file.commit();
         return true;
     });
 }
 
 SharedLight open_light(const std::filesystem::path& path) {
-    return long_work(py::none(), 0, [&](const Monitor&) {
+    return pure_work(0, [&] {
         SolvedScene solved = read_solution(path);
         auto scene = std::make_shared<const Scene>(std::move(solved.scene));
         auto ray_caster = std::make_shared<const RayCaster>(*scene);

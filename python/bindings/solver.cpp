@@ -116,7 +116,7 @@ std::unique_ptr<PythonSolver> make_solver(const std::shared_ptr<Scene>& scene, c
                                           const std::optional<float>& mesh_size, const py::dict& settings) {
     const SolveOptions options = solve_options(*scene, method, views, settings);
     require_no_faults(scene_faults(*scene), "cannot solve", *scene);
-    return long_work(py::none(), threads, [&](const Monitor&) {
+    return pure_work(threads, [&] {
         const auto ready =
             std::make_shared<const Scene>(prepared(*scene, contact_cuts, mesh_size, options.method.refines));
         const auto ray_caster = std::make_shared<const RayCaster>(*ready);
@@ -139,8 +139,7 @@ void save_run(PythonSolver& self, const std::filesystem::path& path) {
 }
 
 std::unique_ptr<PythonSolver> open_run(const std::filesystem::path& path, int threads) {
-    return long_work(py::none(), threads,
-                     [&](const Monitor&) { return std::make_unique<PythonSolver>(Solver::open(path), threads); });
+    return pure_work(threads, [&] { return std::make_unique<PythonSolver>(Solver::open(path), threads); });
 }
 
 }  // namespace

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 
+#include "argument.h"
 #include "bindings.h"
 #include "documented.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/view_factors/write_npz.h"
 #include "long_work.h"
+#include "settings.h"
 
 namespace interflect::python {
 
@@ -36,7 +38,7 @@ std::vector<std::uint32_t> patches_of(const py::handle& value, const std::string
     const py::array chosen = kind == 'b' ? py::array(array.attr("nonzero")().cast<py::tuple>()[0]) : array;
     std::vector<std::uint32_t> result;
     for (const py::handle& index : chosen) {
-        const auto i = py::cast<std::int64_t>(index);
+        const auto i = argument<std::int64_t>(index, "groups", "indices of faces");
         if (i < 0 || i >= static_cast<std::int64_t>(patches))
             throw InputError(fmt::format("groups: '{}': there is no face {}; there are {}", name, i, patches))
                 .set_object(name);
@@ -45,10 +47,11 @@ std::vector<std::uint32_t> patches_of(const py::handle& value, const std::string
     return result;
 }
 
-/// @param groups  "objects", "materials", "facets", or a dict of patterns or of indices by name.
+/// @param groups  None, "objects", "materials", "facets", or a dict by name: patterns or indices.
 std::vector<FaceGroup> groups_of(const Scene& scene, const py::object& groups, FaceSides sides) {
+    if (groups.is_none()) return named_groups(scene, sides);
     if (py::isinstance<py::str>(groups)) {
-        const auto kind = py::cast<std::string>(groups);
+        const auto kind = argument<std::string>(groups, "groups", "a str");
         if (kind == "objects") return object_groups(scene, sides);
         if (kind == "materials") return material_groups(scene, sides);
         if (kind == "facets") return facet_groups(scene, sides);
@@ -56,13 +59,13 @@ std::vector<FaceGroup> groups_of(const Scene& scene, const py::object& groups, F
     if (!py::isinstance<py::dict>(groups))
         throw InputError(fmt::format(
             "groups: expected 'objects', 'materials', 'facets', or a dict of patterns or faces by name, found {}",
-            std::string(py::repr(groups))));
+            found(groups)));
     std::vector<FaceGroup> result;
     std::vector<FacePattern> patterns;
     for (const auto& [key, value] : py::cast<py::dict>(groups)) {
-        const auto name = py::cast<std::string>(key);
+        const auto name = argument<std::string>(key, "groups", "names of groups that are str");
         if (py::isinstance<py::str>(value))
-            patterns.push_back({name, py::cast<std::string>(value)});
+            patterns.push_back({name, argument<std::string>(value, "groups", "a pattern that is a str")});
         else
             result.push_back({name, patches_of(value, name, scene.patches.size())});
     }
@@ -71,16 +74,17 @@ std::vector<FaceGroup> groups_of(const Scene& scene, const py::object& groups, F
     return pattern_groups(scene, patterns, sides);
 }
 
-SharedFactors compute(const std::shared_ptr<Scene>& scene, const py::object& groups, std::int64_t rays,
+SharedFactors compute(const std::shared_ptr<Scene>& scene, const py::object& groups, const py::object& rays,
                       const std::string& sides, bool opaque_backs, std::uint64_t seed, int threads,
                       const py::object& progress) {
     const std::vector<FaceGroup> chosen = groups_of(*scene, groups, sides_of(sides));
-    const ViewFactorOptions options{.rays = rays, .seed = seed};
-    return long_work(progress, threads, [&](const Monitor& monitor) {
+    const ViewFactorOptions options{.rays = whole_number(rays, "rays"), .seed = seed};
+    const auto work = [&](const Monitor& monitor) {
         return std::make_shared<ViewFactors>(opaque_backs
                                                  ? view_factors(*scene, chosen, options, monitor)
                                                  : view_factors(*scene, RayCaster(*scene), chosen, options, monitor));
-    });
+    };
+    return long_work(progress, threads, work, Ending::cancelled);
 }
 
 template <class Number>

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable
 from types import TracebackType
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 from interflect import _core
 from interflect._progress import ProgressArgument, reporting
@@ -107,6 +107,9 @@ class Solver:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  traceback: TracebackType | None) -> None:
         self.close()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a Solver can be neither copied nor pickled: save() it, and Solver.open() the file")
 
     def __repr__(self) -> str:
         if self.is_closed:

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import pickle
 import re
 import types
 import typing
@@ -132,6 +133,17 @@ class Attributes(unittest.TestCase):
             if hasattr(item, "replace") and not isinstance(item, ifl.Scene):
                 with self.subTest(type(item).__name__):
                     self.assertEqual(eval(repr(item), names), item)
+
+    def test_objects_without_pickle_refuse_it(self) -> None:
+        """pybind11 ends the process for protocols 0 and 1."""
+        for item in OBJECTS:
+            for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+                with self.subTest(type(item).__name__, protocol=protocol):
+                    if hasattr(item, "replace") and not isinstance(item, ifl.Scene):
+                        self.assertEqual(pickle.loads(pickle.dumps(item, protocol)), item)
+                    else:
+                        with self.assertRaisesRegex(TypeError, f"(?i)pickle.*{type(item).__name__}|Solver.*save"):
+                            pickle.dumps(item, protocol)
 
 
 if __name__ == "__main__":

@@ -28,6 +28,16 @@ except KeyboardInterrupt:
     print("interrupted")
 """
 
+CONSTRUCT = """
+import interflect as ifl
+scene = ifl.load("maze:900:furniture")
+print("ready", flush=True)
+try:
+    ifl.Solver(scene)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
 
 def interrupted(program: str) -> tuple[str, float]:
     """Returns the output and the seconds from Ctrl-C to the end."""
@@ -52,6 +62,12 @@ class CtrlC(unittest.TestCase):
         output, seconds = interrupted(RENDER)
         self.assertEqual(output, "interrupted\n")
         self.assertLess(seconds, 20)
+
+    def test_of_the_construction_of_a_solver(self):
+        """Without an interruption it takes 30 s on two idle cores, most of it in parallel loops without a monitor."""
+        output, seconds = interrupted(CONSTRUCT)
+        self.assertEqual(output, "interrupted\n")
+        self.assertLess(seconds, 10)  # usually 1
 
 
 if __name__ == "__main__":

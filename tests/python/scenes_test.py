@@ -145,6 +145,17 @@ class Faults(unittest.TestCase):
                      lambda: room(materials=[1]), lambda: room(views=["door"]), lambda: room(luminaires=[PAINT])):
             self.assertRaises(TypeError, call)
 
+    def test_fields_of_another_type_are_named_with_the_expected_one(self):
+        for call, expected in (
+                (lambda: ifl.Material("x", reflectance="red"),
+                 r"Material.reflectance: expected tuple\[float, float, float\], found 'red'"),
+                (lambda: ifl.Material(3), "Material.name: expected str, found 3"),
+                (lambda: ifl.Material("x", reflectance_texture="a"), r"expected Optional\[int\], found 'a'"),
+                (lambda: ifl.WeightedView("door"), "WeightedView.view: expected View, found 'door'"),
+                (lambda: VIEW.replace(eye=list(range(10_000))), r"View.eye: expected .* \.\.\.$")):
+            with self.subTest(expected), self.assertRaisesRegex(TypeError, expected):
+                call()
+
 
 class FromFiles(unittest.TestCase):
     def test_office(self):

@@ -66,6 +66,9 @@ class Light(unittest.TestCase):
         solver.advance()
         solver.set_dimming("lamp", 0)
         self.assertEqual(solver.solution.irradiance.max(), 0)
+        for factors in ({3: 1}, {"lamp": "half"}):
+            with self.assertRaisesRegex(TypeError, r"dim: expected Dict\[str, float\], found {"):
+                solution.dim(factors)
         with self.assertRaises(ifl.InputError) as raised:
             solver.set_dimming("lamb", 1)
         self.assertEqual(raised.exception.object, "lamb")
@@ -79,6 +82,12 @@ class Light(unittest.TestCase):
                                 (ifl.InputError, {"threads": -1}), (TypeError, {"view": "door", "views": "door"})):
             with self.subTest(settings), self.assertRaises(error):
                 ifl.solve(room(), **settings)
+        for settings, expected in (({"method": 3}, "method: expected str, found 3"),
+                                   ({"method": "\ud800"}, r"method: expected str, found '\\ud800'"),
+                                   ({"importance": "\ud800"}, "importance: expected a word"),
+                                   ({"views": "\ud800"}, "view: expected str")):
+            with self.subTest(settings), self.assertRaisesRegex(TypeError, expected):
+                ifl.Solver(room(), **settings)
         with self.assertRaises(ifl.InputError) as raised:
             ifl.Solver(room(), alpha=2, beta=-1)
         self.assertEqual(len(raised.exception.faults), 2)

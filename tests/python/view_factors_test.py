@@ -70,6 +70,21 @@ class Factors(unittest.TestCase):
         with self.assertRaises(ifl.InputError):
             ifl.view_factors(scene, rays=0)
 
+    def test_of_scenes_without_objects_are_those_of_materials(self):
+        scene = ifl.Scene(np.vstack([SQUARE, SQUARE + (0, 0, 1)]), [(0, 1, 2, 3), (4, 7, 6, 5)],
+                          [GREY, ifl.Material("white", 0.8)], face_materials=[0, 1])
+        self.assertEqual(ifl.view_factors(scene, rays=1e4).names, ["grey", "white"])
+
+    def test_wrong_types_are_named(self):
+        scene = facing_squares()
+        for groups, expected in (({3: "floor"}, "names of groups that are str, found 3"), ("\ud800", "str"),
+                                 ({"a": "\ud800"}, "pattern that is a str"),
+                                 ({"a": np.array([2**64 - 1], np.uint64)}, "indices of faces, found 18446744073709551615")):
+            with self.subTest(groups), self.assertRaisesRegex(TypeError, f"groups: expected .*{expected}"):
+                ifl.view_factors(scene, groups)
+        with self.assertRaisesRegex(TypeError, "rays: expected a whole number, found 'x'"):
+            ifl.view_factors(scene, rays="x")
+
     def test_backs_block_or_let_through(self):
         """A one-sided square between the two, facing up: its back hides the ceiling from the floor."""
         between = np.vstack([SQUARE, SQUARE + (0, 0, 1), SQUARE + (0, 0, 0.5)])

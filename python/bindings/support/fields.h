@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "argument.h"
 #include "vectors.h"
 
 namespace interflect::python {
@@ -28,7 +29,8 @@ class Fields {
         const auto get = [member](const T& object) -> const Member& { return object.*member; };
         const auto set = [member](T& object, const Member& value) { object.*member = value; };
         class_.def_property(name, get, set, doc);
-        fields_.push_back({name, [name, member](const T& object) { return text_of(object.*member, object, name); }});
+        fields_.push_back({name, type_name<Member>(),
+                           [name, member](const T& object) { return text_of(object.*member, object, name); }});
         return *this;
     }
 
@@ -36,28 +38,31 @@ class Fields {
     template <class Get, class Set>
     Fields& field(const char* name, const Get& get, const Set& set, const char* doc) {
         class_.def_property(name, get, set, doc);
-        fields_.push_back({name, [name](const T& object) { return text_of(nullptr, object, name); }});
+        using Value = typename SecondArgument<pybind11::detail::function_signature_t<Set>>::Type;
+        fields_.push_back(
+            {name, type_name<Value>(), [name](const T& object) { return text_of(nullptr, object, name); }});
         return *this;
     }
 
     void finish() {
         namespace py = pybind11;
-        const auto set_field = [type = class_name_](const py::object& object, const std::string& name,
+        const auto set_field = [type = class_name_](const py::object& object, const Field& field,
                                                     const py::handle& value) {
             try {
-                py::setattr(object, name.c_str(), value);
+                py::setattr(object, field.name.c_str(), value);
             } catch (py::error_already_set& e) {
                 if (!e.matches(PyExc_TypeError)) throw;
-                throw py::type_error(type + "." + name + ": cannot take " + std::string(py::repr(value)));
+                throw py::type_error(type + "." + field.name + ": expected " + field.type + ", found " + found(value));
             }
         };
         const auto set_named = [fields = fields_, type = class_name_, set_field](const py::object& object,
                                                                                  const py::kwargs& values) {
             for (const auto& [key, value] : values) {
-                const auto name = py::cast<std::string>(key);
-                if (std::none_of(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; }))
-                    throw py::type_error(type + " has no field '" + name + "'");
-                set_field(object, name, value);
+                const auto name = argument<std::string>(key, type);
+                const auto field =
+                    std::find_if(fields.begin(), fields.end(), [&](const Field& f) { return f.name == name; });
+                if (field == fields.end()) throw py::type_error(type + " has no field '" + name + "'");
+                set_field(object, *field, value);
             }
         };
         class_.def(py::init([fields = fields_, type = class_name_, set_field, set_named](const py::args& args,
@@ -67,7 +72,7 @@ class Fields {
                        for (std::size_t i = 0; i < args.size(); ++i) {
                            if (values.contains(fields[i].name.c_str()))
                                throw py::type_error(type + ": " + fields[i].name + " is given twice");
-                           set_field(object, fields[i].name, args[i]);
+                           set_field(object, fields[i], args[i]);
                        }
                        set_named(object, values);
                        return py::cast<T>(object);
@@ -109,7 +114,15 @@ class Fields {
   private:
     struct Field {
         std::string name;
+        std::string type;                           ///< As in Python.
         std::function<std::string(const T&)> text;  ///< As in repr().
+    };
+
+    template <class Function>
+    struct SecondArgument;
+    template <class Result, class First, class Second>
+    struct SecondArgument<Result(First, Second)> {
+        using Type = std::decay_t<Second>;
     };
 
     /// A field as in repr(): numbers of single precision with the fewest digits that distinguish them.

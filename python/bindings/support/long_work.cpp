@@ -3,6 +3,7 @@
 #include <pybind11/gil.h>
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <atomic>
@@ -41,19 +42,21 @@ class LatestProgress {
 
 }  // namespace
 
-void run_long_work(const py::object& progress, int threads, const std::function<void(const Monitor&)>& work) {
+void run_long_work(const py::object& progress, int threads, Ending ending,
+                   const std::function<void(const Monitor&)>& work) {
     if (threads < 0)
         throw InputError("threads: expected 0 (all of the machine) or more, found " + std::to_string(threads));
     std::atomic<bool> stop{false};
     LatestProgress latest;
     const Monitor monitor{[&](const Progress& now) { latest.set(now); }, &stop};
     std::exception_ptr interruption;
+    tbb::task_group_context loops;  // parallel loops of the work
     {
         const py::gil_scoped_release released;
         std::future<void> done = std::async(std::launch::async, [&] {
             const int most = tbb::info::default_concurrency();
             tbb::task_arena arena(threads > 0 ? std::min(threads, most) : most);
-            arena.execute([&] { work(monitor); });
+            arena.execute([&] { tbb::task_group(loops).run_and_wait([&] { work(monitor); }); });
         });
         while (done.wait_for(between_checks) != std::future_status::ready) {
             if (interruption) continue;
@@ -64,6 +67,7 @@ void run_long_work(const py::object& progress, int threads, const std::function<
             } catch (...) {
                 interruption = std::current_exception();
                 stop = true;
+                if (ending == Ending::cancelled) loops.cancel_group_execution();
             }
         }
         if (!interruption) done.get();

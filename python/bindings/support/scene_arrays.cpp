@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "argument.h"
 #include "interflect/geometry/add_face.h"
 #include "interflect/scene/core.h"
 
@@ -173,8 +174,7 @@ std::optional<std::vector<T>> sequence_of(const py::object& value, const char* n
         if (py::isinstance<py::sequence>(value)) return py::cast<std::vector<T>>(value);
         return std::vector<T>{py::cast<T>(value)};
     } catch (const py::cast_error&) {
-        throw py::type_error(
-            fmt::format("{}: expected a sequence of {}, found {}", name, type, std::string(py::repr(value))));
+        throw py::type_error(fmt::format("{}: expected a sequence of {}, found {}", name, type, found(value)));
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "argument.h"
 #include "bindings.h"
 #include "interflect/exports/records/solve_report.h"
 
@@ -22,7 +23,7 @@ py::object python_of(const Json& json) {
 /// @param usual  Default value of the setting, whose type counts; null for a number.
 Json setting(const std::string& name, const py::handle& value, const Json& usual) {
     const auto refuse = [&](const char* expected) {
-        throw py::type_error(name + ": expected " + expected + ", found " + std::string(py::repr(value)));
+        throw py::type_error(name + ": expected " + expected + ", found " + found(value));
     };
     if (usual.is_boolean()) {
         if (!py::isinstance<py::bool_>(value)) refuse("True or False");
@@ -30,16 +31,11 @@ Json setting(const std::string& name, const py::handle& value, const Json& usual
     }
     if (usual.is_string()) {
         if (!py::isinstance<py::str>(value)) refuse("a word");
-        return py::cast<std::string>(value);
+        return argument<std::string>(value, name, "a word");
     }
     if (name == "rays" || usual.is_number_integer()) return whole_number(value, name);
     if (py::isinstance<py::bool_>(value)) refuse("a number");
-    try {
-        return py::cast<double>(value);
-    } catch (const py::cast_error&) {
-        refuse("a number");
-    }
-    return nullptr;
+    return argument<double>(value, name, "a number");
 }
 
 /// ", rays, time, ...".
@@ -62,10 +58,10 @@ std::int64_t whole_number(const py::handle& value, const std::string& name) {
     const double number = is_number ? PyFloat_AsDouble(value.ptr()) : 0;
     if (!is_number || PyErr_Occurred()) {
         PyErr_Clear();
-        throw py::type_error(name + ": expected a whole number, found " + std::string(py::repr(value)));
+        throw py::type_error(name + ": expected a whole number, found " + found(value));
     }
     if (!(std::abs(number) < 0x1p63) || number != std::floor(number))
-        throw InputError(name + ": expected a whole number, found " + std::string(py::repr(value)));
+        throw InputError(name + ": expected a whole number, found " + found(value));
     return py::isinstance<py::int_>(value) ? py::cast<std::int64_t>(value) : static_cast<std::int64_t>(number);
 }
 
@@ -74,7 +70,7 @@ std::vector<WeightedView> weighted_views(const Scene& scene, const py::object& v
     if (py::isinstance<View>(views) || py::isinstance<WeightedView>(views) || py::isinstance<py::str>(views))
         return {weighted_view(scene, views)};
     if (!py::isinstance<py::iterable>(views))
-        throw py::type_error("views: expected views or names of views, found " + std::string(py::repr(views)));
+        throw py::type_error("views: expected views or names of views, found " + found(views));
     std::vector<WeightedView> result;
     for (const py::handle& view : views) {
         if (view.is_none()) throw py::type_error("views: expected views or names of views, found None");
@@ -99,8 +95,8 @@ SolveOptions solve_options(const Scene& scene, const py::object& method, const p
                            const py::dict& settings) {
     SolveOptions options;
     options.views = weighted_views(scene, views);
-    options.method =
-        method.is_none() ? default_method(!options.views.empty()) : find_method(py::cast<std::string>(py::str(method)));
+    options.method = method.is_none() ? default_method(!options.views.empty())
+                                      : find_method(argument<std::string>(method, "method"));
     const bool has_limit = settings.contains("rays") || settings.contains("time") || settings.contains("until");
     if (has_limit) options.limits = Limits();
     if (settings.contains("preset")) {
@@ -110,7 +106,7 @@ SolveOptions solve_options(const Scene& scene, const py::object& method, const p
     }
     Json json = detail::json_of(options);
     for (const auto& [key, value] : settings) {
-        const auto name = py::cast<std::string>(key);
+        const auto name = argument<std::string>(key, "settings");
         if (name == "preset") continue;
         if (name == "seed") {
             options.seed = static_cast<std::uint64_t>(whole_number(value, name));

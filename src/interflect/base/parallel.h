@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -30,6 +31,13 @@ namespace interflect::detail {
 template <class T>
 using PerThread = tbb::enumerable_thread_specific<T, std::allocator<T>>;
 
+/// Thrown by the functions below once the task group of the caller is cancelled, because their results are incomplete.
+struct Cancelled {};
+
+inline void require_not_cancelled() {
+    if (tbb::is_current_task_group_canceling()) throw Cancelled();
+}
+
 /// Calls body(begin, end) for ranges of at most `grain` indices in [0, count), independent of the number of threads.
 template <class Body>
 void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body) {
@@ -50,6 +58,7 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body)
     for (std::thread& other : others) other.join();
 #else
     tbb::parallel_for(std::size_t{0}, ranges, do_range);
+    require_not_cancelled();
 #endif
 }
 
@@ -71,6 +80,7 @@ void parallel_sort(std::vector<T>& values, const Less& less) {
     std::sort(values.begin(), values.end(), less);
 #else
     tbb::parallel_sort(values.begin(), values.end(), less);
+    require_not_cancelled();
 #endif
 }
 
@@ -81,6 +91,7 @@ void parallel_invoke(const A& a, const B& b) {
     b();
 #else
     tbb::parallel_invoke(a, b);
+    require_not_cancelled();
 #endif
 }
 

@@ -81,6 +81,11 @@ std::vector<FaceGroup> material_groups(const Scene& scene, FaceSides sides) {
     return named_and_used(collect(scene, sides, names, [](const Patch& p) { return p.material; }));
 }
 
+std::vector<FaceGroup> named_groups(const Scene& scene, FaceSides sides) {
+    std::vector<FaceGroup> objects = object_groups(scene, sides);
+    return objects.empty() ? material_groups(scene, sides) : objects;
+}
+
 std::vector<FaceGroup> pattern_groups(const Scene& scene, std::span<const FacePattern> patterns, FaceSides sides) {
     require_patterns(patterns);
     std::vector<std::string> names;
