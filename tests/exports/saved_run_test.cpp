@@ -33,10 +33,14 @@ namespace {
 using namespace testing_support;
 namespace fs = std::filesystem;
 
+/// Sources of light: a lamp; the same with luminaires and light groups; with light from outside; a lamp and walls with
+/// images.
+enum class Sources { lamp, luminaires, outdoor, images };
+
 struct Case {
     std::string name;
     SolveOptions options{.method = find_method("srr")};
-    bool has_lights = false;  // other than surfaces
+    Sources sources = Sources::lamp;
 };
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
@@ -69,6 +73,51 @@ Scene open_room_with_lights() {
             {"measured", 0, MeasuredLight{web, {x, 2, 2.1f}, {0.1f, 0, -1}, {1, 1, 0}, x > 2, {1, 0.9f, 0.7f}}});
     scene.light_groups = {{"daylight", "s*"}};
     return scene;
+}
+
+/// A sky with its sun's disc, and surroundings of four colours.
+Scene open_room_with_outdoor_light() {
+    Scene scene = open_room();
+    auto image = std::make_shared<Texture>(Texture{"surroundings", 4, 2, {}});
+    for (std::uint64_t i = 0; i < 8; ++i)
+        image->texels.emplace_back(Rgb(static_cast<float>(mix(i, 1) % 9), static_cast<float>(mix(i, 2) % 9), 4));
+    scene.luminaires = {
+        {"sun", 0, DirectionalLight{{1, 1, -3}, {80, 70, 60}, 5}},
+        {"dome", 0, SkyDome{cie_standard_sky(12), {9, 10, 12}, {0, 0, 1}, {-1, -1, 3}, 0.2f}},
+        {"surroundings", 0, EnvironmentMap{image, {0, 0, 1}, {0, 1, 0}, {1, 2, 1}}},
+    };
+    return scene;
+}
+
+/// The wall and the lamp have different images, laid askew, so the elements of a patch differ.
+Scene open_room_with_images() {
+    Scene scene = open_room();
+    constexpr std::uint32_t side = 16;
+    for (std::uint64_t image = 0; image < 2; ++image) {
+        scene.textures.push_back({"image", side, side, {}});
+        for (std::uint64_t i = 0; i < side * side; ++i)
+            scene.textures.back().texels.emplace_back(static_cast<float>(mix(i, image) % 1'000) / 1'000);
+    }
+    scene.materials[0].reflectance_texture = 0;
+    scene.materials[1].exitance_texture = 1;
+    for (const V3f& x : scene.vertices)
+        scene.texture_coordinates.emplace_back(0.3f * x.x + 2.5f * x.y - 0.1f * x.z,
+                                               0.6f * x.z - 2.2f * x.x + 0.1f * x.y);
+    return scene;
+}
+
+Scene room_with(Sources sources) {
+    switch (sources) {
+        case Sources::lamp:
+            return open_room();
+        case Sources::luminaires:
+            return open_room_with_lights();
+        case Sources::outdoor:
+            return open_room_with_outdoor_light();
+        case Sources::images:
+            return open_room_with_images();
+    }
+    return {};
 }
 
 std::vector<Case> cases() {
@@ -110,10 +159,15 @@ std::vector<Case> cases() {
         o.experimental.separate_iterations = true;
     });
     add("hwdrs_one_bounce", "hwdrs", [](SolveOptions& o) { o.experimental.one_bounce = true; });
-    const std::size_t without_lights = all.size();
-    for (std::size_t i = 0; i < without_lights; ++i)
-        if (all[i].options.method.separates_groups && all[i].options.method.takes_luminaires)
-            all.push_back({all[i].name + "_with_lights", all[i].options, true});  // and groups of them
+    const std::size_t with_a_lamp = all.size();
+    for (std::size_t i = 0; i < with_a_lamp; ++i) {
+        const Case c = all[i];
+        const Method method = c.options.method;
+        all.push_back({c.name + "_with_images", c.options, Sources::images});
+        if (!method.takes_luminaires) continue;
+        all.push_back({c.name + "_with_outdoor_light", c.options, Sources::outdoor});
+        if (method.separates_groups) all.push_back({c.name + "_with_lights", c.options, Sources::luminaires});
+    }
     return all;
 }
 
@@ -121,12 +175,13 @@ class SavedRun : public testing::TestWithParam<Case> {
   protected:
     const TemporaryFolder folder;
     const fs::path file = folder.path() / "run.h5";
-    const Scene scene = GetParam().has_lights ? open_room_with_lights() : open_room();
+    const Scene scene = room_with(GetParam().sources);
 };
 INSTANTIATE_TEST_SUITE_P(Methods, SavedRun, testing::ValuesIn(cases()),
                          [](const auto& test) { return test.param.name; });
 
 void expect_same(const Solution& s, const Solution& expected) {
+    EXPECT_EQ(s.emitted_power, expected.emitted_power);
     ASSERT_EQ(s.iterations.size(), expected.iterations.size());
     for (std::size_t i = 0; i < s.iterations.size(); ++i) {
         EXPECT_EQ(s.iterations[i].rays, expected.iterations[i].rays);

@@ -27,6 +27,19 @@ std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
                                  std::min(excess, fitting - std::min(fitting, options.refinement.max_elements)));
 }
 
+/// Power of the sources [lm or W], summed over the patches, so it does not depend on their elements. A resumed run,
+/// whose elements exist from the beginning, has the same bits.
+RgbD emitted_power(const SolverState& state) {
+    const ElementForest& forest = *state.forest;
+    const auto of_patches = [&](std::size_t begin, std::size_t end) {
+        RgbD sum(0);
+        for (auto patch = static_cast<std::uint32_t>(begin); patch < end; ++patch)
+            sum += RgbD(state.materials.exitance(patch)) * static_cast<double>(forest.area(patch));
+        return sum;
+    };
+    return parallel_sum(forest.patch_count(), elements_per_task, RgbD(0), of_patches) + state.emission.total_power();
+}
+
 V3f centre_of(const ElementForest& forest, std::uint32_t element) {
     const PatchGeometry& geometry = forest.geometry(forest.patch(element));
     return geometry.point(forest.cell(element).centre(geometry.is_triangle()));
@@ -54,7 +67,7 @@ SolverState::SolverState(const Scene& s, const RayCaster& caster, const SolveOpt
     solution.group_names = groups.names;
     solution.dimming.assign(groups.size(), 1);
     history.assign(forest->size(), 0.0f);
-    solution.emitted_power = radiated_power(*this);
+    solution.emitted_power = emitted_power(*this);
     compute_view_importance(*this);
     if (o.experimental.shrinkage && o.experimental.clusters && refines_by_variance(o))
         clusters = cluster_patches(*forest, ray_caster);
@@ -78,9 +91,7 @@ void set_sources(SolverState& state, const Scene& lit) {
     state.materials = Materials(lit, state.ray_caster);
     state.materials.grow(*state.forest);
     state.emission = Emission(lit, state.targets);
-    state.solution.emitted_power =
-        radiated_power(*state.forest, Radiosity(state.materials, std::vector<Rgb>(state.forest->size(), Rgb(0))));
-    state.solution.emitted_power += state.emission.total_power();
+    state.solution.emitted_power = emitted_power(state);
 }
 
 void set_targets(SolverState& state, std::vector<Imath::Box3f> targets) {
