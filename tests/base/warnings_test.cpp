@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 namespace interflect {
 namespace {
 
@@ -19,6 +22,28 @@ TEST(Warnings, CountsOneEntryAKindAndMessage) {
     EXPECT_EQ(warnings.entries()[1].message, "a reflectance above 0.99 is taken as 0.99");
     EXPECT_EQ(warnings.entries()[1].count, 1);
     EXPECT_EQ(warnings.entries()[2].where, "");
+}
+
+// Seen to fail when every message has its entry.
+TEST(Warnings, SummariseAKindWithManyMessages) {
+    constexpr std::int64_t count = 300'000;
+    Warnings warnings;
+    warnings.add("missing-file", "there is no file");
+    for (std::int64_t i = 0; i < count; ++i)
+        warnings.add("extension", "the extension " + std::to_string(i) + " is ignored", "a.gltf:" + std::to_string(i));
+    warnings.add("extension", "the extension 7 is ignored");
+    warnings.add("missing-file", "there is no other file");
+
+    const std::vector<Warnings::Entry>& entries = warnings.entries();
+    constexpr std::size_t listed = 100;
+    ASSERT_EQ(entries.size(), listed + 3);
+    EXPECT_EQ(entries[8].count, 2) << "the extension 7 is listed";
+    const Warnings::Entry& rest = entries[listed + 1];
+    EXPECT_EQ(rest.kind, "extension");
+    EXPECT_EQ(rest.message, "more warnings of the kind 'extension', each with its own text");
+    EXPECT_EQ(rest.where, "a.gltf:100") << "the first that is not listed";
+    EXPECT_EQ(rest.count, count - static_cast<std::int64_t>(listed));
+    EXPECT_EQ(entries.back().message, "there is no other file");
 }
 
 TEST(Warnings, StartsEmpty) { EXPECT_TRUE(Warnings().entries().empty()); }

@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <random>
+#include <utility>
 
+#include "interflect/geometry/outline_crossings.h"
 #include "interflect/geometry/patch_geometry.h"
 
 namespace interflect {
@@ -221,6 +224,36 @@ std::vector<V3f> random_star(std::mt19937& random, const Imath::V3d& u, const Im
         outline.emplace_back(V3f(points[i].x * u + points[i].y * v));
     }
     return outline;
+}
+
+/// Outline that joins every `step`-th of `count` points on a circle: count * (step - 1) crossings.
+std::vector<V3f> star(int count, int step) {
+    std::vector<V3f> outline;
+    for (int i = 0; i < count; ++i) {
+        const double angle = 2 * std::numbers::pi * (i * step % count) / count;
+        outline.emplace_back(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0.0f);
+    }
+    return outline;
+}
+
+TEST(Polygon, CrossingsOfStarsAreCounted) {
+    for (const auto& [count, step] : {std::pair(5, 2), std::pair(11, 4), std::pair(101, 37)}) {
+        Scene scene;
+        Loop loop(static_cast<std::size_t>(count));
+        std::iota(loop.begin(), loop.end(), 0u);
+        scene.vertices = star(count, step);
+        const auto crossings = static_cast<std::size_t>(count * (step - 1));
+        EXPECT_FALSE(has_more_crossings(scene, {&loop, 1}, up, crossings)) << count;
+        EXPECT_TRUE(has_more_crossings(scene, {&loop, 1}, up, crossings - 1)) << count;
+    }
+}
+
+// The second star has 521,730 crossings, for which the tessellator takes a minute. Seen to fail without the limit.
+TEST(Polygon, WithFarMoreCrossingsThanCornersIsLeftOut) {
+    EXPECT_EQ(offer(star(21, 5)).result, PolygonResult::added);
+    const Offered tangle = offer(star(1023, 511));
+    EXPECT_EQ(tangle.result, PolygonResult::self_crossing);
+    EXPECT_EQ(tangle.scene.vertices.size(), 1023u);
 }
 
 TEST(Polygon, RandomPolygonsKeepAreaSideAndVertices) {

@@ -130,5 +130,32 @@ TEST(TrianglePairs, AGridIsMergedWholeWhateverTheOrder) {
     EXPECT_EQ(cells.size(), faces.size());
 }
 
+/// Triangles around one edge, like the pages of a book, each in the order of the vertices of the last.
+std::vector<std::uint32_t> book(std::uint32_t pages) {
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t page = 0; page < pages; ++page) corners.insert(corners.end(), {0, 1, page + 2});
+    return corners;
+}
+
+// All pairs of 300,000 would be 4.5 * 10^10. Seen to fail without the limit.
+TEST(TrianglePairs, ComparesFewTrianglesAtAnEdgeHoweverManyMeetThere) {
+    constexpr std::uint32_t pages = 300'000;
+    std::vector<TriangleEdge> edges;
+    for (std::uint32_t page = 0; page < pages; ++page) edges.push_back({7, page, 0});
+    std::uint64_t comparisons = 0;
+    for_pairs_at_edges(edges, [&](const TriangleEdge& a, const TriangleEdge& b) {
+        ASSERT_LT(a.triangle, b.triangle);
+        if (++comparisons > 8 * std::uint64_t{pages}) FAIL();
+    });
+    EXPECT_GT(comparisons, pages);
+
+    std::vector<V3f> vertices{{0, 0, 0}, {0, 0, 1}};
+    for (std::uint32_t page = 0; page < pages; ++page) {
+        const float angle = 6.28f * static_cast<float>(page) / pages;
+        vertices.emplace_back(std::cos(angle), std::sin(angle), 0.5f);
+    }
+    EXPECT_EQ(merge_triangle_pairs(scene_of(vertices), book(pages)).size(), pages);
+}
+
 }  // namespace
 }  // namespace interflect

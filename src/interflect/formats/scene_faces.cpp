@@ -51,8 +51,9 @@ void SceneFaces::add(std::span<const std::vector<std::uint32_t>> loops, std::uin
     require_room(0);  // a face may become several patches
     if (result == PolygonResult::self_crossing)
         leave_out(
-            "face whose outline crosses itself or runs back along itself, so that its areas cancel, is left out; split "
-            "it",
+            fmt::format("face whose outline crosses itself or runs back along itself, so that its areas cancel, or "
+                        "crosses itself more than {} times per corner, is left out; split it",
+                        max_crossings_per_corner),
             where);
     if (result == PolygonResult::degenerate) {
         leave_out("face without area is left out", where);

@@ -3,7 +3,9 @@
 #include <ImathVec.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "interflect/geometry/patch_geometry.h"
@@ -42,19 +44,30 @@ PlanarPolygon intersection(PlanarPolygon polygon, const PlanarPolygon& other) {
     return polygon;
 }
 
+/// Intersections for `count` disjoint faces, which halving separates, and for some more.
+std::size_t enough_intersections(std::size_t count) {
+    constexpr std::size_t per_level = 4, more_levels = 8, at_least = 1024;
+    return at_least + per_level * count * (static_cast<std::size_t>(std::bit_width(count)) + more_levels);
+}
+
 /// In [m^2]; areas up to `negligible` [m^2] count as 0.
+/// @param intersections  To be computed at most. Afterwards, only the face with the largest share of a part counts: the
+///     outlines of a thousand faces that lie in each other divide them into a million parts.
 double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygon*> others, double negligible,
-                    int halvings) {
+                    int halvings, std::size_t& intersections) {
     const double area = area_of(polygon);
     if (area <= negligible) return 0;
-    bool is_inside_one = false;
+    const bool is_last = intersections < others.size();
+    intersections -= is_last ? intersections : others.size();
+    double largest_share = 0;
     std::erase_if(others, [&](const PlanarPolygon* other) {
         const double shared = area_of(intersection(polygon, *other));
-        is_inside_one |= area - shared <= negligible;
+        largest_share = std::max(largest_share, shared);
         return shared <= negligible;
     });
-    if (is_inside_one) return 0;
+    if (area - largest_share <= negligible) return 0;
     if (others.empty()) return area;
+    if (is_last) return area - largest_share;
     double outside = 0;
     if (others.size() > cut_at_once && halvings < max_halvings) {
         V2d low = polygon[0].position, high = low;
@@ -65,7 +78,8 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
         const V2d middle = 0.5 * (low + high), size = high - low;
         const V2d beyond = middle + (size.x > size.y ? V2d(0, size.x) : V2d(size.y, 0));
         for (const bool left : {true, false})
-            outside += area_outside(half_of(polygon, middle, beyond, left), others, negligible, halvings + 1);
+            outside +=
+                area_outside(half_of(polygon, middle, beyond, left), others, negligible, halvings + 1, intersections);
         return outside;
     }
     const PlanarPolygon& first = *others.back();
@@ -73,7 +87,7 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
     PlanarPolygon rest = polygon;
     for (std::size_t i = 0; i < first.size() && rest.size() > 2; ++i) {
         const V2d &a = first[i].position, &b = first[(i + 1) % first.size()].position;
-        outside += area_outside(half_of(rest, a, b, false), others, negligible, halvings);
+        outside += area_outside(half_of(rest, a, b, false), others, negligible, halvings, intersections);
         rest = half_of(rest, a, b, true);
     }
     return outside;
@@ -120,7 +134,8 @@ float uncovered_area_share(const Scene& scene, std::uint32_t patch, std::span<co
     pointers.reserve(polygons.size());
     for (const PlanarPolygon& other : polygons) pointers.push_back(&other);
     const double area = area_of(polygon), slivers = static_cast<double>(tolerance) * perimeter(polygon);
-    const double outside = area_outside(polygon, pointers, negligible_share * area, 0);
+    std::size_t intersections = enough_intersections(pointers.size());
+    const double outside = area_outside(polygon, pointers, negligible_share * area, 0, intersections);
     if (outside <= slivers) return 0;
     if (area - outside <= slivers) return 1;
     return static_cast<float>(outside / area);

@@ -1,10 +1,14 @@
 #include "interflect/geometry/face_overlap.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 #include "interflect/base/parallel.h"
+#include "interflect/core.h"
 #include "interflect/geometry/bounds.h"
 #include "interflect/geometry/box_tree.h"
 #include "interflect/scene/patch_area.h"
@@ -133,20 +137,29 @@ std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& ig
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance) {
     const std::vector<Boxed> tree = tree_of_faces(scene, ignored, tolerance);
+    const std::size_t most = free_overlaps + max_overlaps_per_patch * scene.patches.size();
+    std::atomic<std::size_t> count = 0;
     std::vector<std::vector<FacePair>> found((scene.patches.size() + search_grain - 1) / search_grain);
     parallel_for_ranges(scene.patches.size(), search_grain, [&](std::size_t begin, std::size_t end) {
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
-            if (scene.patches[i].other_side < i || ignored[i]) continue;
+            if (scene.patches[i].other_side < i || ignored[i] || count > most) continue;
             const LargerFace larger(scene, i, tolerance);
             const Imath::Box3f box = widened(bounds_of(scene, scene.patches[i]), tolerance[i]);
             visit_box_tree(
                 std::span<const Boxed>(tree),
                 [&](const Imath::Box3f& b) { return b.intersects(box) && larger.plane_meets(b); },
                 [&](std::uint32_t j) {
-                    if (larger.is_overlapped_by(j)) found[begin / search_grain].push_back({i, j});
+                    if (count > most || !larger.is_overlapped_by(j)) return;
+                    found[begin / search_grain].push_back({i, j});
+                    ++count;
                 });
         }
     });
+    if (count > most)
+        throw InputError(scene.name, 0,
+                         fmt::format("more than {} pairs of its faces lie in each other: expected surfaces of one "
+                                     "layer; remove copies of faces",
+                                     most));
     std::vector<FacePair> pairs;
     for (const std::vector<FacePair>& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
     return pairs;

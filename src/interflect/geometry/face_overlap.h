@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,9 +21,13 @@ inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pa
     return std::max(tolerance[pair.smaller], tolerance[pair.larger] / 8);
 }
 
+/// Sound scenes have far fewer pairs: faces that lie on a large one are pairs with it alone.
+inline constexpr std::size_t free_overlaps = 1'000'000, max_overlaps_per_patch = 50;
+
 /// Finds pairs whose smaller face reaches more than pair_tolerance() into the larger, within that distance of its
 /// plane. Skips one-sided faces with opposite normals, which intercept different rays. Sorted by larger face.
 /// @param tolerance  Per patch [m], > 0. @param ignored  Per patch.
+/// @throws InputError for more than free_overlaps + max_overlaps_per_patch * patches pairs.
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance);
 

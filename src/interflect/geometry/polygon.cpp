@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "interflect/geometry/add_face.h"
+#include "interflect/geometry/outline_crossings.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/geometry/vertex_coordinates.h"
 #include "interflect/scene/limits.h"
@@ -89,6 +90,12 @@ bool is_convex_planar_quadrilateral(const Scene& scene, const Loop& loop, const 
         if (!turns_left) return false;
     }
     return true;
+}
+
+std::size_t corner_count(std::span<const Loop> loops) {
+    std::size_t count = 0;
+    for (const Loop& loop : loops) count += loop.size();
+    return count;
 }
 
 class PatchAdder {
@@ -207,6 +214,8 @@ PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_
         patches.add(outline[0], outline[1], outline[2]);
     } else if (clean.size() == 1 && is_convex_planar_quadrilateral(scene, outline, plane)) {
         patches.add(outline[0], outline[1], outline[2], outline[3]);
+    } else if (has_more_crossings(scene, clean, V3f(plane.normal), max_crossings_per_corner * corner_count(clean))) {
+        return PolygonResult::self_crossing;
     } else {
         const std::vector<std::uint32_t> corners = Triangulation(scene, plane, outline[0])(clean);
         for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {

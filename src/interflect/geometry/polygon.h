@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,10 +9,13 @@
 
 namespace interflect::detail {
 
+/// Each crossing becomes a vertex. A star of 1,023 corners can have 520,000 crossings.
+inline constexpr std::size_t max_crossings_per_corner = 4;
+
 enum class PolygonResult {
     added,
     degenerate,     ///< Narrower than its vertices' rounding; not added.
-    self_crossing,  ///< Opposite areas of the outline cancel; not added.
+    self_crossing,  ///< Opposite areas cancel, or edges cross too often (max_crossings_per_corner); not added.
 };
 
 /// Adds triangles and convex planar quadrilaterals (planarity.h) as one patch; triangulates others. Keeps the

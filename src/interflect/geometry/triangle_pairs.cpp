@@ -19,16 +19,6 @@ using Imath::V3d;
 constexpr double min_turn = 0.1;
 constexpr double coordinate_tolerance = 1e-4;
 
-struct Edge {
-    std::uint64_t vertices = 0;
-    std::uint32_t triangle = 0;
-    std::uint32_t corner = 0;
-
-    bool operator<(const Edge& other) const {
-        return std::pair(vertices, triangle) < std::pair(other.vertices, other.triangle);
-    }
-};
-
 class PairFinder {
   public:
     PairFinder(const Scene& scene, std::span<const std::uint32_t> triangles)
@@ -38,7 +28,7 @@ class PairFinder {
 
     std::vector<FaceVertices> find() {
         pair_neighbours_in_order();
-        const std::vector<Edge> edges = open_edges();
+        const std::vector<TriangleEdge> edges = open_edges();
         pair_along(edges, true);
         pair_along(edges, false);
         std::erase_if(faces_, [](const FaceVertices& face) { return face[0] == none; });
@@ -64,8 +54,8 @@ class PairFinder {
                 for (std::uint32_t j = 0; j < 3 && is_single(t); ++j) pair(t, i, t + 1, j, true);
     }
 
-    std::vector<Edge> open_edges() const {
-        std::vector<Edge> edges;
+    std::vector<TriangleEdge> open_edges() const {
+        std::vector<TriangleEdge> edges;
         for (std::uint32_t t = 0; t < faces_.size(); ++t) {
             if (!is_single(t)) continue;
             for (std::uint32_t k = 0; k < 3; ++k) {
@@ -73,14 +63,16 @@ class PairFinder {
                 edges.push_back({std::uint64_t{low} << 32 | high, t, k});
             }
         }
-        std::sort(edges.begin(), edges.end());
+        std::sort(edges.begin(), edges.end(), [](const TriangleEdge& a, const TriangleEdge& b) {
+            return std::pair(a.vertices, a.triangle) < std::pair(b.vertices, b.triangle);
+        });
         return edges;
     }
 
-    void pair_along(const std::vector<Edge>& edges, bool longest_only) {
-        for (auto first = edges.begin(); first != edges.end(); ++first)
-            for (auto other = first + 1; other != edges.end() && other->vertices == first->vertices; ++other)
-                pair(first->triangle, first->corner, other->triangle, other->corner, longest_only);
+    void pair_along(std::span<const TriangleEdge> edges, bool longest_only) {
+        for_pairs_at_edges(edges, [&](const TriangleEdge& a, const TriangleEdge& b) {
+            pair(a.triangle, a.corner, b.triangle, b.corner, longest_only);
+        });
     }
 
     void pair(std::uint32_t t, std::uint32_t i, std::uint32_t u, std::uint32_t j, bool longest_only) {

@@ -116,10 +116,9 @@ PhotometricWeb web_of(const Json& json) {
 }  // namespace
 
 std::size_t WebTable::index_of(const std::shared_ptr<const PhotometricWeb>& web) {
-    const auto found = std::find(webs_.begin(), webs_.end(), web);
-    const auto index = static_cast<std::size_t>(found - webs_.begin());
-    if (found == webs_.end()) webs_.push_back(web);
-    return index;
+    const auto [entry, is_new] = index_.try_emplace(web.get(), webs_.size());
+    if (is_new) webs_.push_back(web);
+    return entry->second;
 }
 
 Json WebTable::json() const {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "interflect/exports/records/json_text.h"
@@ -16,6 +18,7 @@ class WebTable {
 
   private:
     std::vector<std::shared_ptr<const PhotometricWeb>> webs_;
+    std::unordered_map<const PhotometricWeb*, std::size_t> index_;
 };
 /// Inverse of WebTable::json(). @throws Json::exception, std::runtime_error
 std::vector<std::shared_ptr<const PhotometricWeb>> webs_of(const Json& json);
