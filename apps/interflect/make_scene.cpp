@@ -41,8 +41,9 @@ std::string file_content(const fs::path& path) {
 /// Refuses to replace files that the command line did not name: they may be the user's own.
 /// @param content  Kind of content.
 void require_replaceable(const PendingFile& file, bool force, const std::string& content) {
-    if (force || !fs::exists(file.final_path()) ||
-        file_content(file.final_path()) == file_content(file.temporary_path()))
+    const fs::path& existing = file.final_path();
+    if (force || !fs::exists(existing) ||
+        (fs::is_regular_file(existing) && file_content(existing) == file_content(file.temporary_path())))
         return;
     throw InputError(file.final_path(), 0,
                      "has other " + content + " than the scene's: expected --force to replace them");

@@ -4,6 +4,7 @@ tests/formats and tests/fuzz cover the faults in files; this file has one of eac
 """
 
 import json
+import os
 import pathlib
 import unittest
 
@@ -41,6 +42,27 @@ class BadScene(BadInput):
     def test_folder(self):
         (self.folder / "bad.mgf").mkdir()
         self.assert_refused("bad.mgf: this is a folder")
+
+    def test_pipes_and_devices(self):
+        for make in (os.mkfifo, lambda path: path.symlink_to("/dev/zero")):
+            for name, arguments in (
+                ("bad.mgf", ("solve", "bad.mgf", "-o", "out.h5")),
+                ("bad.h5", ("info", "bad.h5")),
+                ("bad.h5", ("render", "bad.h5", "-o", "out.png")),
+                ("bad.h5", ("resume", "bad.h5", "-o", "out.h5")),
+                ("bad.png", ("compare", "bad.png", "bad.png")),
+                ("bad.hdr", ("info", "maze:1", "--environment", "bad.hdr")),
+            ):
+                path = self.folder / name
+                path.unlink(missing_ok=True)
+                make(path)
+                with self.subTest(arguments=arguments):
+                    error = self.interflect(*arguments, exit_code=BAD_INPUT, timeout=AT_ONCE).stderr
+                    self.assertIn(f"{name}: this is not a regular file", error)
+        os.mkfifo(self.folder / "run.h5")
+        error = self.interflect("solve", "maze:1", "-o", "out.h5", "--checkpoint", "run.h5", exit_code=WRONG_USAGE).stderr
+        self.assertIn("'run.h5' is not a regular file", error)
+        self.assertFalse((self.folder / "out.h5").exists())
 
     def test_another_format(self):
         self.write("bad.txt", room())

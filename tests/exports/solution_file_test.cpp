@@ -311,7 +311,7 @@ TEST_F(SolutionFile, HasTheSameBytesForTheSameInput) {
 }
 
 TEST_F(SolutionFile, ExplainsWhatIsWrongWithAPath) {
-    EXPECT_THAT(error_of(folder_.path() / "missing.h5"), HasSubstr("no such file"));
+    EXPECT_THAT(error_of(folder_.path() / "missing.h5"), HasSubstr("there is no such file"));
     EXPECT_THAT(error_of(folder_.path()), HasSubstr("is a folder"));
 }
 

@@ -164,6 +164,18 @@ TEST(Obj, WhatIsMissingIsAWarning) {
     EXPECT_EQ(scene.patches.size(), 6u);
 }
 
+// Seen to fail when each line reads the file again.
+TEST(Obj, LibrariesAreReadOnceHoweverOftenTheyAreNamed) {
+    const TemporaryFolder folder;
+    folder.write("a.mtl", "newmtl a\nKd .2 .2 .2\n");
+    std::string text = square;
+    for (int i = 0; i < 1000; ++i) text += "mtllib a.mtl\n";
+    const Scene scene =
+        load_scene(folder.write("room.obj", text + "usemtl a\nf 1 2 3 4\nmtllib a.mtl\nusemtl a\nf 1 2 3\n"));
+    EXPECT_EQ(scene.files.size(), 2u);
+    EXPECT_EQ(scene.patches.front().material, scene.patches.back().material);
+}
+
 TEST(Obj, FilesOutsideTheFolderAreRefused) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "scene");

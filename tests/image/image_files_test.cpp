@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfVecAttribute.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,6 +21,7 @@
 #include <memory>
 
 #include "interflect/core.h"
+#include "interflect/image/photograph.h"
 #include "interflect/image/srgb.h"
 #include "tests/support/scenes.h"
 
@@ -302,7 +304,31 @@ TEST_P(ReadableFormats, DamageNeverCrashes) {
 TEST_P(ReadableFormats, MissingFilesAndFoldersAreRefused) {
     EXPECT_THAT(refusal(folder.path() / name()), HasSubstr(name() + ": there is no such file"));
     fs::create_directory(folder.path() / name());
-    EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("is not a file"));
+    EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("this is a folder, not a file"));
+}
+
+// Opening a pipe waits for a writer, and a device may have no end. Seen to fail when a file is read to its end.
+TEST_P(ReadableFormats, PipesAndDevicesAreRefused) {
+    ASSERT_EQ(::mkfifo((folder.path() / name()).c_str(), 0600), 0);
+    EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("this is not a regular file"));
+    fs::remove(folder.path() / name());
+    fs::create_symlink("/dev/zero", folder.path() / name());
+    EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("this is not a regular file"));
+}
+
+// Seen to fail when the size of the file is not compared: all zeros are read.
+TEST(ImageFiles, LargerThanAnyPictureOfTheAllowedPixelsAreRefused) {
+    const TemporaryFolder folder;
+    for (const char* const name : {"a.png", "a.jpg", "a.hdr"}) {
+        const fs::path path = folder.write(name, "");
+        fs::resize_file(path, std::uintmax_t{1} << 36);  // takes no room on the disk
+        try {
+            read_photograph(path, 1 << 20);
+            ADD_FAILURE() << name << " was read";
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), HasSubstr("it has 68719476736 bytes; at most 33554432 are read"));
+        }
+    }
 }
 
 TEST_P(EveryFormat, WritingWhereNothingCanBeWrittenFails) {

@@ -17,6 +17,9 @@ struct SavedRun {
 /// @throws InputError as read_solution(), or for a state that is missing or of another version.
 SavedRun read_saved_run(const std::filesystem::path& path);
 
+/// Returns the name of the scene of a saved run; empty for any other file. Does not verify checksums.
+std::string scene_of_saved_run(const std::filesystem::path& path);
+
 /// Reads the bytes of solution_image(). @throws std::runtime_error
 SavedRun read_saved_image(std::span<const char> image);
 SolvedScene read_solution_image(std::span<const char> image);

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "interflect/base/input_file.h"
 #include "interflect/base/state_archive.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
@@ -201,6 +202,9 @@ void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
         solution.group_names.size() == named || (named > 0 && solution.group_names.size() == named + 1);
     if (!has_names || solution.dimming.size() != solution.group_names.size())
         throw std::runtime_error("light groups, their names and their dimming differ in number");
+    for (const float factor : solution.dimming)
+        if (!(factor >= 0 && std::isfinite(factor)))
+            throw std::runtime_error("the dimming of a light group is no factor");
     source_groups(solved.scene);  // throws InputError
     for (std::size_t g = 0; g < solution.group_names.size(); ++g)
         solution.groups.push_back(grouped<Rgb>(file.read<float>(group_dataset(g), 3)));
@@ -342,8 +346,7 @@ std::vector<FileRange> write_hdf5(Hdf5Writer& file, const std::string& descripti
 }
 
 void require_solution_file(const std::filesystem::path& path) {
-    if (std::filesystem::is_directory(path)) throw InputError(path, 0, "is a folder, expected a solution file");
-    if (!std::filesystem::exists(path)) throw InputError(path, 0, "no such file");
+    require_regular_file(path);
     if (!is_solution_file(path)) throw InputError(path, 0, "not a solution file");
 }
 
@@ -353,6 +356,9 @@ auto read_or_refuse(const std::filesystem::path& path, const char* fault, const 
         return read();
     } catch (const std::bad_alloc&) {
         throw;
+    } catch (const Json::exception& e) {
+        const std::string_view text = e.what();  // begins with "[json.exception.type_error.302] "
+        throw InputError(path, 0, fmt::format("{}: its description: {}", fault, text.substr(text.find(']') + 2)));
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("{}: {}", fault, e.what()));
     }
@@ -399,6 +405,20 @@ SavedRun detail::read_saved_run(const std::filesystem::path& path) {
     return {std::move(solved), read_or_refuse(path, "a run that cannot go on", [&] { return read_state(file); })};
 }
 
+std::string detail::scene_of_saved_run(const std::filesystem::path& path) {
+    try {
+        require_solution_file(path);
+        const Hdf5Reader file(path);
+        if (!file.has(state_group)) return {};
+        const std::vector<char> text = file.read<char>("/description");
+        return parse_json_text({text.data(), text.size()}).at("scene").get<std::string>();
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception&) {
+        return {};
+    }
+}
+
 SavedRun detail::read_saved_image(std::span<const char> image) {
     const VerifiedFile file{.has_checksums = true, .arrays = Hdf5Reader(image)};
     SolvedScene solved = read_solved_scene(file);
@@ -412,6 +432,8 @@ SolvedScene detail::read_solution_image(std::span<const char> image) {
 }
 
 bool is_solution_file(const std::filesystem::path& path) {
+    std::error_code unknown;
+    if (!std::filesystem::is_regular_file(path, unknown)) return false;  // opening a pipe would wait for a writer
     return has_checksums(path) || has_hdf5_signature(path, 0) || has_hdf5_signature(path, checksum_block_size);
 }
 

@@ -66,6 +66,7 @@ void ObjMaterials::read(const fs::path& path, const Location& where) {
     if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
         throw std::invalid_argument(
             fmt::format("'{}' lies outside the scene's folder, which is not allowed (outside_files)", path.string()));
+    if (!read_.insert(path.string()).second) return;
     std::error_code ignored;
     if (!fs::exists(path, ignored)) {
         warn("missing-file", fmt::format("there is no material library '{}'", path.filename().string()), where);
@@ -203,6 +204,7 @@ Texture ObjMaterials::read_colours(const Definition& definition) {
     try {
         require_regular_file(definition.texture);
         Texture texture = read_texture(definition.texture);
+        count_decoded(texture.texels.size());
         model_.files.push_back(definition.texture.string());
         return texture;
     } catch (const InputError& unreadable) {
@@ -212,13 +214,21 @@ Texture ObjMaterials::read_colours(const Definition& definition) {
 
 StoredImage ObjMaterials::read_mask(const Definition& definition) {
     try {
-        StoredImage mask = decode_stored_image(read_bytes(definition.mask), static_cast<std::int64_t>(max_texels));
+        constexpr auto most = static_cast<std::int64_t>(max_texels);
+        StoredImage mask = decode_stored_image(read_bytes(definition.mask, max_image_bytes(most)), most);
+        count_decoded(mask.pixel_count());
         model_.files.push_back(definition.mask.string());
         return mask;
     } catch (const std::runtime_error& unreadable) {
         throw definition.where.error(
             fmt::format("the texture '{}': {}", definition.mask.filename().string(), unreadable.what()));
     }
+}
+
+void ObjMaterials::count_decoded(std::size_t pixels) {
+    constexpr std::uint64_t most = 32 * max_texels;  // as for glTF: materials may share an image
+    decoded_ += pixels;
+    if (decoded_ > most) throw InputError(fmt::format("with it, more than {} pixels are decoded", most));
 }
 
 std::uint32_t ObjMaterials::add_texture(Texture texture) {

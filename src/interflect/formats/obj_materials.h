@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "interflect/formats/location.h"
 #include "interflect/formats/model.h"
@@ -19,7 +20,7 @@ class ObjMaterials {
     /// Adds a default material.
     ObjMaterials(Model& model, const ReadOptions& options);
 
-    /// @throws InputError; std::invalid_argument if forbidden by the options.
+    /// Reads a file once. @throws InputError; std::invalid_argument if forbidden by the options.
     void read(const std::filesystem::path& path, const Location& where);
     void read_text(std::string_view text, const std::filesystem::path& path);
     /// Returns an index into Model::materials; 0, with a warning, if unknown.
@@ -44,6 +45,8 @@ class ObjMaterials {
     StoredImage read_mask(const Definition& definition);
     bool is_readable(const std::filesystem::path& texture, std::string_view key, const Definition& definition);
     void cut_out(const Definition& definition, Material& material);
+    /// Limits the work. @throws InputError
+    void count_decoded(std::size_t pixels);
     std::uint32_t add_texture(Texture texture);
     void warn(const std::string& kind, const std::string& message, const Location& where) {
         model_.warnings.add(kind, message, where.text());
@@ -53,8 +56,9 @@ class ObjMaterials {
     const ReadOptions& options_;
     std::unordered_map<std::string, Definition> definitions_;
     std::unordered_map<std::string, std::uint32_t> textures_;
+    std::unordered_set<std::string> read_;        // paths of libraries
     std::list<std::filesystem::path> libraries_;  // referenced by locations
-    std::uint64_t texels_ = 0;
+    std::uint64_t texels_ = 0, decoded_ = 0;
 };
 
 }  // namespace interflect::detail

@@ -6,13 +6,14 @@
 #include <array>
 #include <cctype>
 #include <fstream>
-#include <iterator>
 #include <stdexcept>
 
+#include "interflect/base/input_file.h"
 #include "interflect/core.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/pending_image.h"
 #include "interflect/image/photograph.h"
+#include "interflect/image/stored_image.h"
 
 namespace interflect {
 
@@ -32,13 +33,6 @@ constexpr std::array<KnownExtension, 5> known_extensions = {{{".png", ImageForma
                                                              {".exr", ImageFormat::exr},
                                                              {".hdr", ImageFormat::hdr}}};
 
-std::string read_bytes(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    if (!file.is_open() || file.bad()) throw std::runtime_error("cannot be read");
-    return bytes;
-}
-
 std::string encode(ImageFormat format, const Image& image, const ImageMetadata& metadata,
                    std::span<const ImageLayer> layers) {
     switch (format) {
@@ -57,11 +51,11 @@ std::string encode(ImageFormat format, const Image& image, const ImageMetadata& 
 Image read_as(ImageFormat format, const fs::path& path, std::int64_t max_pixels) {
     switch (format) {
         case ImageFormat::png:
-            return codecs::decode_png(read_bytes(path), max_pixels);
+            return codecs::decode_png(read_bytes(path, max_image_bytes(max_pixels)), max_pixels);
         case ImageFormat::jpeg:
             throw std::runtime_error("JPEG loses detail and is only written, expected .png .exr .hdr");
         case ImageFormat::hdr:
-            return codecs::decode_radiance(read_bytes(path), max_pixels);
+            return codecs::decode_radiance(read_bytes(path, max_image_bytes(max_pixels)), max_pixels);
         case ImageFormat::exr:
             break;
     }
@@ -72,11 +66,12 @@ Image read_as(ImageFormat format, const fs::path& path, std::int64_t max_pixels)
 template <class Read>
 auto read_with(const fs::path& path, const Read& read) {
     const ImageFormat format = require_image_format(path);
-    if (!fs::exists(path)) throw InputError(path, 0, "there is no such file");
-    if (!fs::is_regular_file(path)) throw InputError(path, 0, "is not a file, expected an image");
+    require_regular_file(path);
     try {
         return read(format, path);
     } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const InputError&) {
         throw;
     } catch (const std::exception& fault) {
         throw InputError(path, 0, fmt::format("cannot read this image: {}", fault.what()));
@@ -125,8 +120,8 @@ Image read_image(const fs::path& path, std::int64_t max_pixels) {
 
 Image detail::read_photograph(const fs::path& path, std::int64_t max_pixels) {
     return read_with(path, [=](ImageFormat format, const fs::path& file) {
-        return format == ImageFormat::jpeg ? codecs::decode_jpeg(read_bytes(file), max_pixels)
-                                           : read_as(format, file, max_pixels);
+        if (format != ImageFormat::jpeg) return read_as(format, file, max_pixels);
+        return codecs::decode_jpeg(read_bytes(file, max_image_bytes(max_pixels)), max_pixels);
     });
 }
 

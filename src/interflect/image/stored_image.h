@@ -21,6 +21,12 @@ struct StoredImage {
     }
 };
 
+/// Size of the largest PNG, JPEG or HDR file with so many pixels [bytes]: twice the largest encoding, of 8 bytes a
+/// pixel, and 16 MiB of other data.
+constexpr std::uintmax_t max_image_bytes(std::int64_t max_pixels) {
+    return 16 * static_cast<std::uintmax_t>(max_pixels) + (std::uintmax_t{1} << 24);
+}
+
 /// @throws std::runtime_error if the data is no PNG, truncated, damaged or too large.
 StoredImage decode_stored_png(std::string_view bytes, std::int64_t max_pixels);
 
