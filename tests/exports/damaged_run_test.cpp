@@ -5,14 +5,22 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
+#include <map>
 #include <random>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "interflect/core.h"
 #include "interflect/exports/hdf5/checksums.h"
+#include "interflect/exports/records/json_text.h"
 #include "interflect/solver.h"
 #include "tests/support/scenes.h"
 
@@ -23,6 +31,7 @@ namespace {
 
 using namespace testing_support;
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;
 
@@ -99,6 +108,58 @@ TEST_F(DamagedRun, IsRefusedWithoutItsStateOrAPartOfIt) {
         H5Fclose(file);
         write_checksums(path_, {});
         EXPECT_THAT(error(), HasSubstr("a run that cannot go on: ")) << part;
+    }
+}
+
+/// Place of each array of the state in the file, by name.
+std::map<std::string, Place> arrays_of_state(const std::string& bytes, Place index, Place content) {
+    std::map<std::string, Place> places;
+    const Json json = parse_json_text(bytes.substr(index.begin, index.size));
+    for (const Json& array : json.at("arrays")) {
+        places[array.at(0).get<std::string>()] = {content.begin, array.at(1).get<std::size_t>()};
+        content.begin += array.at(1).get<std::size_t>();
+    }
+    return places;
+}
+
+// Negative counts, numbers that are not finite, and truth values above 1. Seen to fail when any of these arrays is read
+// unchecked. The exceptions count without a sign, and choose points or keys only.
+TEST_F(DamagedRun, IsRefusedWithNumbersOutOfRangeInAnyArray) {
+    const std::set<std::string> any_number{"points/used", "points/used_by_parts", "points/allocations", "view/rounds"};
+    const auto places = arrays_of_state(bytes_, place_of("/state/index"), place_of("/state/bytes"));
+    EXPECT_GT(places.size(), 40u);
+    for (const auto& [name, place] : places) {
+        if (place.size == 0 || any_number.contains(name)) continue;
+        std::string damaged = bytes_;
+        std::fill_n(damaged.begin() + static_cast<std::ptrdiff_t>(place.begin), place.size, '\xff');
+        write(damaged);
+        write_checksums(path_, {});
+        EXPECT_THAT(error(), HasSubstr("a run that cannot go on: ")) << name;
+    }
+}
+
+// Without checks of the schedule, the run never ended.
+TEST_F(DamagedRun, IsRefusedWithAnAbsurdSchedule) {
+    const auto places = arrays_of_state(bytes_, place_of("/state/index"), place_of("/state/bytes"));
+    const std::vector<std::pair<const char*, std::int64_t>> absurd{
+        {"schedule/budget", 0},
+        {"schedule/budget", std::numeric_limits<std::int64_t>::min()},
+        {"schedule/first_rays", 0},
+        {"schedule/first_rays", std::int64_t{1} << 40},
+        {"schedule/smallest", 1},
+        {"schedule/smallest", std::int64_t{1} << 60},
+        {"schedule/rays", -1'000'000'000'000'000'000},
+        {"schedule/rays", std::numeric_limits<std::int64_t>::max()},
+        {"schedule/averaged_rays", std::int64_t{1} << 50},
+        {"schedule/averaged_at_restart", std::int64_t{1} << 50},
+        {"schedule/planned_after", std::int64_t{1} << 50},
+    };
+    for (const auto& [name, number] : absurd) {
+        std::string damaged = bytes_;
+        std::memcpy(&damaged[places.at(name).begin], &number, sizeof number);
+        write(damaged);
+        write_checksums(path_, {});
+        EXPECT_THAT(error(), AllOf(HasSubstr("a run that cannot go on: "), HasSubstr(name))) << number;
     }
 }
 

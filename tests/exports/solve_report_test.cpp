@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 namespace interflect {
 
@@ -38,6 +40,40 @@ SolveOptions unusual_options() {
     o.experimental.beta = 0.4;
     o.importance.camera_rays = 99;
     return o;
+}
+
+// Seen to fail when numbers are read unchecked: -1 became 4294967295, and 1e300 any integer.
+TEST(SolveReport, RefusesOptionsOutOfRange) {
+    const Json json = json_of(unusual_options());
+    int numbers = 0;
+    for (const auto& [name, value] : json.items()) {
+        if (!value.is_number() && !value.is_boolean()) continue;
+        ++numbers;
+        for (const Json& absurd :
+             {Json(-1), Json(-0.5), Json("7"), Json::array(), Json(std::numeric_limits<double>::infinity())}) {
+            Json changed = json;
+            changed[name] = absurd;
+            SolveOptions options;
+            EXPECT_THROW(read_options(changed, options), std::exception) << name << ": " << absurd;
+        }
+        if (!value.is_number_integer()) continue;
+        Json changed = json;
+        changed[name] = 1e300;
+        SolveOptions options;
+        EXPECT_THROW(read_options(changed, options), std::exception) << name;
+    }
+    EXPECT_GT(numbers, 20);
+}
+
+TEST(JsonText, RefusesDeepNestingAndObjectsOfManyMembers) {
+    EXPECT_THROW(parse_json_text(std::string(1'000'000, '[')), std::exception);
+    EXPECT_THROW(parse_json_text(std::string(500, '[') + std::string(500, ']')), std::runtime_error);
+    std::string object = "{";
+    for (int i = 0; i < 300'000; ++i) object += "\"" + std::to_string(i) + "\": 1, ";
+    EXPECT_THROW(parse_json_text(object + "\"last\": 1}"), std::runtime_error);
+    std::string array = "[";
+    for (int i = 0; i < 300'000; ++i) array += "{\"a\": 1}, ";
+    EXPECT_EQ(parse_json_text(array + "0]").size(), 300'001u);
 }
 
 TEST(SolveReport, HasEveryOption) {

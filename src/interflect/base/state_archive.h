@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <list>
 #include <map>
@@ -14,6 +17,7 @@
 namespace interflect::detail {
 
 /// State of a run as named byte arrays in native layout, for the same version only. archive() both writes and reads.
+/// It refuses invalid numbers, with which a run would crash or never end.
 class StateArchive {
   public:
     /// For writing. Values must not change until written.
@@ -22,8 +26,21 @@ class StateArchive {
     explicit StateArchive(std::map<std::string, std::vector<std::byte>> arrays)
         : reads_(true), arrays_(std::move(arrays)) {}
 
+    /// Numbers that are read must be finite, integers also non-negative. Owners of other types check their members.
     template <class T>
-    void operator()(const std::string& name, T& value) {
+    void operator()(const std::string& name, T& values) {
+        unchecked(name, values);
+        if (reads_) require_range(are_all(values, [](auto number) { return is_regular(number); }), name);
+    }
+    /// As operator(); all numbers must be non-negative.
+    template <class T>
+    void amounts(const std::string& name, T& values) {
+        (*this)(name, values);
+        if (reads_) require_range(are_all(values, [](auto number) { return number >= decltype(number){0}; }), name);
+    }
+
+    template <class T>
+    void unchecked(const std::string& name, T& value) {
         static_assert(std::is_standard_layout_v<T> && !std::is_pointer_v<T>);
         const std::span bytes(reinterpret_cast<std::byte*>(&value), sizeof(T));
         if (!reads_)
@@ -31,8 +48,14 @@ class StateArchive {
         else
             copy(taken(name), bytes, name);
     }
+    void unchecked(const std::string& name, bool& value) {
+        auto byte = static_cast<std::uint8_t>(value);
+        byte = by_value(name, std::vector{byte}).at(0);
+        require_range(byte <= 1, name);
+        value = byte == 1;
+    }
     template <class T>
-    void operator()(const std::string& name, std::vector<T>& values) {
+    void unchecked(const std::string& name, std::vector<T>& values) {
         static_assert(std::is_standard_layout_v<T> && !std::is_pointer_v<T>);
         if (reads_) {
             const std::vector<std::byte> bytes = taken(name);
@@ -43,7 +66,12 @@ class StateArchive {
         }
     }
 
-    /// Writes and returns `values`, or returns the values read.
+    /// @throws std::runtime_error naming the array, unless its numbers are in range.
+    static void require_range(bool holds, const std::string& name) {
+        if (!holds) throw std::runtime_error("the state of the run has numbers out of range in '" + name + "'");
+    }
+
+    /// Writes and returns `values`, or returns the values read, unchecked.
     template <class T>
     std::vector<T> by_value(const std::string& name, std::vector<T> values) {
         if (!reads_) {
@@ -51,7 +79,7 @@ class StateArchive {
             copies_.emplace_back(bytes.begin(), bytes.end());
             spans_.emplace_back(name, copies_.back());
         } else {
-            (*this)(name, values);
+            unchecked(name, values);
         }
         return values;
     }
@@ -60,6 +88,27 @@ class StateArchive {
     const std::vector<std::pair<std::string, std::span<const std::byte>>>& written() const { return spans_; }
 
   private:
+    template <class Number>
+    static bool is_regular(Number number) {
+        if constexpr (std::is_floating_point_v<Number>) return std::isfinite(number);
+        return number >= Number{0};
+    }
+    /// Tests a number, or all numbers of an array or of a vector in space; true for other types.
+    template <class T, class Test>
+    static bool are_all(const T& value, const Test& test) {
+        if constexpr (std::is_arithmetic_v<T>) {
+            return test(value);
+        } else if constexpr (requires { value.begin(); }) {
+            return std::all_of(value.begin(), value.end(), [&](const auto& part) { return are_all(part, test); });
+        } else if constexpr (requires { T::dimensions(); }) {
+            for (unsigned k = 0; k < T::dimensions(); ++k)
+                if (!test(value[static_cast<int>(k)])) return false;
+            return true;
+        } else {
+            return true;
+        }
+    }
+
     /// @throws std::runtime_error if the array is missing.
     std::vector<std::byte> taken(const std::string& name) {
         const auto found = arrays_.find(name);

@@ -56,10 +56,11 @@ void Run::archive(StateArchive& archive) {
         throw std::runtime_error("the state of the run: arrays and elements differ in number");
     archive("is_prepared", is_prepared);
     archive("is_finished", is_finished);
-    archive("error", error);
+    archive.unchecked("error", error);  // infinite if unknown
+    StateArchive::require_range(error >= 0, "error");
     archive("iteration", iteration);
-    archive("known_dimming", known_dimming);
-    archive("dimming", state.solution.dimming);
+    archive.amounts("known_dimming", known_dimming);
+    archive.amounts("dimming", state.solution.dimming);
     if (!archive.reads()) return;
     if (known_dimming.size() != state.groups.size() || state.solution.dimming.size() != state.groups.size())
         throw std::runtime_error("the state of the run: expected the dimming of every light group");

@@ -137,7 +137,7 @@ std::string describe(const Scene& scene, const Solution& solution, int format_ve
 
 bool read_description(std::string_view text, int oldest_format_version, int newest_format_version,
                       SolvedScene& solved) {
-    Json json = Json::parse(text);
+    Json json = parse_json(text);
     solved.format_version = json.at("format_version").get<int>();
     if (solved.format_version < oldest_format_version || solved.format_version > newest_format_version)
         throw std::runtime_error("it was written by another version of Interflect");

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "interflect/base/escapes.h"
 
@@ -30,8 +31,23 @@ std::string json_text(Json json, int indent) {
     return json.dump(indent);
 }
 
+Json parse_json(std::string_view text) {
+    // The description of a solution has 20 levels and 30 members at most.
+    constexpr int most_levels = 100;
+    constexpr std::size_t most_members = 1000;
+    std::vector<std::size_t> members;  // of the open objects
+    return Json::parse(text, [&](int level, Json::parse_event_t event, const Json&) {
+        if (event == Json::parse_event_t::object_start) members.push_back(0);
+        if (event == Json::parse_event_t::object_end) members.pop_back();
+        if (level > most_levels || (event == Json::parse_event_t::key && ++members.back() > most_members))
+            throw std::runtime_error(fmt::format(
+                "its JSON has more than {} levels, or an object of more than {} members", most_levels, most_members));
+        return true;
+    });
+}
+
 Json parse_json_text(std::string_view text) {
-    Json json = Json::parse(text);
+    Json json = parse_json(text);
     change_values(json, "", [](const std::string&, Json& value) {
         if (value.is_string()) value = unescaped(value.get_ref<const std::string&>());
     });

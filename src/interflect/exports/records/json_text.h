@@ -12,7 +12,11 @@ using Json = nlohmann::ordered_json;
 /// @throws std::runtime_error naming a number that is not finite.
 std::string json_text(Json json, int indent = -1);
 
-/// Inverse of json_text(). @throws Json::exception
+/// Refuses objects of many members, since an ordered object searches them one by one, and deep nesting.
+/// @throws Json::exception, std::runtime_error
+Json parse_json(std::string_view text);
+
+/// Inverse of json_text(). @throws as parse_json()
 Json parse_json_text(std::string_view text);
 
 /// Returns the double with the fewest digits that identify `value`.

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "interflect/core.h"
@@ -44,16 +46,35 @@ struct Writer {
     }
 };
 
+/// All numbers of options and reports are finite and not negative.
+template <class Value>
+Value number_of(const Json& json, const char* name) {
+    const auto require = [&](bool holds) {
+        if (!holds) throw std::runtime_error(fmt::format("'{}' is {}, which is out of range", name, json.dump()));
+    };
+    if constexpr (std::is_same_v<Value, bool>) {
+        require(json.is_boolean());
+    } else if constexpr (std::is_integral_v<Value>) {
+        require(json.is_number_unsigned() || (json.is_number_integer() && json.get<std::int64_t>() >= 0));
+        require(json.get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<Value>::max()));
+    } else {
+        require(json.is_number());
+        const double number = json.get<double>();
+        require(number >= 0 && number <= static_cast<double>(std::numeric_limits<Value>::max()));
+    }
+    return json.get<Value>();
+}
+
 struct Reader {
     const Json& json;
 
     template <class Value>
     void field(const char* name, Value& value) const {
-        json.at(name).get_to(value);
+        value = number_of<Value>(json.at(name), name);
     }
     template <class Value>
     void field_or_null(const char* name, Value& value, const Value& when_null) const {
-        value = json.at(name).is_null() ? when_null : json.at(name).get<Value>();
+        value = json.at(name).is_null() ? when_null : number_of<Value>(json.at(name), name);
     }
     void vector(const char* name, RgbD& value) const { value = vector_of<RgbD>(json.at(name)); }
     template <class Value, std::size_t count>
@@ -197,8 +218,9 @@ void read_options(const Json& stored, SolveOptions& options) {
     const Json json = with_present_names(stored);
     for_each_option(options, Reader{json});
     for (const Json& v : json.at("views"))
-        options.views.push_back(
-            {view_of(v), v.at("weight").get<double>(), v.at("aspect").get<float>(), v.at("pixel_rows").get<int>()});
+        options.views.push_back({view_of(v), number_of<double>(v.at("weight"), "weight"),
+                                 number_of<float>(v.at("aspect"), "aspect"),
+                                 number_of<int>(v.at("pixel_rows"), "pixel_rows")});
 }
 
 Json json_of(const IterationReport& report) {
@@ -211,7 +233,8 @@ Json json_of(const IterationReport& report) {
 IterationReport report_of(const Json& json) {
     IterationReport report;
     for_each_number(report, Reader{json});
-    report.discarded_hits = json.value("discarded_hits", 0.0);
+    if (json.contains("discarded_hits"))
+        report.discarded_hits = number_of<double>(json.at("discarded_hits"), "discarded_hits");
     return report;
 }
 

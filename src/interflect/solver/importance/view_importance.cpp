@@ -76,13 +76,17 @@ void ViewImportance::archive(StateArchive& archive) {
     archive("view/points", points_);
     archive("view/rounds", rounds_);
     archive("view/rays", rays_);
-    archive("view/shares", total_weight_);
-    archive("view/hit_shares", hit_weight_);
+    archive.amounts("view/shares", total_weight_);
+    archive.amounts("view/hit_shares", hit_weight_);
 }
 
 bool ViewImportance::fits(const ElementForest& forest) const {
-    return std::all_of(points_.begin(), points_.end(),
-                       [&](const Point& p) { return p.leaf < forest.size() && p.patch == forest.patch(p.leaf); });
+    const auto is_valid = [&](const Point& p) {
+        return p.leaf < forest.size() && p.patch == forest.patch(p.leaf) && std::isfinite(p.parameters.u) &&
+               std::isfinite(p.parameters.v) && std::isfinite(p.share) && p.share >= 0;
+    };
+    return std::all_of(points_.begin(), points_.end(), is_valid) && (points_.empty() || hit_weight_ > 0) &&
+           hit_weight_ <= total_weight_;
 }
 
 std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at_patches) {

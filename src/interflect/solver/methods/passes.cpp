@@ -259,7 +259,7 @@ void Passes::change_views(SolverState& state) {
 }
 
 void Passes::archive(StateArchive& archive) {
-    archive("passes/bounces", total_unshot_);
+    archive.amounts("passes/bounces", total_unshot_);
     archive("passes/finds_importance", needs_importance_);
     view_change_.archive(archive);
 }

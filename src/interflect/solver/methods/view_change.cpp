@@ -99,10 +99,12 @@ std::vector<float> ViewChange::history_factor(const SolverState& state,
 }
 
 void ViewChange::archive(StateArchive& archive) {
-    archive("passes/old_q", old_.q);
-    archive("passes/old_part_q", old_.part_q);
+    archive.unchecked("passes/old_q", old_.q);  // not finite if nothing was important
+    archive.unchecked("passes/old_part_q", old_.part_q);
     archive("passes/old_targets", old_.targets);
-    archive("passes/old_importance", old_importance_);
+    for (const Imath::Box3f& target : old_.targets)
+        StateArchive::require_range(is_finite(target.min) && is_finite(target.max), "passes/old_targets");
+    archive.amounts("passes/old_importance", old_importance_);
 }
 
 bool ViewChange::fits(const SolverState& state) const {

@@ -59,10 +59,10 @@ class NoiseModel {
     }
     std::size_t elements() const { return per_ray_.size(); }
     void archive(StateArchive& archive) {
-        archive("noise/per_ray", per_ray_);
-        archive("noise/scale", scale_);
-        archive("noise/observed", spread_.observed);
-        archive("noise/independent", spread_.independent);
+        archive.amounts("noise/per_ray", per_ray_);
+        archive.amounts("noise/scale", scale_);
+        archive.amounts("noise/observed", spread_.observed);
+        archive.amounts("noise/independent", spread_.independent);
         archive("noise/iterations", iterations_);
     }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace interflect::detail {
@@ -22,6 +23,12 @@ struct RiskCheck {
     RiskCheck& operator+=(const RiskCheck& o) { return add(1, o, 1); }
     /// @param share  In [0, 1]; less for short iterations.
     void add(const RiskCheck& fresh, double share) { add(1 - share / 2, fresh, share); }
+    bool is_finite() const {
+        // The sum is not finite if a term is not.
+        double sum = weight + expected + measured + signal + signal_of_parents;
+        for (const double level : within) sum += level;
+        return std::isfinite(sum);
+    }
     /// Returns 1 without data.
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }
 

@@ -67,8 +67,9 @@ class PayloadHistogram {
 
     void archive(StateArchive& archive) {
         archive("payloads/rays", rays_);
-        archive("payloads/power", power_);
-        archive("payloads/largest", largest_);
+        StateArchive::require_range(rays_.empty() || rays_.size() == bins, "payloads/rays");
+        archive.amounts("payloads/power", power_);
+        archive.amounts("payloads/largest", largest_);
         archive("payloads/count", count_);
     }
 

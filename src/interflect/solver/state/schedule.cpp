@@ -91,6 +91,22 @@ void Schedule::archive(StateArchive& archive) {
     archive("schedule/is_over", is_over_);
     archive("schedule/planned_at", planned_at_);
     archive("schedule/planned_after", planned_after_);
+    if (archive.reads()) require_consistent();
+}
+
+/// A run with other numbers may never end, or overflow.
+void Schedule::require_consistent() const {
+    constexpr std::int64_t most_rays = std::int64_t{1} << 62;
+    const std::int64_t given = options_.experimental.rays_per_iteration;
+    const auto require = StateArchive::require_range;
+    require(options_.limits.rays > 0, "schedule/budget");
+    require(first_rays_ > 0 && first_rays_ <= largest_iteration, "schedule/first_rays");
+    require(smallest_ == (given > 0 ? given : first_rays_), "schedule/smallest");
+    require(rays_ <= most_rays, "schedule/rays");
+    require(averaged_rays_ <= rays_, "schedule/averaged_rays");
+    require(averaged_at_restart_ <= rays_, "schedule/averaged_at_restart");
+    require(planned_at_ >= 0, "schedule/planned_at");
+    require(planned_after_ <= rays_, "schedule/planned_after");
 }
 
 void Schedule::done(const IterationPlan& plan) {

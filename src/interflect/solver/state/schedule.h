@@ -46,6 +46,7 @@ class Schedule {
 
   private:
     std::int64_t affordable_rays(double seconds);
+    void require_consistent() const;
 
     SolveOptions options_;
     std::int64_t first_rays_;  // unless a size is given

@@ -442,11 +442,11 @@ void KeptRays::archive(StateArchive& archive) {
     passes_.archive(archive);
     archive("kept_rays/rays", set_.rays);
     archive("kept_rays/kind", set_.kind);
-    archive("kept_rays/transmittance", set_.transmittance);
+    archive.amounts("kept_rays/transmittance", set_.transmittance);
     archive("kept_rays/merged", merged_);
     archive("kept_rays/elements", elements_);
     archive("kept_rays/all_rays", all_rays_);
-    archive("kept_rays/quotas", quotas_);
+    archive.amounts("kept_rays/quotas", quotas_);
     archive("kept_rays/targets", targets_);
     archive("kept_rays/needs_importance", needs_importance_);
 }

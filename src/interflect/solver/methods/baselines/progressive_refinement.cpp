@@ -236,8 +236,8 @@ void ProgressiveRefinement::change_views(SolverState& state) {
 }
 
 void ProgressiveRefinement::archive(StateArchive& archive) {
-    archive("pr/importance_shots", current_.importance_shots);
-    archive("pr/power_shots", current_.power_shots);
+    archive.amounts("pr/importance_shots", current_.importance_shots);
+    archive.amounts("pr/power_shots", current_.power_shots);
     archive("pr/importance_history", current_.importance_history);
 }
 

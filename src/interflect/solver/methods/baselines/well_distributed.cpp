@@ -26,11 +26,11 @@ void WellDistributedRays::prepare(SolverState& state) {
 
 void WellDistributedRays::archive(StateArchive& archive) {
     passes_.archive(archive);
-    archive("well_distributed/shot", shot_);
-    archive("well_distributed/shot_by_parts", shot_by_parts_);
-    archive("well_distributed/received", received_);
+    archive.amounts("well_distributed/shot", shot_);
+    archive.amounts("well_distributed/shot_by_parts", shot_by_parts_);
+    archive.amounts("well_distributed/received", received_);
     archive_groups(archive, "well_distributed/groups", received_groups_);
-    archive("well_distributed/escaped", escaped_);
+    archive.amounts("well_distributed/escaped", escaped_);
     archive("well_distributed/total", total_);
 }
 

@@ -1,6 +1,7 @@
 #include "interflect/solver/methods/links/link_radiosity.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <span>
@@ -233,6 +234,13 @@ struct RadiosityRange {
     }
 };
 
+bool is_valid(const Exchange& exchange) {
+    const Rgb& t = exchange.transmittance;
+    const std::array<float, 7> numbers{exchange.area, exchange.spread_over_a, exchange.spread_over_b, t.x, t.y,
+                                       t.z,           exchange.variation};
+    return std::all_of(numbers.begin(), numbers.end(), [](float n) { return n >= 0 && std::isfinite(n); });
+}
+
 /// Returns [m^2], including partial occlusion.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
@@ -380,15 +388,19 @@ bool LinkedElements::fits(const SolverState& state) const {
         return is_cluster(end) ? end - first_cluster < tree_.clusters().size() : end < elements;
     };
     const auto joins_elements = [&](const auto& link) { return exists(link.ends.a) && exists(link.ends.b); };
-    return std::all_of(links_.begin(), links_.end(), joins_elements) &&
-           std::all_of(candidates_.begin(), candidates_.end(), joins_elements);
+    return std::all_of(links_.begin(), links_.end(),
+                       [&](const Link& link) { return joins_elements(link) && is_valid(link.exchange); }) &&
+           std::all_of(candidates_.begin(), candidates_.end(), [&](const LinkCandidate& candidate) {
+               const Effort effort = candidate.effort;
+               return joins_elements(candidate) && (effort == Effort::quick || effort == Effort::thorough);
+           });
 }
 
 void LinkedElements::archive(StateArchive& archive) {
     archive("links/links", links_);
     archive("links/candidates", candidates_);
-    archive("links/light_change", light_change_);
-    archive("links/importance_change", importance_change_);
+    archive.amounts("links/light_change", light_change_);
+    archive.amounts("links/importance_change", importance_change_);
     archive("links/rays", rays_);
     archive("links/sweeps", sweeps_);
     archive("links/refines", refines_);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "interflect/base/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/light/materials.h"
 
@@ -32,6 +33,11 @@ BatchResult follow_paths(SolverState& state, const WalkSource& payload, std::int
 }
 
 }  // namespace
+
+void require_valid(const PathSeries& series, const std::string& name) {
+    StateArchive::require_range(
+        series.pilot_rays >= 0 && series.rays_per_path >= 0 && std::isfinite(series.rays_per_path), name);
+}
 
 BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t rays, PathSeries& series) {
     if (series.pilot_rays == 0) {  // discarded: a batch must not choose its own size

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "interflect/solver/methods/particles/path_batch.h"
@@ -15,6 +16,9 @@ struct PathSeries {
     std::int64_t pilot_rays = 0;
     double rays_per_path = 0;  ///< In the last batch or the pilot; 0: unknown.
 };
+
+/// @throws std::runtime_error naming the archived array.
+void require_valid(const PathSeries& series, const std::string& name);
 
 struct BatchResult {
     /// By element; inner elements have the mean of their children. Or importance per area.

@@ -46,7 +46,11 @@ class PhotonMesh final : public IterationMethod {
     void refine(SolverState& state) override;
     void discard() override { current_ = before_; }
     void archive(StateArchive& archive) override;
-    bool fits(const SolverState& state) const override { return hits_.size() == state.forest->size(); }
+    bool fits(const SolverState& state) const override {
+        return hits_.size() == state.forest->size() && std::all_of(hits_.begin(), hits_.end(), [](const HitSum& hits) {
+                   return hits.sum() >= 0 && hits.squares() >= 0;
+               });
+    }
 
   private:
     bool has_quarters_to_divide(const SolverState& state, std::uint32_t e) const;
@@ -144,6 +148,7 @@ double PhotonMesh::discarded_share(const ElementForest& forest) const {
 
 void PhotonMesh::archive(StateArchive& archive) {
     archive("photon_mesh/series", current_);
+    require_valid(current_, "photon_mesh/series");
     archive("photon_mesh/hits", hits_);
 }
 

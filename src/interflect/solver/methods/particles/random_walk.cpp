@@ -144,6 +144,7 @@ void RandomWalks::archive(StateArchive& archive) {
     archive("random_walk/light", current_.light);
     archive("random_walk/importance", current_.importance);
     archive("random_walk/importance_history", current_.importance_history);
+    for (const PathSeries& series : {current_.light, current_.importance}) require_valid(series, "random_walk");
 }
 
 std::unique_ptr<IterationMethod> make_random_walks(SolverState& state) { return std::make_unique<RandomWalks>(state); }
