@@ -2,10 +2,14 @@
 
 #include <spdlog/spdlog.h>
 
+#include <filesystem>
+#include <utility>
+
 #include "apps/interflect/messages.h"
 #include "apps/interflect/parse.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/core.h"
+#include "interflect/exports/saved_run.h"
 
 namespace interflect::command {
 
@@ -13,15 +17,23 @@ using namespace detail;
 
 namespace {
 
+namespace fs = std::filesystem;
+
 /// Adds a second name, so one complete checkpoint always exists.
-void keep_previous(const std::filesystem::path& file) {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(file, ignored)) return;
-    std::filesystem::path previous = file;
-    previous.replace_extension(".previous.h5");
-    std::filesystem::remove(previous, ignored);
-    std::filesystem::create_hard_link(file, previous, ignored);
-    if (ignored) std::filesystem::copy_file(file, previous, ignored);
+void keep(const fs::path& file, const fs::path& previous) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error)) return;
+    fs::remove(previous, error);
+    fs::create_hard_link(fs::canonical(file), previous, error);
+    if (!error) return;
+    PendingFile copy(previous);
+    fs::copy_file(file, copy.temporary_path());
+    copy.commit();
+}
+
+bool is_saved_run_of(const Scene& scene, const fs::path& file) {
+    const fs::path name = scene_of_saved_run(file);
+    return !name.empty() && name.lexically_normal() == fs::path(scene.name).lexically_normal();
 }
 
 }  // namespace
@@ -40,13 +52,37 @@ void Checkpoints::require_writable() const {
         throw UsageError("--checkpoint",
                          fmt::format("a checkpoint is a solution file: expected a name that ends in .h5, found '{}'",
                                      file.string()));
+    if (std::error_code unknown; fs::exists(file, unknown) && !fs::is_regular_file(file, unknown))
+        throw UsageError("--checkpoint",
+                         fmt::format("'{}' is not a regular file, which a checkpoint must be to be read "
+                                     "again: expected another name",
+                                     file.string()));
     const PendingFile finds_out(file);
 }
 
-void Checkpoints::save(Solver& solver) const {
+fs::path Checkpoints::previous() const {
+    return file.empty() ? file : fs::path(file).replace_extension(".previous.h5");
+}
+
+void Checkpoints::require_own_previous(const Scene& scene) {
+    if (file.empty()) return;
+    const auto is_other = [&](const fs::path& path) {
+        std::error_code unknown;
+        return fs::exists(fs::symlink_status(path, unknown)) && !is_saved_run_of(scene, path);
+    };
+    replaces_other_ = is_other(file);
+    if (is_other(previous()))
+        throw UsageError(
+            "--checkpoint",
+            fmt::format("'{}' is to keep the last checkpoint but one, but it exists and is no saved run of "
+                        "{}: expected another name for the checkpoint, or move that file",
+                        previous().string(), scene.name));
+}
+
+void Checkpoints::save(Solver& solver) {
     if (file.empty()) return;
     try {
-        keep_previous(file);
+        if (!std::exchange(replaces_other_, false)) keep(file, previous());
         solver.save(file);
     } catch (const std::bad_alloc&) {
         spdlog::warn("no checkpoint: there is not enough memory");

@@ -117,16 +117,16 @@ void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster) {
 }
 
 Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory,
-                   const Checkpoints& checkpoints, const EarlyLight& early_light) {
+                   Checkpoints checkpoints, const EarlyLight& early_light) {
     warn_of_covered_emission(scene, ray_caster);
     const SolveOptions options = within_limits(scene, ray_caster, asked_for, memory);
     const std::shared_ptr<void> unowned;  // both outlive the solver
     return run_to_end(Solver(std::shared_ptr<const Scene>(unowned, &scene), options,
                              std::shared_ptr<const RayCaster>(unowned, &ray_caster)),
-                      checkpoints, early_light);
+                      std::move(checkpoints), early_light);
 }
 
-Solution run_to_end(Solver solver, const Checkpoints& checkpoints, const EarlyLight& early_light) {
+Solution run_to_end(Solver solver, Checkpoints checkpoints, const EarlyLight& early_light) {
     {
         ProgressBar bar;
         const auto show = [&](const Progress& progress) {

@@ -24,9 +24,9 @@ struct EarlyLight {
 /// Solves with progress on stderr; Ctrl-C ends it early with a usable result.
 /// @param asked_for  SolverOptions::resolved(). @param memory  SolverOptions::memory.
 Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory,
-                   const Checkpoints& checkpoints = {}, const EarlyLight& early_light = {});
+                   Checkpoints checkpoints = {}, const EarlyLight& early_light = {});
 
 /// Continues a run in the same way.
-Solution run_to_end(Solver solver, const Checkpoints& checkpoints, const EarlyLight& early_light = {});
+Solution run_to_end(Solver solver, Checkpoints checkpoints, const EarlyLight& early_light = {});
 
 }  // namespace interflect::command

@@ -16,6 +16,7 @@
 #include "apps/interflect/signals.h"
 #include "apps/interflect/stats_file.h"
 #include "apps/interflect/threads.h"
+#include "interflect/base/input_file.h"
 #include "interflect/base/pending_file.h"
 #include "interflect/core.h"
 #include "interflect/solution.h"
@@ -25,6 +26,12 @@ namespace interflect::command {
 using namespace detail;
 
 namespace {
+
+/// The previous checkpoint may be another name of the checkpoint: the last one may have been too large for the disk.
+void require_distinct_previous(const Checkpoints& checkpoints, std::span<const NamedFile> others) {
+    const NamedFile previous{"the previous checkpoint (--checkpoint)", checkpoints.previous()};
+    require_distinct_files(others, {&previous, 1});
+}
 
 void require_solution_name(const std::filesystem::path& path) {
     if (path.extension() != ".h5")
@@ -69,12 +76,16 @@ void add_solve(CLI::App& app, int& exit_code) {
         const std::array<NamedFile, 3> outputs{{{"--output", options->output},
                                                 {"--stats", options->solver.stats},
                                                 {"--checkpoint", options->checkpoints.file}}};
-        require_distinct_files(input_files(options->scene, options->view), outputs);
+        const auto inputs = input_files(options->scene, options->view);
+        require_distinct_files(inputs, outputs);
+        require_distinct_previous(options->checkpoints, inputs);
+        require_distinct_previous(options->checkpoints, std::span(outputs).first(2));
         require_text_name({"--stats", options->solver.stats});
         options->checkpoints.require_writable();
         PendingFile output(options->output);
         Scene scene = options->scene.load();
         require_no_scene_files(scene, outputs);
+        options->checkpoints.require_own_previous(scene);
         const std::vector<View> views = options->view.views(scene);
         const SolveOptions solve_options = options->solver.resolved(views);
         scene = options->mesh.divide(std::move(scene), options->scene.read, solve_options.method.refines);
@@ -114,12 +125,16 @@ void add_resume(CLI::App& app, int& exit_code) {
         const ThreadLimit threads(options->threads);
         if (options->input.extension() != ".h5")
             throw InputError(options->input, 0, "a checkpoint is a solution file: expected a name that ends in .h5");
+        require_regular_file(options->input);
         if (options->checkpoints.file.empty()) options->checkpoints.file = options->input;
         require_solution_name(options->output);
         const std::array<NamedFile, 3> outputs{
             {{"--output", options->output}, {"--stats", options->stats}, {"--checkpoint", options->checkpoints.file}}};
-        require_distinct_files(std::array<NamedFile, 1>{{{"FILE", options->input}}}, std::span(outputs).first(2));
+        const NamedFile input{"FILE", options->input};
+        require_distinct_files({&input, 1}, std::span(outputs).first(2));
         require_distinct_files({}, outputs);
+        require_distinct_previous(options->checkpoints, std::span(outputs).first(2));
+        if (options->checkpoints.file != options->input) require_distinct_previous(options->checkpoints, {&input, 1});
         require_text_name({"--stats", options->stats});
         options->checkpoints.require_writable();
         PendingFile output(options->output);
@@ -127,6 +142,7 @@ void add_resume(CLI::App& app, int& exit_code) {
         if (options->limits.any()) solver.set_plan(options->limits.resolved());
         const std::shared_ptr<const Scene> scene = solver.shared_scene();
         require_no_scene_files(*scene, outputs);
+        options->checkpoints.require_own_previous(*scene);
         StatsFile stats(options->threads, options->stats);
         const Solution solution = run_to_end(std::move(solver), options->checkpoints);
         write(output, *scene, solution);

@@ -74,6 +74,48 @@ class Resume(CommandTest):
         self.assertEqual(info["result"]["rays"], 2_000_000)
         self.interflect("render", "run.h5", "-o", "picture.png", *VIEW, "--size", "32x18")
 
+    def test_an_unrelated_file_with_the_name_of_the_previous_checkpoint_is_not_replaced(self):
+        self.write("other.mgf", room())
+        self.interflect("solve", "other.mgf", "--rays", "1k", "-o", "result.h5", "--checkpoint", "other.h5")
+        for name in ("other.h5", "result.h5", "other.mgf"):  # a run of another scene, a result, and no solution at all
+            content = self.bytes(name)
+            (self.folder / "run.previous.h5").write_bytes(content)
+            for again in (RUN, ("resume", "own.h5")):
+                if again is not RUN:
+                    self.interflect(*RUN[:3], "1k", "-o", "a.h5", "--checkpoint", "own.h5")
+                before = self.files()
+                error = self.interflect(*again, "-o", "out.h5", "--checkpoint", "run.h5", exit_code=WRONG_USAGE).stderr
+                self.assertIn("'run.previous.h5' is to keep the last checkpoint but one", error)
+                self.assertEqual(self.bytes("run.previous.h5"), content)
+                self.assertEqual(self.files(), before)
+            for own in ("own.h5", "own.previous.h5"):
+                (self.folder / own).unlink(missing_ok=True)
+
+    def test_only_a_run_of_the_scene_becomes_the_previous_checkpoint(self):
+        (self.folder / "run.h5").write_text("the user's own")
+        self.interflect(*RUN[:3], "1k", "-o", "a.h5", "--checkpoint", "run.h5")
+        self.assertFalse((self.folder / "run.previous.h5").exists())
+        first = self.bytes("run.h5")
+        self.interflect(*RUN[:3], "2k", "-o", "a.h5", "--checkpoint", "./run.h5")
+        self.assertEqual(self.bytes("run.previous.h5"), first)
+
+    def test_both_checkpoints_may_be_one_file(self):
+        """They are if the disk was too full for the last one."""
+        self.interflect(*RUN[:3], "1k", "-o", "a.h5", "--checkpoint", "run.h5")
+        (self.folder / "run.previous.h5").hardlink_to(self.folder / "run.h5")
+        first = self.bytes("run.h5")
+        self.interflect("resume", "run.h5", "-o", "b.h5", "--rays", "2k")
+        self.assertEqual(self.bytes("run.previous.h5"), first)
+
+    def test_the_previous_checkpoint_of_a_link_is_a_file(self):
+        (self.folder / "disk").mkdir()
+        (self.folder / "run.h5").symlink_to("disk/run.h5")
+        self.interflect(*RUN[:3], "1k", "-o", "a.h5", "--checkpoint", "run.h5")
+        first = self.bytes("disk/run.h5")
+        self.interflect(*RUN[:3], "2k", "-o", "a.h5", "--checkpoint", "run.h5")
+        self.assertEqual(self.bytes("run.previous.h5"), first)
+        self.assertNotEqual(self.bytes("disk/run.h5"), first)
+
     def test_ctrl_c_keeps_a_state_to_go_on_from(self):
         self.interflect(*RUN, "-o", "whole.h5")
         code = self.start_and_end(*RUN, "-o", "cut.h5", "--checkpoint", "run.h5", signal_number=signal.SIGINT, seconds=0.3)
@@ -86,11 +128,14 @@ class Resume(CommandTest):
 
     def test_what_cannot_be_resumed_is_refused(self):
         self.interflect("solve", "room.mgf", "--rays", "1k", "-o", "result.h5")
+        (self.folder / "run.previous.h5").write_bytes(self.bytes("result.h5"))
         for arguments, reason, exit_code in (
             (("resume", "result.h5", "-o", "out.h5"), "not its state", BAD_INPUT),
             (("resume", "room.mgf", "-o", "out.h5"), "a checkpoint is a solution file", BAD_INPUT),
             ((*RUN, "-o", "out.h5", "--checkpoint", "run.mgf"), "ends in .h5", WRONG_USAGE),
             ((*RUN, "-o", "out.h5", "--checkpoint", "out.h5"), "same file", WRONG_USAGE),
+            ((*RUN, "-o", "run.previous.h5", "--checkpoint", "run.h5"), "the previous checkpoint", WRONG_USAGE),
+            (("resume", "run.previous.h5", "-o", "out.h5", "--checkpoint", "run.h5"), "same file", WRONG_USAGE),
         ):
             with self.subTest(arguments=arguments):
                 self.assertIn(reason, self.interflect(*arguments, exit_code=exit_code).stderr)
