@@ -61,12 +61,12 @@ ObjMaterials::ObjMaterials(Model& model, const ReadOptions& options) : model_(mo
 }
 
 void ObjMaterials::read(const fs::path& path, const Location& where) {
+    if (!read_.insert(path.string()).second) return;
     if (options_.max_include_depth < 1)
         throw std::invalid_argument("no other file may be read (max_include_depth is 0)");
     if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
         throw std::invalid_argument(
             fmt::format("'{}' lies outside the scene's folder, which is not allowed (outside_files)", path.string()));
-    if (!read_.insert(path.string()).second) return;
     std::error_code ignored;
     if (!fs::exists(path, ignored)) {
         warn("missing-file", fmt::format("there is no material library '{}'", path.filename().string()), where);
