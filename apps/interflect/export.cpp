@@ -53,6 +53,7 @@ struct ExportArguments {
     Quality quality = Quality::medium;
     LightmapOptions lightmap;
     VertexOptions vertices;
+    bool has_polygons = false;
     DimmingOptions dimming;
     int threads = 0;
 };
@@ -70,6 +71,7 @@ std::vector<OptionsOfFormats> options_of_formats() {
     return {{{lightmap_group, "--up"}, {".glb", ".gltf"}},
             {{bake_group, vertices_group}, {".glb", ".gltf", ".ply", ".obj"}},
             {{"--exposure"}, {".glb", ".gltf", ".ply", ".obj"}},
+            {{"--polygons"}, {".ply", ".obj"}},
             {{"--probe-spacing", "--probe-rays"}, {".json", ".exr"}},
             {{"--size"}, {".rad", ".xml", ".pbrt", ".py"}},
             {{"--pixel-samples"}, {".xml", ".pbrt", ".py"}}};
@@ -172,6 +174,7 @@ void set_bake(ExportOptions& options, const ExportArguments& arguments, const CL
     const auto is_given = [&](const char* option) { return command.get_option(option)->count() > 0; };
     options.bake = arguments.bake;
     options.vertices = arguments.vertices;
+    options.polygons = arguments.has_polygons;
     if (arguments.has_lightmap) options.lightmap = arguments.lightmap;
     if (!is_given("--max-edge"))
         options.vertices.max_edge = std::max(options.vertices.max_edge, options.vertices.min_edge);
@@ -316,6 +319,9 @@ void add_export(CLI::App& app, int& exit_code) {
         ->type_name("N")
         ->check(CLI::Range(1, 65536))
         ->capture_default_str();
+    command.add_flag("--polygons", options->has_polygons,
+                     "Polygons of up to dozens of corners in .ply and .obj, not triangles: fewer faces, but trimesh "
+                     "and Open3D do not read such .ply files");
     add_lightmap(command, *options);
     add_bake(command, *options);
     add_vertices(command, *options);

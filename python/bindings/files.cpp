@@ -162,6 +162,7 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
     take(left, "min_edge", options.vertices.min_edge);
     take(left, "max_edge", options.vertices.max_edge);
     take(left, "max_triangles", options.vertices.max_triangles);
+    take(left, "polygons", options.polygons);
     take(left, "spacing", options.probes.spacing);
     take(left, "rays", options.probes.rays);
     if (lightmap) {

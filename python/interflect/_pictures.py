@@ -168,7 +168,7 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         exposure: [stops], of 8-bit colours, as of tonemap().
         threads, progress: As of render().
         options: up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
-            max_triangles. In lightmaps: texels_per_metre, max_size, gutter, image, own_charts, groups, content. For
+            max_triangles, and for .ply and .obj polygons. In lightmaps: texels_per_metre, max_size, gutter, image, own_charts, groups, content. For
             probes: spacing, rays.
 
     Returns:

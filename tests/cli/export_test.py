@@ -151,7 +151,7 @@ class Export(CommandTest):
     def test_writes_lightmaps_of_light_groups(self):
         self.solve_groups()
         described = self.export("--lightmap", "--lightmap-groups")["asset"]["extras"]["interflect"]["lightmap"]
-        files = [[f"out.lightmap-0-group-{g}.exr"] for g in (0, 1)]
+        files = [[f"out.gltf.lightmap-0-group-{g}.exr"] for g in (0, 1)]
         self.assertEqual(described["groups"], [{"name": n, "unclamped": f} for n, f in zip("lr", files)])
         self.assertTrue({name for of_group in files for name in of_group} <= set(self.files()))
         self.solve()
@@ -172,7 +172,7 @@ class Export(CommandTest):
         self.interflect("export", "scene.h5", "--lightmap", "--lightmap-image", "hdr", "-o", "room.gltf")
         self.assertEqual(
             [file for file in self.files() if file.startswith("room")],
-            ["room.glb", "room.gltf", "room.lightmap-0.exr", "room.lightmap-0.hdr"],
+            ["room.glb", "room.gltf", "room.gltf.lightmap-0.hdr", "room.lightmap-0.exr"],
         )
 
     def test_warns_of_layouts_that_cannot_be_kept(self):
@@ -195,7 +195,7 @@ class Export(CommandTest):
     def test_quality_sets_what_is_not_given(self):
         def image(*options):
             self.export("--lightmap", "--shading", "smooth", *options)
-            return self.bytes("out.lightmap-0.exr")
+            return self.bytes("out.gltf.lightmap-0.exr")
 
         self.solve()
         for quality, texels in ("low", "10"), ("medium", "20"), ("high", "40"):

@@ -106,10 +106,10 @@ class Interrupt(CommandTest):
     def test_an_export_that_gathers_keeps_a_lightmap(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "20k", "--mesh-size", "1")
         self.interrupt_after_first_progress("export", "room.h5", "-o", "out.gltf", *GATHERED, "--samples", "16000000")
-        lightmap = "out.lightmap-0.exr"
+        lightmap = "out.gltf.lightmap-0.exr"
         self.assertEqual(self.files(), ["out.gltf", lightmap, "room.h5", "room.mgf"])
         self.interflect("export", "room.h5", "-o", "whole.gltf", *GATHERED, "--samples", "256")
-        compared = self.json("compare", lightmap, "whole.lightmap-0.exr")
+        compared = self.json("compare", lightmap, "whole.gltf.lightmap-0.exr")
         self.assertAlmostEqual(compared["ratio_of_means"], 1, delta=0.02)
 
     def test_an_export_without_a_result_says_so(self):

@@ -1,5 +1,6 @@
 #include "interflect/exports/probe_files.h"
 
+#include "interflect/exports/files/exported_parts.h"
 #include "interflect/exports/records/json_text.h"
 #include "interflect/image/image_codecs.h"
 
@@ -67,7 +68,7 @@ std::vector<ExportedFile> make_probes_exr(const std::filesystem::path& path, con
     metadata.scene = scene.name;
     metadata.version = INTERFLECT_VERSION;
     metadata.seed = options.probes.seed;
-    const auto beside = std::filesystem::path(path).replace_extension(".json");
+    const auto beside = path_beside(path, "probes.json");
     return {{beside, json_text(description(scene, grid, options)) + "\n"},
             {path, codecs::encode_exr(image, metadata, layers)}};
 }

@@ -7,6 +7,7 @@
 
 #include "interflect/base/escapes.h"
 #include "interflect/core.h"
+#include "interflect/formats/extension.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/image.h"
 #include "interflect/image/image_codecs.h"
@@ -57,13 +58,17 @@ std::vector<std::string> material_names(const Scene& scene) {
 
 std::vector<std::string> object_names(const Scene& scene) { return plain_names(scene.objects, "scene"); }
 
+std::filesystem::path path_beside(const std::filesystem::path& path, const std::string& name) {
+    const std::string format = lower_case_extension(path).substr(1);
+    return path.parent_path() / fmt::format("{}-{}-{}", path.stem().string(), format, name);
+}
+
 std::vector<ExportedFile> texture_files(const std::filesystem::path& path, const Scene& scene) {
     std::vector<ExportedFile> files;
     for (std::size_t i = 0; i < scene.textures.size(); ++i) {
         const Texture& texture = scene.textures[i];
         const std::string extension = texture_extension(texture);
-        const std::string name = fmt::format("{}-texture-{}{}", path.stem().string(), i, extension);
-        files.push_back({path.parent_path() / name,
+        files.push_back({path_beside(path, fmt::format("texture-{}{}", i, extension)),
                          extension == ".png" ? codecs::encode_png(image_of(texture)) : exr_bytes(texture)});
     }
     return files;

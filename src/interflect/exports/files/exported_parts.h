@@ -17,6 +17,10 @@ std::vector<std::string> plain_names(const std::vector<std::string>& names, cons
 std::vector<std::string> material_names(const Scene& scene);
 std::vector<std::string> object_names(const Scene& scene);
 
+/// Names a file beside an export: "room-xml-sky.exr" for "room.xml" and "sky.exr". Exports of one stem in other formats
+/// have other names.
+std::filesystem::path path_beside(const std::filesystem::path& path, const std::string& name);
+
 /// Encodes textures beside `path`: PNG if lossless, otherwise OpenEXR.
 std::vector<ExportedFile> texture_files(const std::filesystem::path& path, const Scene& scene);
 

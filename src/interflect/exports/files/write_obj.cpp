@@ -37,8 +37,7 @@ std::string materials_text(const std::filesystem::path& path, const Scene& scene
             text += fmt::format("Ke {}\n", text_of_colour(m.exitance / std::numbers::pi_v<float>));
         if (m.specular_reflectance != Rgb(0)) text += fmt::format("Ks {}\n", text_of_colour(m.specular_reflectance));
         const auto add = [&](const std::string& name, std::string bytes) {
-            images.push_back(
-                {path.parent_path() / fmt::format("{}-{}-{}", path.stem().string(), names[i], name), std::move(bytes)});
+            images.push_back({path_beside(path, fmt::format("{}-{}", names[i], name)), std::move(bytes)});
             return images.back().path.filename().string();
         };
         if (m.transmittance_texture != none) {
@@ -106,8 +105,8 @@ std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scen
         throw InputError(
             path, 0,
             "files of this format cannot hold this name, whose first blanks readers skip: expected one without");
-    const VertexLight light = make_vertex_light(scene, solution, options);
-    const LitPolygons polygons = lit_polygons(scene, light);
+    VertexLight light = make_vertex_light(scene, solution, options);
+    const LitPolygons polygons = options.polygons ? lit_polygons(scene, light) : lit_triangles(scene, light);
     std::vector<ExportedFile> files = texture_files(path, scene);
     const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
     std::string text = fmt::format(

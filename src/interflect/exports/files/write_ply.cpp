@@ -26,7 +26,8 @@ void append_position(std::string& bytes, const Scene& scene, const V3f& point) {
 
 std::vector<ExportedFile> make_ply(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options) {
-    const LitPolygons polygons = lit_polygons(scene, make_vertex_light(scene, solution, options));
+    VertexLight light = make_vertex_light(scene, solution, options);
+    const LitPolygons polygons = options.polygons ? lit_polygons(scene, light) : lit_triangles(scene, light);
     const bool has_many_corners = max_corners(polygons) > 255;
     const char* coordinate = scene.origin == Imath::V3d(0) ? "float" : "double";
     std::string bytes = fmt::format(

@@ -108,9 +108,8 @@ ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& d
 }
 
 std::string ForeignScene::add_file(const std::string& name, std::string bytes) {
-    std::string full = path.stem().string() + "-" + name;
-    files.push_back({path.parent_path() / full, std::move(bytes)});
-    return escape(full);
+    files.push_back({path_beside(path, name), std::move(bytes)});
+    return escape(files.back().path.filename().string());
 }
 
 std::string ForeignScene::add_reflectance_image(std::uint32_t m) {

@@ -44,7 +44,7 @@ struct ForeignScene {
     ForeignScene(const Scene& exported, const std::filesystem::path& description, const SceneExportOptions& chosen,
                  std::string (*file_name_escape)(std::string_view));
 
-    /// Adds a file "STEM-name"; returns its escaped name.
+    /// Adds a file of path_beside(); returns its escaped name.
     std::string add_file(const std::string& name, std::string bytes);
     /// Add a linear image; return its escaped name. Radiance is M / pi.
     std::string add_reflectance_image(std::uint32_t material);

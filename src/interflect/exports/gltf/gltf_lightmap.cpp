@@ -13,6 +13,7 @@
 #include "interflect/exports/mesh/display_range.h"
 #include "interflect/exports/mesh/element_mesh.h"
 #include "interflect/exports/mesh/welded_vertices.h"
+#include "interflect/formats/extension.h"
 #include "interflect/geometry/texture_mapping.h"
 #include "interflect/image/image_codecs.h"
 
@@ -48,8 +49,10 @@ float scale_of(const std::vector<Image>& images, LightmapContent content, float 
     return largest > 0 ? std::min(largest, most) : most;
 }
 
+/// Differs between a .glb and a .gltf of one stem.
 std::string name_of_image(const std::filesystem::path& path, std::size_t page) {
-    return fmt::format("{}.lightmap-{}", path.stem().string(), page);
+    const bool is_text = lower_case_extension(path) == ".gltf";
+    return fmt::format("{}.lightmap-{}", (is_text ? path.filename() : path.stem()).string(), page);
 }
 
 /// Uses numbers, since group names may be invalid in file names.

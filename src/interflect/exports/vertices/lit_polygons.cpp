@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <unordered_map>
+#include <utility>
 
 #include "interflect/base/random.h"
 #include "interflect/exports/mesh/display_range.h"
@@ -26,6 +28,36 @@ struct VertexHash {
     }
 };
 
+class Polygons {
+  public:
+    explicit Polygons(const Scene& scene) : scene_(scene) {}
+
+    void add(const Patch& patch, std::uint32_t leaf, std::span<const MeshCorner> outline) {
+        for (const MeshCorner& corner : outline) {
+            polygons.corners.push_back(number_of(patch, corner));
+            polygons.parameters.push_back(corner.at);
+        }
+        polygons.leaves.push_back(leaf);
+        polygons.ends.push_back(static_cast<std::uint32_t>(polygons.corners.size()));
+    }
+
+    LitPolygons polygons;
+
+  private:
+    std::uint32_t number_of(const Patch& patch, const MeshCorner& corner) {
+        const Rgb radiosity =
+            exitance_at(scene_, patch, corner.at) + reflectance_at(scene_, patch, corner.at) * corner.irradiance;
+        const LitPolygons::Vertex vertex{corner.point, corner.irradiance, radiosity};
+        const auto [entry, is_new] =
+            numbers_.try_emplace(vertex, static_cast<std::uint32_t>(polygons.vertices.size()));
+        if (is_new) polygons.vertices.push_back(vertex);
+        return entry->second;
+    }
+
+    const Scene& scene_;
+    std::unordered_map<LitPolygons::Vertex, std::uint32_t, VertexHash> numbers_;
+};
+
 }  // namespace
 
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution) {
@@ -33,29 +65,26 @@ LitPolygons lit_polygons(const Scene& scene, const Solution& solution) {
 }
 
 LitPolygons lit_polygons(const Scene& scene, const VertexLight& light) {
-    const ElementForest& forest = *light.forest;
-    const ElementMesh& mesh = light.mesh;
-    LitPolygons polygons;
-    polygons.points = mesh.points();
-    std::unordered_map<LitPolygons::Vertex, std::uint32_t, VertexHash> numbers;
-    for (const std::uint32_t leaf : forest.leaves()) {
-        const std::vector<MeshCorner> outline = mesh.outline(leaf);
-        if (outline.size() < 3) continue;
-        const Patch& patch = scene.patches[forest.patch(leaf)];
-        for (const MeshCorner& corner : outline) {
-            const Rgb radiosity =
-                exitance_at(scene, patch, corner.at) + reflectance_at(scene, patch, corner.at) * corner.irradiance;
-            const LitPolygons::Vertex vertex{corner.point, corner.irradiance, radiosity};
-            const auto [entry, is_new] =
-                numbers.try_emplace(vertex, static_cast<std::uint32_t>(polygons.vertices.size()));
-            if (is_new) polygons.vertices.push_back(vertex);
-            polygons.corners.push_back(entry->second);
-            polygons.parameters.push_back(corner.at);
-        }
-        polygons.leaves.push_back(leaf);
-        polygons.ends.push_back(static_cast<std::uint32_t>(polygons.corners.size()));
+    Polygons all(scene);
+    for (const std::uint32_t leaf : light.forest->leaves()) {
+        const std::vector<MeshCorner> outline = light.mesh.outline(leaf);
+        if (outline.size() >= 3) all.add(scene.patches[light.forest->patch(leaf)], leaf, outline);
     }
-    return polygons;
+    all.polygons.points = light.mesh.points();
+    return std::move(all.polygons);
+}
+
+LitPolygons lit_triangles(const Scene& scene, VertexLight& light) {
+    Polygons all(scene);
+    std::vector<MeshTriangle> triangles;
+    for (const std::uint32_t leaf : light.forest->leaves()) {
+        triangles.clear();
+        light.mesh.triangulate(leaf, triangles);
+        for (const MeshTriangle& triangle : triangles)
+            all.add(scene.patches[light.forest->patch(leaf)], leaf, triangle);
+    }
+    all.polygons.points = light.mesh.points();
+    return std::move(all.polygons);
 }
 
 std::array<std::uint8_t, 3> display_colour(const Rgb& radiosity, float exposure) {

@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-/// Leaves as convex polygons without T-junctions (ElementMesh); equal corners share a vertex.
+/// Leaves as convex polygons, or as triangles, without T-junctions (ElementMesh); equal corners share a vertex.
 struct LitPolygons {
     struct Vertex {
         std::uint32_t point;
@@ -24,7 +24,7 @@ struct LitPolygons {
 
     std::vector<V3f> points;  ///< Relative to Scene::origin [m].
     std::vector<Vertex> vertices;
-    std::vector<std::uint32_t> leaves;
+    std::vector<std::uint32_t> leaves;   ///< Of each polygon.
     std::vector<std::uint32_t> ends;     ///< End of each polygon in `corners`.
     std::vector<std::uint32_t> corners;  ///< Into `vertices`, counter-clockwise seen from the lit side.
     std::vector<Parameters> parameters;
@@ -35,6 +35,8 @@ struct LitPolygons {
 
 /// Omits leaves without area.
 LitPolygons lit_polygons(const Scene& scene, const VertexLight& light);
+/// The same, with leaves cut into triangles. Adds points to the mesh.
+LitPolygons lit_triangles(const Scene& scene, VertexLight& light);
 /// Polygons of the solution's elements.
 LitPolygons lit_polygons(const Scene& scene, const Solution& solution);
 
