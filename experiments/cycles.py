@@ -1,6 +1,6 @@
 """Compares pictures of rooms from Blender, gathered here, with Cycles' from the same file: `experiments/run cycles`.
 
-Needs Blender 3.4. Pictures by Cycles are kept in out/experiments/cache/cycles. Existing rows of results/cycles.csv are
+Needs Blender, 3.4 to 5.0. Pictures by Cycles are kept in out/experiments/cache/cycles. Existing rows of results/cycles.csv are
 not measured again. Pairs of pictures, ours on the left, go to docs/pictures.
 """
 
@@ -25,13 +25,9 @@ TARGET_MEAN, TARGET_BLOCK = 0.03, 0.05
 
 
 def blender(out: Path, script: str, *arguments) -> None:
-    """Runs a script of this folder. The file `out` proves success, because Blender always exits with code 0."""
-    command = ["blender", "-b", "--factory-startup", "--python", SCRIPTS / script, "--", *map(str, arguments)]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True)
-    except FileNotFoundError:
-        message = "blender is missing: install it with scripts/setup experiments"
-        raise program.ExperimentError(message) from None
+    """Runs a script of this folder. The file `out` proves success: bpy 4.2 may crash when Python ends."""
+    command = program.blender_script(str(SCRIPTS / script), "--", *map(str, arguments))
+    done = subprocess.run(command, capture_output=True, text=True)
     if not out.is_file():
         raise program.ExperimentError(f"{script} has not made {out}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
 

@@ -5,7 +5,6 @@ images and light sources. Pictures are means of many paths; blocks of 9 x 9 pixe
 """
 
 import json
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -38,8 +37,6 @@ SCENES = {
 
 def measure() -> None:
     command = program.find_program()
-    if not shutil.which("blender"):
-        raise program.ExperimentError("blender is missing: install it with scripts/setup experiments")
     rows = []
     for name, (scene, views, options) in SCENES.items():
         print(name, file=sys.stderr, flush=True)
@@ -76,8 +73,8 @@ def pictures(
     program.run(command, ["render", scene, *drawing, *ours])
     exported = ["--pixel-samples", str(SAMPLES), "-o", str(folder / "scene.py")]
     program.run(command, ["export", scene, *drawing, *exported])
-    script = ["blender", "--background", "--python-exit-code", "1", "--python", str(folder / "scene.py")]
-    finished = subprocess.run([*script, "--", str(files[1])], capture_output=True, text=True)
+    script = program.blender_script(str(folder / "scene.py"), "--", str(files[1]))
+    finished = subprocess.run(script, capture_output=True, text=True)
     if finished.returncode != 0 or not files[1].is_file():
         raise program.ExperimentError(f"blender failed:\n{finished.stdout[-1000:]}{finished.stderr[-1000:]}")
     return [read_exr(file) for file in files]

@@ -6,19 +6,17 @@ soft lamps and Cycles' own shortcuts (clamping, few bounces). A lumen in the fil
 """
 
 import sys
+from pathlib import Path
 
 import bpy
-import numpy
 
-numpy.bool = bool  # Debian 12's importer uses the old name, which its NumPy has dropped
+sys.path.append(str(Path(__file__).resolve().parents[2] / "integrations/blender/interflect"))
+import versions
 
 
 def main(path, camera, width, height, samples, seed, out) -> None:
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.import_scene.gltf(filepath=path, convert_lighting_mode="COMPAT")
-    for mesh in bpy.data.meshes:
-        mesh.use_auto_smooth = False
-        mesh.polygons.foreach_set("use_smooth", [False] * len(mesh.polygons))
+    bpy.ops.import_scene.gltf(filepath=path, import_shading="FLAT", **versions.watts_as_lumens(bpy.ops.import_scene.gltf))
     for material in bpy.data.materials:
         make_lambertian(material)
     for light in bpy.data.lights:
@@ -35,12 +33,11 @@ def make_lambertian(material) -> None:
     nodes, links = material.node_tree.nodes, material.node_tree.links
     principled = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
     diffuse, emission, both = (nodes.new(f"ShaderNode{kind}") for kind in ("BsdfDiffuse", "Emission", "AddShader"))
-    for name, to in [
-        ("Base Color", diffuse.inputs["Color"]),
-        ("Emission", emission.inputs["Color"]),
-        ("Emission Strength", emission.inputs["Strength"]),
+    for source, to in [
+        (principled.inputs["Base Color"], diffuse.inputs["Color"]),
+        (versions.emission_colour(principled), emission.inputs["Color"]),
+        (principled.inputs["Emission Strength"], emission.inputs["Strength"]),
     ]:
-        source = principled.inputs[name]
         to.default_value = source.default_value
         for link in source.links:
             links.new(link.from_socket, to)

@@ -12,8 +12,12 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+sys.path.append(str(Path(__file__).resolve().parents[2] / "integrations/blender/interflect"))
+import versions
+
 ROOM = (6.3, 4.7, 2.9)  # [m]
 WALL = 0.2  # thickness [m]
+SPECULAR = ("Specular IOR Level", "Specular")  # input of a Principled BSDF since Blender 4.0, and before
 
 
 def main(path: str, textured: bool) -> None:
@@ -23,9 +27,8 @@ def main(path: str, textured: bool) -> None:
     build_lamps()
     build_camera("window", (0.5, 0.6, 1.65), (4.2, 3.4, 0.9))
     build_camera("sofa", (5.8, 3.9, 1.3), (1.0, 1.2, 0.8))
-    bpy.ops.export_scene.gltf(
-        filepath=path, export_lights=True, export_cameras=True, convert_lighting_mode="COMPAT"
-    )
+    lighting = versions.watts_as_lumens(bpy.ops.export_scene.gltf)
+    bpy.ops.export_scene.gltf(filepath=path, export_lights=True, export_cameras=True, **lighting)
 
 
 def material(name, colour, emission=0.0, image=None, repeats=1.0):
@@ -35,9 +38,9 @@ def material(name, colour, emission=0.0, image=None, repeats=1.0):
     surface = nodes["Principled BSDF"]
     surface.inputs["Base Color"].default_value = (*colour, 1)
     surface.inputs["Roughness"].default_value = 1
-    surface.inputs["Specular"].default_value = 0
+    next(surface.inputs[name] for name in SPECULAR if name in surface.inputs).default_value = 0
     if emission:
-        surface.inputs["Emission"].default_value = (1, 0.92, 0.8, 1)
+        versions.emission_colour(surface).default_value = (1, 0.92, 0.8, 1)
         surface.inputs["Emission Strength"].default_value = emission
     if image:
         texture = nodes.new("ShaderNodeTexImage")

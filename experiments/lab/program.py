@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import platform
+import shutil
 import signal
 import subprocess
 import sys
@@ -51,6 +52,20 @@ def find_program(named: str | None = None) -> Program:
     fingerprint = hashlib.sha256(path.read_bytes()).hexdigest()
     version = printed.split()[-1] + ("" if named else _commit())
     return Program(path, version, fingerprint, _machine())
+
+
+def blender_script(*script: str) -> list[str]:
+    """Returns a command that runs a script in Blender: in INTERFLECT_BPY, a Python with the package bpy, else in the
+    program blender."""
+    python = os.environ.get("INTERFLECT_BPY")
+    if python:
+        return [python, *script]
+    if not shutil.which("blender"):
+        raise ExperimentError(
+            "blender is missing: install it with scripts/setup experiments, or name a Python with the package bpy in "
+            "INTERFLECT_BPY"
+        )
+    return ["blender", "--background", "--factory-startup", "--python-exit-code", "1", "--python", *script]
 
 
 def expanded(text: str) -> str:
