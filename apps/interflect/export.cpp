@@ -42,6 +42,7 @@ double resolution_of(Quality quality) { return quality == Quality::low ? 0.5 : q
 
 struct ExportArguments {
     SceneOptions scene;
+    ViewOptions view;
     std::filesystem::path output;
     Size size{1280, 720};
     int samples = 256;
@@ -68,12 +69,13 @@ struct OptionsOfFormats {
     std::vector<std::string_view> formats;
 };
 std::vector<OptionsOfFormats> options_of_formats() {
-    return {{{lightmap_group, "--up"}, {".glb", ".gltf"}},
+    return {{{lightmap_group}, {".glb", ".gltf"}},
+            {{"--up"}, {".glb", ".gltf", ".rad", ".xml", ".pbrt", ".py"}},
             {{bake_group, vertices_group}, {".glb", ".gltf", ".ply", ".obj"}},
             {{"--exposure"}, {".glb", ".gltf", ".ply", ".obj"}},
             {{"--polygons"}, {".ply", ".obj"}},
             {{"--probe-spacing", "--probe-rays"}, {".json", ".exr"}},
-            {{"--size"}, {".rad", ".xml", ".pbrt", ".py"}},
+            {{view_group, "--size"}, {".rad", ".xml", ".pbrt", ".py"}},
             {{"--pixel-samples"}, {".xml", ".pbrt", ".py"}}};
 }
 
@@ -107,8 +109,11 @@ void run_scene(const ExportArguments& arguments) {
     const bool is_solved = is_solution_file(arguments.scene.path);
     const Scene scene = is_solved ? read_dimmed(arguments).scene : arguments.scene.load();
     require_no_scene_files(scene, std::array<NamedFile, 1>{{{"--output", arguments.output}}});
+    ViewOptions view = arguments.view;
+    if (arguments.up) view.up = V3f(*arguments.up);
     const SceneExport exported =
-        export_scene(arguments.output, scene, {arguments.size.width, arguments.size.height, arguments.samples});
+        export_scene(arguments.output, scene,
+                     {arguments.size.width, arguments.size.height, arguments.samples, view.views(scene)});
     for (const auto& path : exported.files) spdlog::info("{}", path.string());
     log_warnings(exported.warnings);
 }
@@ -162,6 +167,10 @@ void check_format_options(const ExportArguments& arguments, const CLI::App& comm
         if (std::find(formats.begin(), formats.end(), extension) == formats.end())
             refuse_options(command, options, fmt::format("it has no effect on {}: it is for{}", extension, known));
     }
+    constexpr std::array<std::string_view, 1> of_picture = {"--up"};
+    if (is_scene_export(arguments.output) && !arguments.view.eye)
+        refuse_options(command, of_picture,
+                       fmt::format("it has no effect on {} without --eye: it is for .glb .gltf", extension));
     constexpr std::array<std::string_view, 3> of_sampling = {"--samples", "--seed", vertices_group};
     if (arguments.bake.shading == Shading::smooth)
         refuse_options(command, of_sampling, "it has no effect with --shading smooth");
@@ -194,10 +203,11 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
         check_option("--output", [&] { return require_export_format(arguments.output); });
     check_format_options(arguments, command);
     arguments.scene.check(command);
+    arguments.view.check();
     arguments.dimming.require_solution(arguments.scene.path);
     if (arguments.up && !(V3f(*arguments.up).length() > 0)) throw UsageError("--up", "0,0,0 is no direction");
     const NamedFile output{"--output", arguments.output};
-    require_distinct_files(input_files(arguments.scene, {}), {&output, 1});
+    require_distinct_files(input_files(arguments.scene, arguments.view), {&output, 1});
     if (is_scene_export(arguments.output)) return run_scene(arguments);
     const SolvedScene solved = read_dimmed(arguments);
     require_no_scene_files(solved.scene, {&output, 1});
@@ -302,7 +312,7 @@ void add_export(CLI::App& app, int& exit_code) {
                "Stops by which colours are brightened, or auto, as `render` does")
         ->type_name("STOPS|auto[+STOPS]")
         ->default_str("auto");
-    add_parsed(command, "--up", options->up, parse_vector, "Which way is up (default: that of the views, or the light)")
+    add_parsed(command, "--up", options->up, parse_vector, "Which way is up (default: that of the views, or the light); with --eye: in the picture, as for `render`")
         ->type_name("X,Y,Z");
     command.add_option("--probe-spacing", options->probes.spacing, "Of irradiance probes (.json, .exr), at most [m]")
         ->type_name("METRES")
@@ -322,6 +332,7 @@ void add_export(CLI::App& app, int& exit_code) {
     command.add_flag("--polygons", options->has_polygons,
                      "Polygons of up to dozens of corners in .ply and .obj, not triangles: fewer faces, but trimesh "
                      "and Open3D do not read such .ply files");
+    options->view.add_without_up(command);
     add_lightmap(command, *options);
     add_bake(command, *options);
     add_vertices(command, *options);

@@ -234,8 +234,17 @@ Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) co
 }
 
 void ViewOptions::add_to(CLI::App& app) {
+    add_without_up(app);
+    add_parsed(app, "--up", up, parse_vector, "What is up in the picture, of --eye")
+        ->type_name("X,Y,Z")
+        ->needs("--eye")
+        ->default_str("0,0,1")
+        ->group(view_group);
+}
+
+void ViewOptions::add_without_up(CLI::App& app) {
     const auto group = [](CLI::Option* option) {
-        option->group("View");
+        option->group(view_group);
         return option;
     };
     group(app.add_option("--view", names, "Name of a view that the scene has (may be repeated)")->type_name("NAME"));
@@ -247,7 +256,6 @@ void ViewOptions::add_to(CLI::App& app) {
     CLI::Option* look_at_option = vector_option("--look-at", look_at, "A point in the middle of the picture [m]");
     eye_option->needs(look_at_option);
     look_at_option->needs(eye_option);
-    vector_option("--up", up, "What is up in the picture, of --eye")->needs(eye_option)->default_str("0,0,1");
     group(app.add_option("--fov", fov, "Vertical field of view of --eye [degrees]")
               ->needs(eye_option)
               ->capture_default_str()

@@ -60,6 +60,8 @@ struct ViewOptions {
     float fov = 45;
 
     void add_to(CLI::App& app);
+    /// As add_to(), without --up, for a command that has its own.
+    void add_without_up(CLI::App& app);
     /// Number of requested views.
     std::size_t count() const { return names.size() + files.size() + (eye ? 1 : 0); }
     /// @throws UsageError if --eye, --look-at and --up give no picture.
@@ -74,6 +76,7 @@ struct ViewOptions {
 std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view);
 
 /// Headings in the help; `render --shading path` refuses these options.
+inline constexpr const char* view_group = "View";
 inline constexpr const char* solver_group = "Solver";
 inline constexpr const char* limits_group = "Limits";
 inline constexpr const char* refinement_group = "Refinement";

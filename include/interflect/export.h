@@ -106,6 +106,7 @@ std::vector<std::filesystem::path> export_solution(const std::filesystem::path& 
 struct SceneExportOptions {
     int width = 1280, height = 720;  ///< Size of the pictures [pixels], >= 1.
     int samples = 256;               ///< Samples per pixel, >= 1; Radiance has no such setting.
+    std::vector<View> views;         ///< Cameras; if empty, the views of the scene, or an overview.
 };
 
 /// Files written, and warnings about unsupported features.

@@ -118,4 +118,6 @@ std::string exr_bytes(const Texture& texture) {
     return codecs::encode_exr(image_of(texture), metadata, {});
 }
 
+std::string hdr_bytes(const Texture& texture) { return codecs::encode_radiance(image_of(texture)); }
+
 }  // namespace interflect::detail

@@ -32,5 +32,6 @@ std::string quotable(std::string_view text);
 std::string xml_text(std::string_view text);
 
 std::string exr_bytes(const Texture& texture);
+std::string hdr_bytes(const Texture& texture);
 
 }  // namespace interflect::detail

@@ -179,6 +179,7 @@ scene.render.engine = "CYCLES"
 scene.cycles.use_adaptive_sampling = False
 scene.cycles.use_denoising = False
 scene.cycles.sample_clamp_indirect = 0
+scene.cycles.light_sampling_threshold = 0
 scene.cycles.blur_glossy = 0
 scene.cycles.max_bounces = scene.cycles.diffuse_bounces = scene.cycles.transparent_max_bounces = 128
 scene.cycles.pixel_filter_type = "BOX"
@@ -259,10 +260,9 @@ std::string blender_description(ForeignScene& scene) {
     for (const ForeignMesh& mesh : scene.meshes) text += mesh_text(scene, mesh);
     for (std::size_t i = 0; i < scene.scene.luminaires.size(); ++i)
         text += luminaire_text(scene, scene.scene.luminaires[i], scene.luminaires[i]);
-    constexpr int rows = 512;
-    if (const std::string image = scene.add_sky_image(2 * rows, rows, equirectangular_direction); !image.empty())
+    if (const std::string image = scene.add_sky_image(2, equirectangular_direction); !image.empty())
         text += fmt::format("sky(\"{}\")\n", image);
-    scene.warn_of_materials(true, true);
+    scene.warn_of_materials(ForeignScene::Support::all);
     return text + epilogue;
 }
 

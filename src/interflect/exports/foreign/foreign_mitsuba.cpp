@@ -1,6 +1,7 @@
 // Mitsuba 3: https://mitsuba.readthedocs.io, 'Plugins'.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -66,7 +67,6 @@ std::string sensor_text(const ForeignScene& scene, const View& view) {
 
 std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
     const Material& m = scene.material(mesh);
-    const std::string file = scene.add_file(mesh.name + ".ply", ply_of(mesh));
     const std::string bsdf = bsdf_text(scene, mesh.material);
     std::string emitter;
     if (scene.emits(mesh))
@@ -74,17 +74,30 @@ std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
                   (m.exitance_texture == none ? rgb("radiance", scene.radiance(mesh))
                                               : texture("radiance", scene.add_radiance_image(mesh.material))) +
                   "</emitter>\n";
-    const auto shape = [&](bool is_flipped) {
+    const auto shape = [&](const ForeignMesh& side) {
         return fmt::format(
             "  <shape type=\"ply\">\n    <string name=\"filename\" value=\"{}\"/>\n"
             "    <boolean name=\"face_normals\" value=\"true\"/>\n    <boolean name=\"flip_tex_coords\" "
-            "value=\"true\"/>\n{}"
+            "value=\"true\"/>\n"
             "    {}\n{}  </shape>\n",
-            file, is_flipped ? "    <boolean name=\"flip_normals\" value=\"true\"/>\n" : "", bsdf, emitter);
+            scene.add_file(side.name + ".ply", ply_of(side)), bsdf, emitter);
     };
-    if (!scene.emits(mesh) || mesh.backs != Backs::emit) return shape(false);
-    scene.leave_out("emission of the backs of faces that emit on both sides");
-    return shape(false);
+    const bool has_back = scene.emits(mesh) && mesh.backs == Backs::emit;
+    return shape(mesh) + (has_back ? shape(mesh.shifted_backs(scene.distance_of_backs())) : "");
+}
+
+/// A disc that appears under the sun's angle in the whole scene: sensors and emitters have no other kind of disc.
+std::string sun_text(const ForeignScene& scene, const DirectionalLight& sun) {
+    constexpr float relative_distance = 1e4f;  // the angle differs by 1e-4 within the scene
+    const V3f direction = sun.direction.normalized();
+    const float sine = sun.disc_sine(), distance = relative_distance * std::max(scene.size, 1e-3f);
+    const V3f position = scene.centre - distance * direction;
+    const V3f up = std::abs(direction.z) < 0.9f ? V3f(0, 0, 1) : V3f(1, 0, 0);
+    return fmt::format(
+        "  <shape type=\"disk\">\n    <transform name=\"to_world\"><scale value=\"{}\"/>{}</transform>\n"
+        "    <bsdf type=\"diffuse\">{}</bsdf>\n    <emitter type=\"area\">{}</emitter>\n  </shape>\n",
+        distance * sine / std::sqrt(1 - sine * sine), look_at(position, scene.centre, up), rgb("reflectance", Rgb(0)),
+        rgb("radiance", sun.disc_radiance()));
 }
 
 std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
@@ -103,7 +116,7 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
             look_at(spot->position, spot->position + spot->direction, up));
     }
     if (const auto* directional = std::get_if<DirectionalLight>(&luminaire.kind)) {
-        if (directional->diameter > 0) scene.warnings.add("disc", "the sun is a point there");
+        if (directional->diameter > 0) return sun_text(scene, *directional);
         const V3f& d = directional->direction;
         return fmt::format(
             "  <emitter type=\"directional\"><vector name=\"direction\" x=\"{}\" y=\"{}\" z=\"{}\"/>{}</emitter>\n",
@@ -124,17 +137,19 @@ V3f envmap_direction(float x, float y) {
 
 std::string mitsuba_description(ForeignScene& scene) {
     using namespace for_mitsuba;
+    // Shadow rays of 'path' end at masks, those of 'volpath' pass their holes.
+    const bool has_holes = std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                                       [&](const ForeignMesh& mesh) { return scene.is_cut_out(mesh); });
     std::string text = fmt::format(
         "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<!-- Interflect {} -->\n<scene version=\"3.0.0\">\n"
-        "  <integrator type=\"path\"><integer name=\"max_depth\" value=\"-1\"/></integrator>\n",
-        INTERFLECT_VERSION);
+        "  <integrator type=\"{}\"><integer name=\"max_depth\" value=\"-1\"/></integrator>\n",
+        INTERFLECT_VERSION, has_holes ? "volpath" : "path");
     for (const View& view : scene.views) text += sensor_text(scene, view);
     for (const ForeignMesh& mesh : scene.meshes) text += shape_text(scene, mesh);
     for (const Luminaire& luminaire : scene.scene.luminaires) text += luminaire_text(scene, luminaire);
-    constexpr int rows = 512;
-    if (const std::string sky = scene.add_sky_image(2 * rows, rows, envmap_direction); !sky.empty())
+    if (const std::string sky = scene.add_sky_image(2, envmap_direction); !sky.empty())
         text += fmt::format("  <emitter type=\"envmap\"><string name=\"filename\" value=\"{}\"/></emitter>\n", sky);
-    scene.warn_of_materials(false, true);
+    scene.warn_of_materials(ForeignScene::Support::without_glass_and_backs);
     return text + "</scene>\n";
 }
 

@@ -108,10 +108,9 @@ std::string pbrt_description(ForeignScene& scene) {
         scene.options.width, scene.options.height, scene.escape(scene.path.stem().string()), scene.options.samples);
     for (const ForeignMesh& mesh : scene.meshes) text += shape_text(scene, mesh);
     for (const Luminaire& luminaire : scene.scene.luminaires) text += luminaire_text(scene, luminaire);
-    constexpr int side = 512;
-    if (const std::string sky = scene.add_sky_image(side, side, octahedral_direction); !sky.empty())
+    if (const std::string sky = scene.add_sky_image(1, octahedral_direction); !sky.empty())
         text += fmt::format("LightSource \"infinite\" \"string filename\" \"{}\"\n", sky);
-    scene.warn_of_materials(false, true);
+    scene.warn_of_materials(ForeignScene::Support::without_glass_and_backs);
     return text;
 }
 

@@ -2,15 +2,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <span>
 
+#include "interflect/exports/files/exported_parts.h"
 #include "interflect/exports/foreign/foreign_scene.h"
+#include "interflect/exports/mesh/opacity.h"
 
 namespace interflect::detail {
 
 namespace for_radiance {
 namespace {
+
+using Imath::V3d;
 
 constexpr float pi = std::numbers::pi_v<float>;
 constexpr float efficacy = 179;        // [lm/W]
@@ -18,54 +25,146 @@ constexpr float lamp_radius = 0.005f;  // of spheres for point lights [m]
 
 std::string numbers(const V3f& v) { return "3 " + triple(v); }
 
-std::string surface_text(ForeignScene& scene, const ForeignMesh& mesh) {
-    const Material& m = scene.material(mesh);
-    if (!scene.emits(mesh)) {
-        Rgb reflectance = m.reflectance;
-        if (m.reflectance_texture != none) {
-            reflectance *= mean_texel(scene.scene.textures[m.reflectance_texture]);
-            scene.leave_out("textures: surfaces have their means");
+/// Adds an edge of repeated texels, between which Radiance interpolates across the border of the image.
+std::string tile_bytes(const Texture& texture) {
+    const std::uint32_t width = texture.width + 2, height = texture.height + 2;
+    Texture tile{"", width, height, {}};
+    for (std::uint32_t y = 0; y < height; ++y)
+        for (std::uint32_t x = 0; x < width; ++x) {
+            const std::uint32_t row = (y + texture.height - 1) % texture.height;
+            const std::uint32_t column = (x + texture.width - 1) % texture.width;
+            tile.texels.push_back(texture.texels[std::size_t{row} * texture.width + column]);
         }
-        return fmt::format("void plastic {}\n0\n0\n5 {} 0 0\n", mesh.name, triple(reflectance));
-    }
-    if (m.reflectance != Rgb(0)) scene.leave_out("what emitting surfaces reflect");
-    Rgb radiance = scene.radiance(mesh);
-    if (m.exitance_texture != none) {
-        radiance *= mean_texel(scene.scene.textures[m.exitance_texture]);
-        scene.leave_out("textures: surfaces have their means");
-    }
-    return fmt::format("void light {}\n0\n0\n{}\n", mesh.name, numbers(radiance / efficacy));
+    return hdr_bytes(tile);
 }
 
-std::string polygon(const ForeignMesh& mesh, std::size_t face, bool is_reversed, float offset) {
-    std::vector<V3f> corners;
-    for (const std::uint32_t v : mesh.faces[face])
-        if (v != none) corners.push_back(mesh.positions[v]);
-    if (is_reversed) {
-        const V3f normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-        std::reverse(corners.begin(), corners.end());
-        for (V3f& corner : corners) corner -= offset * normal;
-    }
-    std::string text = fmt::format("{} polygon {}.{}{}\n0\n0\n{}", mesh.name, mesh.name, face,
-                                   is_reversed ? ".back" : "", 3 * corners.size());
-    for (const V3f& corner : corners) text += "\n  " + triple(corner);
-    return text + "\n";
+/// An image of a material.
+struct Tile {
+    std::string file;
+    std::uint32_t width = 0, height = 0;  // without the edge
+};
+
+Tile add_tile(ForeignScene& scene, const std::string& name, const Texture& texture) {
+    return {scene.add_file(name + ".hdr", tile_bytes(texture)), texture.width, texture.height};
 }
+
+/// Describes a texture coordinate as an expression, an affine function of the position.
+std::string affine(const std::array<V3f, 3>& corners, const std::array<float, 3>& values) {
+    const V3d origin(corners[0]), a = V3d(corners[1]) - origin, b = V3d(corners[2]) - origin;
+    const V3d normal = a.cross(b);
+    const double along_a = values[1] - values[0], along_b = values[2] - values[0];
+    const V3d gradient = (along_a * b.cross(normal) + along_b * normal.cross(a)) / normal.dot(normal);
+    return fmt::format("({:.9g}+Px*({:.9g})+Py*({:.9g})+Pz*({:.9g}))", values[0] - gradient.dot(origin), gradient.x,
+                       gradient.y, gradient.z);
+}
+
+/// Describes the place in the image; pixels of Radiance's pictures are squares, and the shorter side is 1.
+std::string place_in(const Tile& tile, const std::array<V3f, 3>& corners, const std::array<V2f, 3>& coordinates) {
+    const std::uint32_t side = std::min(tile.width, tile.height) + 2;
+    const auto along = [&](int k, std::uint32_t size) {
+        return fmt::format("(1+{}*frac{})/{}", size,
+                           affine(corners, {coordinates[0][k], coordinates[1][k], coordinates[2][k]}), side);
+    };
+    return along(0, tile.width) + " " + along(1, tile.height);
+}
+
+/// The surface of a mesh. Radiance has no texture coordinates at vertices: each triangle has its own mapping.
+class Surface {
+  public:
+    Surface(ForeignScene& scene, const ForeignMesh& mesh) : scene_(scene), mesh_(mesh) {
+        const Material& m = scene.material(mesh);
+        const std::string& name = scene.materials[mesh.material];
+        const auto& textures = scene.scene.textures;
+        colour_ = scene.emits(mesh) ? scene.radiance(mesh) / efficacy : m.reflectance;
+        if (scene.emits(mesh)) {
+            if (m.reflectance != Rgb(0)) scene.leave_out("what emitting surfaces reflect");
+            if (scene.is_cut_out(mesh)) scene.leave_out("holes of emitting surfaces");
+            if (m.exitance_texture != none)
+                pattern_ = add_tile(scene, name + "-exitance", textures[m.exitance_texture]);
+        } else if (scene.is_cut_out(mesh)) {
+            const Texture opacity = opacity_of(scene.scene, m);
+            opacity_ = add_tile(scene, name + "-opacity", opacity);
+            if (m.reflectance_texture != none)
+                pattern_ = add_tile(scene, name + "-reflectance", opaque_reflectance(scene.scene, m, opacity));
+        } else if (m.reflectance_texture != none) {
+            pattern_ = add_tile(scene, name + "-reflectance", textures[m.reflectance_texture]);
+        }
+    }
+
+    std::string text() const {
+        if (pattern_ || opacity_) return text_of_triangles();
+        std::string text = material_text("void", mesh_.name);
+        for (std::size_t face = 0; face < mesh_.faces.size(); ++face) {
+            std::vector<V3f> corners;
+            for (const std::uint32_t v : mesh_.faces[face])
+                if (v != none) corners.push_back(mesh_.positions[v]);
+            text += polygon(mesh_.name, fmt::format("{}.{}", mesh_.name, face), corners);
+        }
+        return text;
+    }
+
+  private:
+    static std::string polygon(const std::string& modifier, const std::string& name, std::span<const V3f> corners) {
+        std::string text = fmt::format("{} polygon {}\n0\n0\n{}", modifier, name, 3 * corners.size());
+        for (const V3f& corner : corners) text += "\n  " + triple(corner);
+        return text + "\n";
+    }
+
+    /// The backs of one-sided faces pass light; the backs of emitting faces are black.
+    std::string material_text(const std::string& pattern, const std::string& name) const {
+        if (scene_.emits(mesh_)) return fmt::format("{} light {}\n0\n0\n{}\n", pattern, name, numbers(colour_));
+        const bool has_backs = mesh_.backs != Backs::pass;
+        const std::string front = has_backs ? name : name + ".front";
+        std::string text = fmt::format("{} plastic {}\n0\n0\n5 {} 0 0\n", pattern, front, triple(colour_));
+        if (!has_backs) text += fmt::format("void mixfunc {} 4 {} void if(Rdot,1,0) .\n0\n0\n", name, front);
+        return text;
+    }
+
+    std::string text_of_triangles() const {
+        std::string text;
+        std::size_t number = 0;
+        for (const std::array<std::uint32_t, 3>& triangle : mesh_.triangles()) {
+            const std::string name = fmt::format("{}.{}", mesh_.name, number++);
+            std::array<V3f, 3> corners;
+            std::array<V2f, 3> coordinates;
+            for (std::size_t k = 0; k < 3; ++k) {
+                corners[k] = mesh_.positions[triangle[k]];
+                coordinates[k] = mesh_.texture_coordinates[triangle[k]];
+            }
+            std::string pattern = "void", material = name + ".surface";
+            if (pattern_) {
+                pattern = name + ".image";
+                text += fmt::format("void colorpict {} 7 red green blue \"{}\" . {}\n0\n0\n", pattern, pattern_->file,
+                                    place_in(*pattern_, corners, coordinates));
+            }
+            text += material_text(pattern, material);
+            if (opacity_) {
+                text += fmt::format("void mixpict {0}.holes 7 {0}.surface void grey \"{1}\" . {2}\n0\n0\n", name,
+                                    opacity_->file, place_in(*opacity_, corners, coordinates));
+                material = name + ".holes";
+            }
+            text += polygon(material, name, corners);
+        }
+        return text;
+    }
+
+    ForeignScene& scene_;
+    const ForeignMesh& mesh_;
+    Rgb colour_;  // reflectance, or radiance of emitters
+    std::optional<Tile> pattern_, opacity_;
+};
 
 std::string mesh_text(ForeignScene& scene, const ForeignMesh& mesh) {
-    constexpr float offset = 1e-4f;  // between two emitting sides [m]
-    std::string text = surface_text(scene, mesh);
-    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-        text += polygon(mesh, face, false, 0);
-        if (scene.emits(mesh) && mesh.backs == Backs::emit) text += polygon(mesh, face, true, offset);
-    }
+    std::string text = Surface(scene, mesh).text();
+    if (scene.emits(mesh) && mesh.backs == Backs::emit)
+        text += Surface(scene, mesh.shifted_backs(scene.distance_of_backs())).text();
     return text;
 }
 
 std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire, const std::string& name) {
     const float disc = pi * lamp_radius * lamp_radius;  // [m^2]
     if (const auto* point = std::get_if<PointLight>(&luminaire.kind))
-        return fmt::format("void light {0}\n0\n0\n{1}\n{0} sphere {0}.lamp\n0\n0\n4 {2} {3}\n", name,
+        return fmt::format("void illum {0}\n1 void\n0\n{1}\n{0} sphere {0}.lamp\n0\n0\n4 {2} {3}\n", name,
                            numbers(point->intensity / disc / efficacy), triple(point->position), lamp_radius);
     if (const auto* spot = std::get_if<SpotLight>(&luminaire.kind)) {
         if (spot->inner_angle < spot->outer_angle)
@@ -81,11 +180,54 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire, cons
                            numbers(directional->irradiance / (pi * sine * sine) / efficacy),
                            triple(-directional->direction), diameter);
     }
-    if (const auto* sky = std::get_if<UniformSky>(&luminaire.kind))
-        return fmt::format("void glow {0}\n0\n0\n4 {1} 0\n{0} source {0}.sky\n0\n0\n4 0 0 1 360\n", name,
-                           triple(sky->radiance / efficacy));
-    scene.leave_out(fmt::format("lights of the kind '{}'", kind_name(luminaire)));
+    if (!is_sky(luminaire)) scene.leave_out(fmt::format("lights of the kind '{}'", kind_name(luminaire)));
     return "";
+}
+
+/// SkyModel, from the cosines of the angles to the zenith and to the sun.
+constexpr const char* sky_functions =
+    R"({ Luminance of a CIE general sky (CIE S 011:2003), or of Perez's, over a uniform ground.
+  A1, A2, A3: zenith    A4, A5, A6: towards the sun    arg(7) to arg(12): a, b, c, d, e, g    arg(13): ground }
+sky_zenith = A1*Dx + A2*Dy + A3*Dz;
+sky_sun = bound(-1, A4*Dx + A5*Dy + A6*Dz, 1);
+sky_gradation = 1 + arg(7)*Exp(arg(8)/bound(1e-3, sky_zenith, 1)) + arg(12)*sky_zenith;
+sky_indicatrix = 1 + arg(9)*(Exp(arg(10)*acos(sky_sun)) - Exp(arg(10)*PI/2)) + arg(11)*sky_sun*sky_sun;
+sky_luminance = if(sky_zenith, bound(0, sky_gradation, 1e10)*bound(0, sky_indicatrix, 1e10), arg(13));
+)";
+
+/// Latitudes and longitudes, with y in the middle of the right half.
+V3f sky_direction(float x, float y) {
+    const float azimuth = (0.5f - x) * 2 * pi, polar = pi * y;
+    return {std::cos(azimuth) * std::sin(polar), std::sin(azimuth) * std::sin(polar), std::cos(polar)};
+}
+
+/// Radiance has one source in each direction: a single sky is a function, several ones and maps are an image.
+std::string sky_text(ForeignScene& scene) {
+    if (!scene.has_sky()) return "";
+    std::vector<const Luminaire*> skies;
+    for (const Luminaire& luminaire : scene.scene.luminaires)
+        if (is_sky(luminaire)) skies.push_back(&luminaire);
+    std::string pattern = "void";
+    Rgb radiance(1);
+    std::string text = "\n";
+    if (const auto* sky = std::get_if<UniformSky>(&skies.front()->kind); sky && skies.size() == 1) {
+        radiance = sky->radiance;
+    } else if (const auto* dome = std::get_if<SkyDome>(&skies.front()->kind); dome && skies.size() == 1) {
+        const V3f zenith = dome->zenith.normalized(), sun = dome->sun.normalized();
+        const SkyModel& m = dome->model;
+        const double integral = m.horizontal_integral(sun.dot(zenith));
+        radiance = dome->irradiance / static_cast<float>(integral);
+        pattern = "sky.luminance";
+        text += fmt::format("void brightfunc {} 2 sky_luminance \"{}\"\n0\n13 {}  {}\n  {} {} {} {} {} {}  {}\n",
+                            pattern, scene.add_file("sky.cal", sky_functions), triple(zenith), triple(sun), m.a, m.b,
+                            m.c, m.d, m.e, m.g, static_cast<double>(dome->ground) / std::numbers::pi * integral);
+    } else {
+        pattern = "sky.image";
+        text += fmt::format("void colorpict {} 7 red green blue \"{}\" . 1-Atan2(Dy,Dx)/PI 1-Acos(Dz)/PI\n0\n0\n",
+                            pattern, scene.add_file("sky.hdr", hdr_bytes(scene.sky_image(2, sky_direction))));
+    }
+    return text + fmt::format("{} glow sky.glow\n0\n0\n4 {} 0\nsky.glow source sky\n0\n0\n4 0 0 1 360\n", pattern,
+                              triple(radiance / efficacy));
 }
 
 /// -vh and -vv are full angles, or sizes of orthographic views.
@@ -109,9 +251,10 @@ std::string radiance_description(ForeignScene& scene) {
     for (const ForeignMesh& mesh : scene.meshes) text += "\n" + mesh_text(scene, mesh);
     for (std::size_t i = 0; i < scene.scene.luminaires.size(); ++i)
         text += "\n" + luminaire_text(scene, scene.scene.luminaires[i], scene.luminaires[i]);
+    text += sky_text(scene);
     for (std::size_t i = 0; i < scene.views.size(); ++i)
         scene.add_file(fmt::format("view-{}.vf", i), view_text(scene, scene.views[i]));
-    scene.warn_of_materials(false, false);
+    scene.warn_of_materials(ForeignScene::Support::without_glass);
     return text;
 }
 

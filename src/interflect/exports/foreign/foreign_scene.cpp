@@ -1,10 +1,14 @@
 #include "interflect/exports/foreign/foreign_scene.h"
 
+#include <ImathBox.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 
+#include "interflect/base/parallel.h"
 #include "interflect/exports/files/exported_parts.h"
 #include "interflect/exports/mesh/opacity.h"
 #include "interflect/exports/vertices/lit_polygons.h"
@@ -67,8 +71,8 @@ class Meshes {
     std::vector<Vertices> vertices_;
 };
 
-std::vector<View> local_views(const Scene& scene) {
-    std::vector<View> views = scene.views;
+std::vector<View> local_views(const Scene& scene, const std::vector<View>& chosen) {
+    std::vector<View> views = chosen.empty() ? scene.views : chosen;
     if (views.empty()) views.push_back(overview(scene));
     for (View& view : views) view.eye -= scene.origin, view.look_at -= scene.origin;
     return views;
@@ -90,6 +94,23 @@ std::vector<std::array<std::uint32_t, 3>> ForeignMesh::triangles() const {
     return cut;
 }
 
+ForeignMesh ForeignMesh::shifted_backs(float distance) const {
+    ForeignMesh back{name + ".back", material, backs, {}, {}, {}};
+    for (const auto& face : faces) {
+        const std::size_t count = face[3] == none ? 3 : 4;
+        const V3f& a = positions[face[0]];
+        const V3f normal = (positions[face[1]] - a).cross(positions[face[count - 1]] - a).normalized();
+        auto& reversed = back.faces.emplace_back(std::array<std::uint32_t, 4>{none, none, none, none});
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t v = face[count - 1 - k];
+            reversed[k] = static_cast<std::uint32_t>(back.positions.size());
+            back.positions.push_back(positions[v] - distance * normal);
+            if (!texture_coordinates.empty()) back.texture_coordinates.push_back(texture_coordinates[v]);
+        }
+    }
+    return back;
+}
+
 ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& description,
                            const SceneExportOptions& chosen, std::string (*file_name_escape)(std::string_view))
     : scene(exported),
@@ -97,7 +118,7 @@ ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& d
       options(chosen),
       escape(file_name_escape),
       materials(material_names(exported)),
-      views(local_views(exported)) {
+      views(local_views(exported, chosen.views)) {
     std::vector<std::string> names;
     for (const Luminaire& luminaire : scene.luminaires) names.push_back(luminaire.name);
     luminaires = plain_names(names, "light");
@@ -105,6 +126,19 @@ ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& d
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
         if (!is_second_side(scene, i)) all.add(scene.patches[i]);
     meshes = std::move(all.meshes);
+    Imath::Box3f bounds;
+    for (const ForeignMesh& mesh : meshes)
+        for (const V3f& position : mesh.positions) bounds.extendBy(position);
+    if (bounds.isEmpty()) return;
+    centre = bounds.center();
+    size = (bounds.max - centre).length();
+}
+
+float ForeignScene::distance_of_backs() const {
+    constexpr float relative = 1e-5f;  // 100 times the rounding of a coordinate
+    float largest = 0;
+    for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(centre[k]) + size);
+    return relative * largest;
 }
 
 std::string ForeignScene::add_file(const std::string& name, std::string bytes) {
@@ -140,32 +174,53 @@ std::string ForeignScene::add_opaque_reflectance_image(std::uint32_t m) {
     return add_file(materials[m] + "-reflectance.exr", exr_bytes(scaled(reflectance, material.reflectance)));
 }
 
-std::string ForeignScene::add_sky_image(int width, int height, const std::function<V3f(float, float)>& direction) {
-    bool has_sky = false;
-    for (const Luminaire& luminaire : scene.luminaires) has_sky |= is_sky(luminaire);
-    if (!has_sky) return "";
+bool ForeignScene::has_sky() const { return std::any_of(scene.luminaires.begin(), scene.luminaires.end(), is_sky); }
+
+Texture ForeignScene::sky_image(int aspect, const std::function<V3f(float, float)>& direction) const {
+    // Maps keep their resolution up to 2048 rows; the means of finer texels keep the power of a sun in them.
+    constexpr std::uint32_t least_rows = 512, most_rows = 2048, samples_per_row_of_map = 2;
+    std::uint32_t rows = least_rows, samples = 1;
+    for (const Luminaire& luminaire : scene.luminaires)
+        if (const auto* map = std::get_if<EnvironmentMap>(&luminaire.kind)) {
+            rows = std::max(rows, std::min(map->image->height, most_rows));
+            samples = std::max(samples, samples_per_row_of_map * ((map->image->height + rows - 1) / rows));
+        }
     const Skies skies(scene);
-    Texture image{"", static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            image.texels.push_back(
-                skies.radiance(direction((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
-                                         (static_cast<float>(y) + 0.5f) / static_cast<float>(height))));
-    return add_file("sky.exr", exr_bytes(image));
+    const std::uint32_t columns = static_cast<std::uint32_t>(aspect) * rows;
+    const auto place = [&](std::uint32_t i, std::uint32_t sample, std::uint32_t count) {
+        return (static_cast<float>(i) + (static_cast<float>(sample) + 0.5f) / static_cast<float>(samples)) /
+               static_cast<float>(count);
+    };
+    Texture image{"", columns, rows, std::vector<Rgb>(std::size_t{columns} * rows)};
+    parallel_for_ranges(image.texels.size(), columns, [&](std::size_t begin, std::size_t end) {
+        const auto y = static_cast<std::uint32_t>(begin / columns);
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto x = static_cast<std::uint32_t>(i - begin);
+            Rgb sum(0);
+            for (std::uint32_t down = 0; down < samples; ++down)
+                for (std::uint32_t across = 0; across < samples; ++across)
+                    sum += skies.radiance(direction(place(x, across, columns), place(y, down, rows)));
+            image.texels[i] = sum / static_cast<float>(samples * samples);
+        }
+    });
+    return image;
+}
+
+std::string ForeignScene::add_sky_image(int aspect, const std::function<V3f(float, float)>& direction) {
+    return has_sky() ? add_file("sky.exr", exr_bytes(sky_image(aspect, direction))) : "";
 }
 
 Rgb ForeignScene::radiance(const ForeignMesh& mesh) const {
     return material(mesh).exitance / std::numbers::pi_v<float>;
 }
 
-void ForeignScene::warn_of_materials(bool has_glass, bool has_holes) {
+void ForeignScene::warn_of_materials(Support support) {
     for (const ForeignMesh& mesh : meshes) {
         const Material& m = material(mesh);
         if (m.specular_reflectance != Rgb(0)) leave_out("mirrors");
-        const bool is_pane = m.transmittance != Rgb(0), is_cut_out = m.transmittance_texture != none;
-        if (is_pane && is_cut_out && !has_holes) leave_out("holes: faces are opaque all over there");
-        if (is_pane && !is_cut_out && !has_glass) leave_out("glass: panes are opaque there");
-        if (!has_glass && mesh.backs == Backs::pass)
+        if (support == Support::all) continue;
+        if (m.transmittance != Rgb(0) && !is_cut_out(mesh)) leave_out("glass: panes are opaque there");
+        if (mesh.backs == Backs::pass && (emits(mesh) || support == Support::without_glass_and_backs))
             warnings.add("one-sided", "one-sided faces, through whose backs light passes here, block it there");
     }
 }

@@ -27,6 +27,9 @@ struct ForeignMesh {
     std::vector<std::array<std::uint32_t, 4>> faces;  ///< Vertex indices; triangles end with `none`.
 
     std::vector<std::array<std::uint32_t, 3>> triangles() const;
+    /// Returns the reversed faces, each with its own vertices, shifted behind the fronts: emitters of other renderers
+    /// shine on one side. @param distance  [m]
+    ForeignMesh shifted_backs(float distance) const;
 };
 
 struct ForeignScene {
@@ -38,6 +41,8 @@ struct ForeignScene {
     std::vector<std::string> luminaires;
     std::vector<ForeignMesh> meshes;
     std::vector<View> views;  ///< At least one, relative to Scene::origin.
+    V3f centre;               ///< Centre of the bounding box [m].
+    float size = 0;           ///< Largest distance of a vertex from `centre` [m].
     std::vector<ExportedFile> files;
     Warnings warnings;
 
@@ -53,17 +58,25 @@ struct ForeignScene {
     /// See opacity.h.
     std::string add_opacity_image(std::uint32_t material);
     std::string add_opaque_reflectance_image(std::uint32_t material);
-    /// Adds a radiance image of all skies; returns "" without skies.
+    bool has_sky() const;
+    /// Returns the mean radiance of all skies in each texel. The width is `aspect` times the height.
     /// @param direction  Maps image coordinates in [0, 1], y downwards.
-    std::string add_sky_image(int width, int height, const std::function<V3f(float x, float y)>& direction);
+    Texture sky_image(int aspect, const std::function<V3f(float x, float y)>& direction) const;
+    /// Adds it; returns "" without skies.
+    std::string add_sky_image(int aspect, const std::function<V3f(float x, float y)>& direction);
 
     const Material& material(const ForeignMesh& mesh) const { return scene.materials[mesh.material]; }
+    bool is_cut_out(const ForeignMesh& mesh) const { return material(mesh).transmittance_texture != none; }
     bool emits(const ForeignMesh& mesh) const { return material(mesh).exitance != Rgb(0); }
     Rgb radiance(const ForeignMesh& mesh) const;
     void leave_out(const std::string& what) { warnings.add("left-out", "left out: " + what); }
 
-    /// @param has_glass  Support of panes and one-sided faces. @param has_holes  Of transmittance textures.
-    void warn_of_materials(bool has_glass, bool has_holes);
+    /// Distance between the two sides of an emitting face [m].
+    float distance_of_backs() const;
+
+    enum class Support { all, without_glass, without_glass_and_backs };
+    /// Warns about panes of glass, and one-sided faces, that the renderer makes opaque; and about mirrors.
+    void warn_of_materials(Support support);
 };
 
 Rgb mean_texel(const Texture& texture);

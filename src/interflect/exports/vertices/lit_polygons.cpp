@@ -48,8 +48,7 @@ class Polygons {
         const Rgb radiosity =
             exitance_at(scene_, patch, corner.at) + reflectance_at(scene_, patch, corner.at) * corner.irradiance;
         const LitPolygons::Vertex vertex{corner.point, corner.irradiance, radiosity};
-        const auto [entry, is_new] =
-            numbers_.try_emplace(vertex, static_cast<std::uint32_t>(polygons.vertices.size()));
+        const auto [entry, is_new] = numbers_.try_emplace(vertex, static_cast<std::uint32_t>(polygons.vertices.size()));
         if (is_new) polygons.vertices.push_back(vertex);
         return entry->second;
     }
