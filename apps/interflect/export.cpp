@@ -111,9 +111,8 @@ void run_scene(const ExportArguments& arguments) {
     require_no_scene_files(scene, std::array<NamedFile, 1>{{{"--output", arguments.output}}});
     ViewOptions view = arguments.view;
     if (arguments.up) view.up = V3f(*arguments.up);
-    const SceneExport exported =
-        export_scene(arguments.output, scene,
-                     {arguments.size.width, arguments.size.height, arguments.samples, view.views(scene)});
+    const SceneExport exported = export_scene(
+        arguments.output, scene, {arguments.size.width, arguments.size.height, arguments.samples, view.views(scene)});
     for (const auto& path : exported.files) spdlog::info("{}", path.string());
     log_warnings(exported.warnings);
 }
@@ -312,7 +311,9 @@ void add_export(CLI::App& app, int& exit_code) {
                "Stops by which colours are brightened, or auto, as `render` does")
         ->type_name("STOPS|auto[+STOPS]")
         ->default_str("auto");
-    add_parsed(command, "--up", options->up, parse_vector, "Which way is up (default: that of the views, or the light); with --eye: in the picture, as for `render`")
+    add_parsed(
+        command, "--up", options->up, parse_vector,
+        "Which way is up (default: that of the views, or the light); with --eye: in the picture, as for `render`")
         ->type_name("X,Y,Z");
     command.add_option("--probe-spacing", options->probes.spacing, "Of irradiance probes (.json, .exr), at most [m]")
         ->type_name("METRES")

@@ -59,8 +59,8 @@ void refuse_scene_options(const CLI::App& command, const std::filesystem::path& 
     if (!is_solution_file(scene)) return;
     constexpr std::array<std::string_view, 2> of_paths = {"--seed", "--until"};
     refuse_options(command,
-                   options_of_solving({"MORE", "--curve-divisions", "--unit", "--up-axis", "--outside-files", "--max-patches",
-                                       "--luminaire", daylight_group}),
+                   options_of_solving({"MORE", "--curve-divisions", "--unit", "--up-axis", "--outside-files",
+                                       "--max-patches", "--luminaire", daylight_group}),
                    fmt::format("it has no effect on {}, which is solved already: expected a scene", scene.string()),
                    traces_paths ? Names(of_paths) : Names());
 }

@@ -66,9 +66,9 @@ struct ExportOptions {
     VertexOptions vertices;                   ///< For light in vertices.
     /// For .ply and .obj: convex polygons of up to dozens of corners, not triangles. Some readers refuse or skip them.
     bool polygons = false;
-    ProbeOptions probes;                      ///< For formats that store probes instead of surfaces.
-    Monitor monitor;                          ///< Monitors the light of texels, vertices and probes.
-    Warnings* warnings = nullptr;             ///< Receives features that could not be exported unchanged; may be null.
+    ProbeOptions probes;           ///< For formats that store probes instead of surfaces.
+    Monitor monitor;               ///< Monitors the light of texels, vertices and probes.
+    Warnings* warnings = nullptr;  ///< Receives features that could not be exported unchanged; may be null.
 };
 
 /// A file of an export.

@@ -143,7 +143,7 @@ void bind_grids(py::module_& m) {
         "area_grid",
         [](const Scene& s, const PlanarArea& area, const std::optional<double>& spacing, double boundary,
            const std::optional<double>& height) {
-            return long_work(py::none(), 0, [&](const Monitor&) {
+            return pure_work(0, [&] {
                 return without_enclosed_points(s, RayCaster(s), area_grid(s, area, {spacing, boundary}, height));
             });
         },

@@ -20,12 +20,12 @@ TEST(Escapes, ReplaceControlCharactersAndWhatIsNotUtf8) {
     const std::pair<std::string, std::string> cases[] = {
         {"a\x1b[31mb", "a\\x1b[31mb"},
         {std::string("\0\n\t\x7f", 4), "\\x00\\x0a\\x09\\x7f"},
-        {"\xc2\x9b", "\\xc2\\x9b"},                    // U+009B, which some terminals take for ESC [
-        {"b\xfcro", "b\\xfcro"},                       // Latin-1
-        {"\xc0\xaf", "\\xc0\\xaf"},                    // overlong
-        {"\xed\xa0\x80", "\\xed\\xa0\\x80"},           // a surrogate
-        {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80"},  // beyond U+10FFFF
-        {"\xe6\x97", "\\xe6\\x97"},                    // cut off
+        {"\xc2\x9b", "\\xc2\\x9b"},                           // U+009B, which some terminals take for ESC [
+        {"b\xfcro", "b\\xfcro"},                              // Latin-1
+        {"\xc0\xaf", "\\xc0\\xaf"},                           // overlong
+        {"\xed\xa0\x80", "\\xed\\xa0\\x80"},                  // a surrogate
+        {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80"},         // beyond U+10FFFF
+        {"\xe6\x97", "\\xe6\\x97"},                           // cut off
         {"lamp\u202egpj.exe", "lamp\\xe2\\x80\\xaegpj.exe"},  // right-to-left override
         {"\u061c\u200e\u200f", "\\xd8\\x9c\\xe2\\x80\\x8e\\xe2\\x80\\x8f"},
         {"\u2066\u2069", "\\xe2\\x81\\xa6\\xe2\\x81\\xa9"},

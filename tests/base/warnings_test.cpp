@@ -24,7 +24,7 @@ TEST(Warnings, CountsOneEntryAKindAndMessage) {
     EXPECT_EQ(warnings.entries()[2].where, "");
 }
 
-// Seen to fail when every message has its entry.
+// Fails when every message has its entry.
 TEST(Warnings, SummariseAKindWithManyMessages) {
     constexpr std::int64_t count = 300'000;
     Warnings warnings;

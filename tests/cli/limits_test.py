@@ -1,6 +1,6 @@
 """At the numeric limits all results are finite and the light is right; beyond them, scenes are refused.
 
-Seen to fail without the limits: scenes of 10^12 m and exitances of 10^30 had null in their statistics and unreadable
+Fails without the limits: scenes of 10^12 m and exitances of 10^30 had null in their statistics and unreadable
 solution files; scenes of 10^-12 m leaked. Seen to fail with variances of means that sum squares of areas in single
 precision.
 """

@@ -122,7 +122,7 @@ std::map<std::string, Place> arrays_of_state(const std::string& bytes, Place ind
     return places;
 }
 
-// Negative counts, numbers that are not finite, and truth values above 1. Seen to fail when any of these arrays is read
+// Negative counts, numbers that are not finite, and truth values above 1. Fails when any of these arrays is read
 // unchecked. The exceptions count without a sign, and choose points or keys only.
 TEST_F(DamagedRun, IsRefusedWithNumbersOutOfRangeInAnyArray) {
     const std::set<std::string> any_number{"points/used", "points/used_by_parts", "points/allocations", "view/rounds"};

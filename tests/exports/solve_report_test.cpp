@@ -42,7 +42,7 @@ SolveOptions unusual_options() {
     return o;
 }
 
-// Seen to fail when numbers are read unchecked: -1 became 4294967295, and 1e300 any integer.
+// Fails when numbers are read unchecked: -1 became 4294967295, and 1e300 any integer.
 TEST(SolveReport, RefusesOptionsOutOfRange) {
     const Json json = json_of(unusual_options());
     int numbers = 0;

@@ -145,7 +145,7 @@ std::string square(const std::string& size, const std::string& more = "") {
     return "m x =\n rd .5\nv a =\nv b =\n p " + size + " 0 0\nv d =\n p 0 " + size + " 0\n" + more + "f a b d\n";
 }
 
-// Seen to fail without the limits, with areas of inf and 0.
+// Fails without the limits, with areas of inf and 0.
 TEST(MgfBadInput, FacesThatAreTooWideAndScenesThatAreTooSmall) {
     EXPECT_EQ(message(square("7e6")), "no error");
     expect_in(message(square("7.1e6")), "bad.mgf:8: this face is 1e+07 m wide; at most 1e+07 m can be computed");
@@ -294,7 +294,7 @@ TEST(MgfBadFiles, FilesThatIncludeEachOtherManyTimesEnd) {
     expect_in(message_of([&] { read_mgf(folder.path() / "f0.mgf", {.max_patches = 1000}); }), "(max_patches)");
 }
 
-// Seen to fail without the limit by generated patches: 50 million patches would allow for 10^9 words.
+// Fails without the limit by generated patches: 50 million patches would allow for 10^9 words.
 TEST(MgfBadFiles, IncludesThatMakeNothingEndSoon) {
     const TemporaryFolder folder;
     for (int i = 0; i < 9; ++i) {

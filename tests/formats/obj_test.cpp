@@ -164,7 +164,7 @@ TEST(Obj, WhatIsMissingIsAWarning) {
     EXPECT_EQ(scene.patches.size(), 6u);
 }
 
-// Seen to fail when each line reads the file again.
+// Fails when each line reads the file again.
 TEST(Obj, LibrariesAreReadOnceHoweverOftenTheyAreNamed) {
     const TemporaryFolder folder;
     folder.write("a.mtl", "newmtl a\nKd .2 .2 .2\n");

@@ -55,7 +55,7 @@ std::size_t pairs_in(const Scene& scene) {
     return overlapping_faces(scene, std::vector<bool>(scene.patches.size()), tolerance).size();
 }
 
-// 20,000 faces are halved 16 times. Seen to fail with a sixteenth of the intersections.
+// 20,000 faces are halved 16 times. Fails with a sixteenth of the intersections.
 TEST(CoveredArea, IsExactForManyFacesSideBySide) {
     const Scene board = checkerboard(200);
     const auto last = static_cast<std::uint32_t>(board.patches.size() - 1);
@@ -73,7 +73,7 @@ TEST(CoveredArea, OfFacesThatLieInEachOtherNeedsFewIntersections) {
 
 TEST(FaceOverlap, FindsAllPairsOfFacesThatLieInEachOther) { EXPECT_EQ(pairs_in(nested_triangles(100)), 4950u); }
 
-// There would be 1,998,000 pairs, and 4.5 * 10^10 of 300,000 faces. Seen to fail without the limit.
+// There would be 1,998,000 pairs, and 4.5 * 10^10 of 300,000 faces. Fails without the limit.
 TEST(FaceOverlap, RefusesFarMorePairsThanFaces) {
     const Scene nested = nested_triangles(2000);
     EXPECT_THROW(pairs_in(nested), InputError);

@@ -248,7 +248,7 @@ TEST(Polygon, CrossingsOfStarsAreCounted) {
     }
 }
 
-// The second star has 521,730 crossings, for which the tessellator takes a minute. Seen to fail without the limit.
+// The second star has 521,730 crossings, for which the tessellator takes a minute. Fails without the limit.
 TEST(Polygon, WithFarMoreCrossingsThanCornersIsLeftOut) {
     EXPECT_EQ(offer(star(21, 5)).result, PolygonResult::added);
     const Offered tangle = offer(star(1023, 511));

@@ -137,7 +137,7 @@ std::vector<std::uint32_t> book(std::uint32_t pages) {
     return corners;
 }
 
-// All pairs of 300,000 would be 4.5 * 10^10. Seen to fail without the limit.
+// All pairs of 300,000 would be 4.5 * 10^10. Fails without the limit.
 TEST(TrianglePairs, ComparesFewTrianglesAtAnEdgeHoweverManyMeetThere) {
     constexpr std::uint32_t pages = 300'000;
     std::vector<TriangleEdge> edges;

@@ -307,7 +307,7 @@ TEST_P(ReadableFormats, MissingFilesAndFoldersAreRefused) {
     EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("this is a folder, not a file"));
 }
 
-// Opening a pipe waits for a writer, and a device may have no end. Seen to fail when a file is read to its end.
+// Opening a pipe waits for a writer, and a device may have no end. Fails when a file is read to its end.
 TEST_P(ReadableFormats, PipesAndDevicesAreRefused) {
     ASSERT_EQ(::mkfifo((folder.path() / name()).c_str(), 0600), 0);
     EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("this is not a regular file"));
@@ -316,7 +316,7 @@ TEST_P(ReadableFormats, PipesAndDevicesAreRefused) {
     EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("this is not a regular file"));
 }
 
-// Seen to fail when the size of the file is not compared: all zeros are read.
+// Fails when the size of the file is not compared: all zeros are read.
 TEST(ImageFiles, LargerThanAnyPictureOfTheAllowedPixelsAreRefused) {
     const TemporaryFolder folder;
     for (const char* const name : {"a.png", "a.jpg", "a.hdr"}) {

@@ -44,9 +44,10 @@ Outcome outcome_of(const Scene& scene, std::span<const Ray> rays, const SightLin
 bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const SightLines& lines,
                            const V3f& shift = V3f(0)) {
     constexpr std::size_t step = 4;
+    constexpr float flush = 0.99f;  // an opening may touch a ceiling
     std::size_t outside = 0;
     for (std::size_t i = 0; i < rays.size(); i += step) {
-        const V3f start = rays[i].origin + shift;
+        const V3f start = middle + flush * (rays[i].origin - middle) + shift;
         if (!lines.is_clear(middle, start)) outside += lines.is_open(start);
     }
     return 20 * step * outside > rays.size();
@@ -119,8 +120,7 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights
         if (width > size) {
             add_to(wide);
         } else if (width > 0 && shell.is_closed && reaches_through_walls(lights.rays(i), lights.before(i), lines)) {
-            constexpr float below_ceiling = 1.05f;  // its upward light starts on the side of the room
-            const V3f shift = below_ceiling * measured->web->opening.half_height() * measured->direction.normalized();
+            const V3f shift = measured->web->opening.half_height() * measured->direction.normalized();
             add_to(reaches_through_walls(lights.rays(i), lights.before(i), lines, shift) ? wide : sunk);
         }
         if (!depends_on_planes(*measured->web)) continue;

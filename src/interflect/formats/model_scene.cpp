@@ -223,7 +223,8 @@ Luminaire placed(const PlacedLight& light, const V3d& origin) {
 Scene scene_of(Model&& model, const ReadOptions& options) {
     require_valid(model, options);
     if (model.instances.empty() && !model.lights.empty())
-        throw InputError(model.file, 0, "no usable face is left: the scene has lights, but no surfaces to receive their light");
+        throw InputError(model.file, 0,
+                         "no usable face is left: the scene has lights, but no surfaces to receive their light");
     const std::vector<bool> has_layout = objects_with_layouts(model);
     Scene scene;
     scene.name = model.file.string();

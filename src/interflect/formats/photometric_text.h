@@ -35,7 +35,7 @@ class PhotometricText {
     double number_of(std::string_view word, const std::string& what);
 
     std::int64_t line_number() const { return line_; }  ///< Line of the latest word.
-    std::string where() const;  ///< As "file:line".
+    std::string where() const;                          ///< As "file:line".
     [[noreturn]] void refuse(const std::string& message) const;
 
   private:
