@@ -125,7 +125,6 @@ void add_resume(CLI::App& app, int& exit_code) {
         const ThreadLimit threads(options->threads);
         if (options->input.extension() != ".h5")
             throw InputError(options->input, 0, "a checkpoint is a solution file: expected a name that ends in .h5");
-        require_regular_file(options->input);
         if (options->checkpoints.file.empty()) options->checkpoints.file = options->input;
         require_solution_name(options->output);
         const std::array<NamedFile, 3> outputs{
@@ -136,6 +135,7 @@ void add_resume(CLI::App& app, int& exit_code) {
         require_distinct_previous(options->checkpoints, std::span(outputs).first(2));
         if (options->checkpoints.file != options->input) require_distinct_previous(options->checkpoints, {&input, 1});
         require_text_name({"--stats", options->stats});
+        require_regular_file(options->input);
         options->checkpoints.require_writable();
         PendingFile output(options->output);
         Solver solver = Solver::open(options->input);

@@ -41,6 +41,7 @@ S 1 1 2 3 4 0 0 .5 floor
 S 2 5 8 7 6 0 0 .5 ceiling
 End
 """
+RADIANCE_MATERIAL = "void plastic oak 0 0 5 .5 .4 .3 0 0\n"
 VIEW_FILE = "rvu -vtv -vp 5.6 0.4 1.6 -vd -1 1 -0.1 -vu 0 0 1 -vh 60 -vv 40\n"
 
 
@@ -79,7 +80,7 @@ class Docs(CommandTest):
         path = self.folder / name
         if path.exists():
             return
-        written = {".obj": OBJ, ".stl": STL, ".vs3": VIEW3D, ".vf": VIEW_FILE}.get(path.suffix)
+        written = {".obj": OBJ, ".stl": STL, ".vs3": VIEW3D, ".vf": VIEW_FILE, ".mat": RADIANCE_MATERIAL}.get(path.suffix)
         if written:
             self.write(name, written)
         elif name == "scenes/office.mgf" or path.suffix == ".mgf" and not (ROOT / name).exists():

@@ -24,7 +24,7 @@ class Arguments {
     bool is_at_end() const { return left_.empty(); }
     std::string next(std::string_view expected) {
         if (left_.empty()) throw std::invalid_argument(fmt::format("{} ends where {} is expected", command_, expected));
-        const std::string result = left_.front();
+        std::string result = left_.front();
         left_ = left_.subspan(1);
         return result;
     }

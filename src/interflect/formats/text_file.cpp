@@ -44,8 +44,8 @@ bool is_within(const fs::path& path, const fs::path& folder) {
 
 std::string read_text_file(const fs::path& path) {
     std::string text = read_bytes(path);
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+    constexpr std::string_view utf8_mark = "\xef\xbb\xbf";
+    if (text.starts_with(utf8_mark)) text.erase(0, utf8_mark.size());
     require_text(text, path);
     return text;
 }

@@ -8,9 +8,9 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr float step = 1.0f / 255;
+constexpr float byte_step = 1.0f / 255;
 
-bool is_open(const Rgb& opacity) { return opacity.x < step; }
+bool is_open(const Rgb& opacity) { return opacity.x < byte_step; }
 
 void fill_transparent_texels(Texture& reflectance, const Texture& opacity) {
     const std::uint32_t width = opacity.width, height = opacity.height;
@@ -57,7 +57,7 @@ Texture opaque_reflectance(const Scene& scene, const Material& material, const T
 
 bool is_mask(const Texture& opacity) {
     return std::all_of(opacity.texels.begin(), opacity.texels.end(),
-                       [](const Rgb& texel) { return is_open(texel) || texel.x > 1 - step; });
+                       [](const Rgb& texel) { return is_open(texel) || texel.x > 1 - byte_step; });
 }
 
 }  // namespace interflect::detail

@@ -46,7 +46,7 @@ struct Writer {
     }
 };
 
-/// All numbers of options and reports are finite and not negative.
+/// All numbers of options and reports are finite, and whole numbers are not negative.
 template <class Value>
 Value number_of(const Json& json, const char* name) {
     const auto require = [&](bool holds) {
@@ -60,7 +60,7 @@ Value number_of(const Json& json, const char* name) {
     } else {
         require(json.is_number());
         const double number = json.get<double>();
-        require(number >= 0 && number <= static_cast<double>(std::numeric_limits<Value>::max()));
+        require(std::abs(number) <= static_cast<double>(std::numeric_limits<Value>::max()));
     }
     return json.get<Value>();
 }
