@@ -130,7 +130,7 @@ fs::path GltfAsset::file_of(const std::string& uri, const GltfValue& owner) cons
     const std::string name = percent_decoded(uri);
     const fs::path folder = path().parent_path().empty() ? fs::path(".") : path().parent_path();
     if (name.empty() || name.find('\0') != name.npos) owner.fail(fmt::format("'{}' names no file", cut(uri)));
-    const fs::path file = folder / name;
+    fs::path file = folder / name;
     const bool stays = !fs::path(name).is_absolute() && is_within(file, folder);
     if (!stays && !options_.outside_files)
         owner.fail(

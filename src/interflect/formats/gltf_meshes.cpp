@@ -300,7 +300,8 @@ std::vector<GltfMeshes::TintedFaces> GltfMeshes::by_tint(const GltfValue& primit
                     primitive.place());
     std::vector<TintedFaces> result;
     for (auto& [key, group] : groups) {
-        group.tint /= static_cast<float>(group.indices.size() / 3);
+        const std::size_t triangles = group.indices.size() / 3;
+        group.tint /= static_cast<float>(triangles);
         result.push_back(std::move(group));
     }
     return result;
