@@ -120,7 +120,7 @@ SolveOptions solve_options(const Scene& scene, const py::object& method, const p
         }
     }
     json["views"] = Json::array();  // kept in full precision
-    detail::read_options(json, options);
+    detail::read_options(json, options, true);
     return options;
 }
 

@@ -46,9 +46,9 @@ struct Writer {
     }
 };
 
-/// All numbers of options and reports are finite, and whole numbers are not negative.
+/// All numbers of options and reports are finite and not negative.
 template <class Value>
-Value number_of(const Json& json, const char* name) {
+Value number_of(const Json& json, const char* name, bool may_be_negative = false) {
     const auto require = [&](bool holds) {
         if (!holds) throw std::runtime_error(fmt::format("'{}' is {}, which is out of range", name, json.dump()));
     };
@@ -60,21 +60,23 @@ Value number_of(const Json& json, const char* name) {
     } else {
         require(json.is_number());
         const double number = json.get<double>();
-        require(std::abs(number) <= static_cast<double>(std::numeric_limits<Value>::max()));
+        constexpr auto most = static_cast<double>(std::numeric_limits<Value>::max());
+        require(number >= (may_be_negative ? -most : 0) && number <= most);
     }
     return json.get<Value>();
 }
 
 struct Reader {
     const Json& json;
+    bool may_be_negative = false;  // real numbers of settings that are checked later
 
     template <class Value>
     void field(const char* name, Value& value) const {
-        value = number_of<Value>(json.at(name), name);
+        value = number_of<Value>(json.at(name), name, may_be_negative);
     }
     template <class Value>
     void field_or_null(const char* name, Value& value, const Value& when_null) const {
-        value = json.at(name).is_null() ? when_null : number_of<Value>(json.at(name), name);
+        value = json.at(name).is_null() ? when_null : number_of<Value>(json.at(name), name, may_be_negative);
     }
     void vector(const char* name, RgbD& value) const { value = vector_of<RgbD>(json.at(name)); }
     template <class Value, std::size_t count>
@@ -214,9 +216,9 @@ Json json_of(const SolveOptions& options) {
     return json;
 }
 
-void read_options(const Json& stored, SolveOptions& options) {
+void read_options(const Json& stored, SolveOptions& options, bool may_be_negative) {
     const Json json = with_present_names(stored);
-    for_each_option(options, Reader{json});
+    for_each_option(options, Reader{json, may_be_negative});
     for (const Json& v : json.at("views"))
         options.views.push_back({view_of(v), number_of<double>(v.at("weight"), "weight"),
                                  number_of<float>(v.at("aspect"), "aspect"),

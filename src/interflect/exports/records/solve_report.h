@@ -12,8 +12,10 @@ namespace interflect::detail {
 /// Uses the names of the command line. Unset limits are null. Omits seed, method and max_elements.
 Json json_of(const SolveOptions& options);
 
-/// Inverse of json_of(). @throws Json::exception, InputError for missing or unknown values.
-void read_options(const Json& stored, SolveOptions& options);
+/// Inverse of json_of(). @throws Json::exception, std::runtime_error or InputError for missing or unknown values, and
+/// for numbers out of range.
+/// @param may_be_negative  Whether the caller checks the sign of real numbers.
+void read_options(const Json& stored, SolveOptions& options, bool may_be_negative = false);
 
 /// Omits the duration, so equal input gives equal text. Unknown errors are null.
 Json json_of(const IterationReport& report);
