@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "interflect/formats/number.h"
+#include "interflect/formats/rad_arguments.h"
 
 namespace interflect::detail {
 
@@ -15,34 +16,6 @@ namespace {
 
 using Imath::V3d;
 using Points = std::vector<V3d>;
-
-/// Arguments from left to right.
-class Arguments {
-  public:
-    explicit Arguments(std::span<const std::string> words) : command_(words[0]), left_(words.subspan(1)) {}
-
-    bool is_at_end() const { return left_.empty(); }
-    std::string next(std::string_view expected) {
-        if (left_.empty()) throw std::invalid_argument(fmt::format("{} ends where {} is expected", command_, expected));
-        std::string result = left_.front();
-        left_ = left_.subspan(1);
-        return result;
-    }
-    double number(std::string_view expected) {
-        const std::string word = next(expected);
-        const auto value = parse_number(word);
-        if (!value) throw std::invalid_argument(fmt::format("{}: expected {}, not '{}'", command_, expected, word));
-        return *value;
-    }
-    V3d vector(std::string_view expected) {
-        const double x = number(expected), y = number(expected), z = number(expected);
-        return {x, y, z};
-    }
-
-  private:
-    std::string command_;
-    std::span<const std::string> left_;
-};
 
 GeneratedSurface polygon(const std::string& name, const Points& points) {
     GeneratedSurface result{"polygon", name, {}};
@@ -115,7 +88,7 @@ void add_rounds(const Box& box, const std::string& name, std::vector<GeneratedSu
 }
 
 /// genbox material name xsize ysize zsize [-i] [-b bevel | -r round [-n segments] [-s]] [-o]
-std::optional<GeneratedSurfaces> genbox(Arguments arguments) {
+std::optional<GeneratedSurfaces> genbox(RadArguments arguments) {
     GeneratedSurfaces result;
     result.modifier = arguments.next("a material");
     const std::string name = arguments.next("a name");
@@ -155,7 +128,7 @@ std::optional<GeneratedSurfaces> genbox(Arguments arguments) {
 }
 
 /// genprism material name N x1 y1 .. xN yN [-l x y z] [-r radius] [-c] [-e]. The outline is seen from its front.
-std::optional<GeneratedSurfaces> genprism(Arguments arguments) {
+std::optional<GeneratedSurfaces> genprism(RadArguments arguments) {
     GeneratedSurfaces result;
     result.modifier = arguments.next("a material");
     const std::string name = arguments.next("a name");
@@ -201,8 +174,8 @@ std::optional<GeneratedSurfaces> genprism(Arguments arguments) {
 }  // namespace
 
 std::optional<GeneratedSurfaces> generate_surfaces(std::span<const std::string> words) {
-    if (words[0] == "genbox") return genbox(Arguments(words));
-    if (words[0] == "genprism") return genprism(Arguments(words));
+    if (words[0] == "genbox") return genbox(RadArguments(words));
+    if (words[0] == "genprism") return genprism(RadArguments(words));
     return std::nullopt;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "interflect/formats/number.h"
+#include "interflect/formats/rad_arguments.h"
 #include "interflect/formats/rad_materials.h"
 #include "interflect/scene/web_angles.h"
 
@@ -77,38 +78,6 @@ SunPlace SolarTime::sun() const {
                         -cosine * std::sin(decline) - sine * std::cos(decline) * std::cos(angle))};
 }
 
-/// Common arguments of both commands, and options with their numbers.
-class SkyArguments {
-  public:
-    explicit SkyArguments(std::span<const std::string> words) : command_(words[0]), left_(words.subspan(1)) {}
-
-    bool is_at_end() const { return left_.empty(); }
-    std::string next() {
-        if (left_.empty()) throw std::invalid_argument(command_ + " ends where another argument is expected");
-        std::string result = left_.front();
-        left_ = left_.subspan(1);
-        return result;
-    }
-    double number() {
-        const std::string word = next();
-        const auto value = parse_number(word);
-        if (!value) throw std::invalid_argument(fmt::format("{}: expected a number, not '{}'", command_, word));
-        return *value;
-    }
-    int whole_number(int least, int most) {
-        const std::string word = next();
-        const auto value = parse_integer(word);
-        if (!value || *value < least || *value > most)
-            throw std::invalid_argument(
-                fmt::format("{}: expected a number from {} to {}, not '{}'", command_, least, most, word));
-        return static_cast<int>(*value);
-    }
-
-  private:
-    std::string command_;
-    std::span<const std::string> left_;
-};
-
 /// @return  nullopt for a named time zone.
 std::optional<double> parse_hour(std::string_view text) {
     const auto colon = text.find(':');
@@ -119,7 +88,7 @@ std::optional<double> parse_hour(std::string_view text) {
 }
 
 /// Reads `MONTH DAY HOUR` or `-ang ALTITUDE AZIMUTH`. @return  False for a named time zone.
-bool parse_place(SkyArguments& arguments, SolarTime& time, std::optional<SunPlace>& sun) {
+bool parse_place(RadArguments& arguments, SolarTime& time, std::optional<SunPlace>& sun) {
     const std::string first = arguments.next();
     if (first == "-ang") {
         const double altitude = arguments.number(), azimuth = arguments.number();
@@ -127,7 +96,7 @@ bool parse_place(SkyArguments& arguments, SolarTime& time, std::optional<SunPlac
         return true;
     }
     const std::vector<std::string> month{"the month", first};
-    time.month = SkyArguments(month).whole_number(1, 12);
+    time.month = RadArguments(month).whole_number(1, 12);
     time.day = arguments.whole_number(1, 31);
     std::string hour = arguments.next();
     time.is_solar = hour.starts_with('+');
@@ -138,7 +107,7 @@ bool parse_place(SkyArguments& arguments, SolarTime& time, std::optional<SunPlac
 }
 
 /// Reads an option of the site. @return  False for other options.
-bool parse_site(const std::string& option, SkyArguments& arguments, SolarTime& time) {
+bool parse_site(const std::string& option, RadArguments& arguments, SolarTime& time) {
     if (option == "-a")
         time.latitude = radians(arguments.number());
     else if (option == "-o")
@@ -169,7 +138,7 @@ double normalised(double altitude, bool is_intermediate) {
     return sum / at_zenith / pi;
 }
 
-std::optional<Daylight> gensky(SkyArguments arguments) {
+std::optional<Daylight> gensky(RadArguments arguments) {
     constexpr double sky_efficacy = 203, sun_efficacy = 208;  // [lm/W]
     constexpr double sun_solid_angle = 6e-5;                  // [sr]
     SolarTime time;
@@ -224,7 +193,7 @@ std::optional<Daylight> gensky(SkyArguments arguments) {
     return result;
 }
 
-std::optional<Daylight> gendaylit(SkyArguments arguments) {
+std::optional<Daylight> gendaylit(RadArguments arguments) {
     SolarTime time;
     std::optional<SunPlace> sun;
     if (!parse_place(arguments, time, sun)) return std::nullopt;
@@ -255,8 +224,8 @@ std::optional<Daylight> gendaylit(SkyArguments arguments) {
 }  // namespace
 
 std::optional<Daylight> parse_sky_command(std::span<const std::string> words) {
-    if (words[0] == "gensky") return gensky(SkyArguments(words));
-    if (words[0] == "gendaylit") return gendaylit(SkyArguments(words));
+    if (words[0] == "gensky") return gensky(RadArguments(words));
+    if (words[0] == "gendaylit") return gendaylit(RadArguments(words));
     return std::nullopt;
 }
 
