@@ -139,8 +139,8 @@ TEST(MeasuringGrid, FacesOnTheFloorHaveNoBorderOfTheirOwn) {
     EXPECT_EQ(with_legs.points, empty.points);
 }
 
-/// Faces that are cut where others touch them leave strips of a few tolerances of the outline. The test fails if opposite
-/// edges do not cover each other.
+/// Faces that are cut where others touch them leave strips of a few tolerances of the outline. The test fails if
+/// opposite edges do not cover each other.
 TEST(MeasuringGrid, NarrowStripsHaveNoBorder) {
     Scene scene;
     scene.materials = {Material{}};
