@@ -115,7 +115,7 @@ PlanarArea find_top(const Scene& scene, const std::string& object);
 PlanarArea find_floor(const Scene& scene, double height);
 
 /// Divides an area by the objects of its faces, ordered by size. Copies of an array ("floor.a0", "floor.a1.2" in MGF)
-/// count as one object.
+/// count as one object. Excludes objects that lie within larger ones, such as undersides of furniture on a floor.
 std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& area);
 
 /// Points to measure at.

@@ -139,6 +139,20 @@ TEST(MeasuringGrid, FacesOnTheFloorHaveNoBorderOfTheirOwn) {
     EXPECT_EQ(with_legs.points, empty.points);
 }
 
+/// The underside of a cupboard is no room of its own. A doorstep beside the floor is, although it is smaller.
+TEST(MeasuringGrid, FurnitureOnTheFloorIsNoRoom) {
+    Scene scene = furnished();
+    scene.objects.insert(scene.objects.end(), {"cupboard", "doorstep"});
+    add_rectangle(scene, {1, 2, 0}, {2, 0, 0}, {0, 1, 0}, 0, 1, 1, true);
+    for (std::uint32_t i = 0; i < 2; ++i) scene.patches[scene.patches.size() - 1 - i].object = 4;
+    add_rectangle(scene, {6, 2, 0}, {0.2f, 0, 0}, {0, 1, 0}, 0);
+    scene.patches.back().object = 5;
+    const std::vector<PlanarArea> rooms = divide_by_object(scene, find_floor(scene, 0.7));
+    ASSERT_EQ(rooms.size(), 2u);
+    EXPECT_EQ(rooms[0].name, "room.floor");
+    EXPECT_EQ(rooms[1].name, "doorstep");
+}
+
 /// Faces that are cut where others touch them leave strips of a few tolerances of the outline. The test fails if
 /// opposite edges do not cover each other.
 TEST(MeasuringGrid, NarrowStripsHaveNoBorder) {

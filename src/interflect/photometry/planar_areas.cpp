@@ -6,12 +6,14 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <span>
 #include <string_view>
 
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/measure.h"
 #include "interflect/photometry/nearest_names.h"
+#include "interflect/photometry/planar_outline.h"
 
 namespace interflect {
 
@@ -107,6 +109,25 @@ double height_of(const Scene& scene, const PlanarArea& plane) {
     return scene.origin.z + static_cast<double>(PatchGeometry(scene, scene.patches[plane.patches.front()]).centre().z);
 }
 
+/// Whether all faces of an area lie within others of its plane.
+bool is_covered(const Scene& scene, const PlanarArea& area, std::span<const PlanarOutline> others) {
+    constexpr float inwards = 0.01f;  // of the way to the centre
+    const auto is_within = [&](const Imath::V3d& x) {
+        return std::any_of(others.begin(), others.end(), [&](const PlanarOutline& outline) {
+            const Imath::V3d d = x - outline.origin;
+            return outline.holds({outline.u.dot(d), outline.v.dot(d)});
+        });
+    };
+    return std::all_of(area.patches.begin(), area.patches.end(), [&](std::uint32_t i) {
+        const Patch& patch = scene.patches[i];
+        const V3f centre = PatchGeometry(scene, patch).centre();
+        return std::all_of(patch.vertices.begin(), patch.vertices.begin() + patch.vertex_count(), [&](std::uint32_t v) {
+            const V3f& corner = scene.vertices[v];
+            return is_within(scene.origin + Imath::V3d(corner + inwards * (centre - corner)));
+        });
+    });
+}
+
 std::string text_of_direction(const V3f& direction) {
     const V3f n = direction + V3f(0);  // avoids -0
     return fmt::format("{:.3g},{:.3g},{:.3g}", n.x, n.y, n.z);
@@ -191,6 +212,12 @@ std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& a
     for (auto& [name, part] : parts) sorted.push_back(std::move(part));
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const PlanarArea& a, const PlanarArea& b) { return a.area > b.area; });
+    std::vector<PlanarOutline> larger;
+    std::erase_if(sorted, [&](const PlanarArea& part) {
+        if (is_covered(scene, part, larger)) return true;
+        larger.push_back(outline_of(scene, part));
+        return false;
+    });
     return sorted;
 }
 
