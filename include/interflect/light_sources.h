@@ -67,8 +67,9 @@ struct LuminousOpening {
     int axis = 2;       ///< Axis of a cylinder, 0 to 2; a cylinder of length 0 is a disk.
 
     bool is_point() const { return size == V3f(0); }
-    /// Distance of the top from the middle [m].
-    float half_height() const { return size.z / 2; }
+    /// Distance of the middle from a ceiling at which the opening is mounted by its top [m]. The gap of 1 mm lets light
+    /// from the top reach the ceiling.
+    float mounting_depth() const { return size.z / 2 + 1e-3f; }
 };
 
 /// Far-field luminous intensity of a luminaire as a function of direction (IES LM-63, EULUMDAT).

@@ -37,6 +37,18 @@ class Luminaires(CommandTest):
         self.interflect("render", "two.h5", "-o", "two.exr", *VIEW, *SMALL)
         self.assertLess(self.json("compare", "one.exr", "two.exr")["relative_mse"], 1e-8)
 
+    def test_by_their_top_they_are_the_same_in_a_scene(self):
+        """A point light has no height: it hangs 1 mm below the given place."""
+        self.write("lit.mgf", room().replace("ed 1000", "ed 0") + "ies lamp.ies -top -m .5 -t 1 1 2.001\n")
+        for name, scene, *lamp in (
+            ("one", "lit.mgf"),
+            ("two", "dark.mgf", "--luminaire", "lamp.ies@1,1,2.001,lumens=200,mount=top"),
+            ("three", "dark.mgf", "--luminaire", "lamp.ies@1,1,2,lumens=200"),
+        ):
+            self.interflect("render", scene, "-o", f"{name}.exr", *VIEW, "--shading", "path", *SMALL, *lamp)
+        for name in ("two", "three"):
+            self.assertLess(self.json("compare", "one.exr", f"{name}.exr")["relative_mse"], 1e-6)
+
     def test_a_solution_needs_no_file(self):
         self.interflect("solve", "dark.mgf", "-o", "out.h5", "--rays", "100k", "--checkpoint", "run.h5",
                         "--luminaire", "lamp.ies@1,1,2")

@@ -75,6 +75,20 @@ TEST_F(MgfLuminaires, AreMovedAndTurnedButNotScaled) {
     EXPECT_NEAR(intensity(upright, {0, 1e-4f, 1}), 200, 0.1) << "y becomes z";
 }
 
+/// A box of 0.3 m, 1 mm below its place, along its own axis. Transforms do not scale it.
+TEST_F(MgfLuminaires, AreMountedByTheirTop) {
+    folder.write("box.ies", IesText{.opening = "0.2 0.2 0.3"}.str());
+    const Scene scene =
+        read("xf -s 2\nies box.ies -top -t 1 2 3\nxf\nies box.ies -rx 90 -t 1 2 3\nies box.ies -top -rx 90\n");
+    EXPECT_LT((light(scene).position - V3f(2, 4, 6 - 0.151f)).length(), 1e-5f);
+    EXPECT_LT((light(scene, 1).position - V3f(1, 2, 3)).length(), 1e-5f);
+    EXPECT_LT((light(scene, 2).position - V3f(0, 0.151f, 0)).length(), 1e-5f) << "-z becomes y";
+    const std::vector<PlacedLuminaire> placed{
+        {.file = folder.path() / "box.ies", .position = {1, 2, 3}, .aim = Imath::V3d(9, 2, 3), .by_top = true}};
+    const Scene added = load_scene(folder.write("dark.mgf", face), {}, placed);
+    EXPECT_LT((light(added).position - V3f(1.151f, 2, 3)).length(), 1e-5f);
+}
+
 TEST_F(MgfLuminaires, AreMirrored) {
     const Scene scene = read("ies lamp.ies -my\n");
     EXPECT_NEAR(intensity(scene, {1, 0, -1e-4f}), 300, 0.1);

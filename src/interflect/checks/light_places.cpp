@@ -120,7 +120,7 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights
         if (width > size) {
             add_to(wide);
         } else if (width > 0 && shell.is_closed && reaches_through_walls(lights.rays(i), lights.before(i), lines)) {
-            const V3f shift = measured->web->opening.half_height() * measured->direction.normalized();
+            const V3f shift = measured->web->opening.mounting_depth() * measured->direction.normalized();
             add_to(reaches_through_walls(lights.rays(i), lights.before(i), lines, shift) ? wide : sunk);
         }
         if (!depends_on_planes(*measured->web)) continue;

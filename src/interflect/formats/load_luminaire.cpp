@@ -36,7 +36,7 @@ MeasuredLight place(const PlacedLuminaire& placed, std::shared_ptr<const Photome
     light.position = V3f(placed.position - origin);
     if (placed.aim) light.direction = V3f((*placed.aim - placed.position).normalized());
     if (light.direction == V3f(0)) throw InputError(placed.file, 0, "is aimed at its own position");
-    if (placed.by_top) light.position += web->opening.half_height() * light.direction;
+    if (placed.by_top) light.position += web->opening.mounting_depth() * light.direction;
     constexpr float almost_along_x = 0.999f;
     const V3f nadir = light.direction;
     const V3f side = std::abs(nadir.x) < almost_along_x ? V3f(1, 0, 0) : V3f(0, 0, 1);

@@ -122,7 +122,7 @@ void MgfReader::add_luminaire(MeasuredLight light, bool by_top, const Imath::M44
     };
     light.position = scene_.position(V3d(0) * transform);
     light.direction = direction({0, 0, -1});
-    if (by_top) light.position += light.web->opening.half_height() * light.direction;
+    if (by_top) light.position += light.web->opening.mounting_depth() * light.direction;
     light.c0 = direction({1, 0, 0});
     light.mirrored = transform.determinant() < 0;
     scene_.add_light({"", objects_.current(), std::move(light)}, name);
