@@ -20,6 +20,47 @@ void change_values(Json& json, const std::string& name, const Change& change) {
     for (const auto& [key, value] : json.items()) change_values(value, json.is_object() ? key : name, change);
 }
 
+/// Ends a reading at a structure that is too large for Json. A callback of Json::parse() could do the same, but visits
+/// all values before each object of an array.
+class Limits : public nlohmann::json_sax<Json> {
+  public:
+    bool are_exceeded() const { return exceeded_; }
+    static std::string text() {
+        return fmt::format("its JSON has more than {} levels, or an object of more than {} members", most_levels,
+                           most_members);
+    }
+
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override { return open(); }
+    bool key(string_t&) override { return !(exceeded_ = ++members_.back() > most_members); }
+    bool end_object() override { return close(); }
+    bool start_array(std::size_t) override { return open(); }
+    bool end_array() override { return close(); }
+    bool parse_error(std::size_t, const std::string&, const Json::exception&) override { return false; }
+
+  private:
+    // The description of a solution has 20 levels and 30 members at most.
+    static constexpr std::size_t most_levels = 100, most_members = 1000;
+
+    bool open() {
+        members_.push_back(0);
+        return !(exceeded_ = members_.size() > most_levels);
+    }
+    bool close() {
+        members_.pop_back();
+        return true;
+    }
+
+    std::vector<std::size_t> members_;  // of each open object; 0 for arrays
+    bool exceeded_ = false;
+};
+
 }  // namespace
 
 std::string json_text(Json json, int indent) {
@@ -32,18 +73,9 @@ std::string json_text(Json json, int indent) {
 }
 
 Json parse_json(std::string_view text) {
-    // The description of a solution has 20 levels and 30 members at most.
-    constexpr int most_levels = 100;
-    constexpr std::size_t most_members = 1000;
-    std::vector<std::size_t> members;  // of the open objects
-    return Json::parse(text, [&](int level, Json::parse_event_t event, const Json&) {
-        if (event == Json::parse_event_t::object_start) members.push_back(0);
-        if (event == Json::parse_event_t::object_end) members.pop_back();
-        if (level > most_levels || (event == Json::parse_event_t::key && ++members.back() > most_members))
-            throw std::runtime_error(fmt::format(
-                "its JSON has more than {} levels, or an object of more than {} members", most_levels, most_members));
-        return true;
-    });
+    Limits limits;
+    if (!Json::sax_parse(text, &limits) && limits.are_exceeded()) throw std::runtime_error(limits.text());
+    return Json::parse(text);
 }
 
 Json parse_json_text(std::string_view text) {
