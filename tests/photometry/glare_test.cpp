@@ -141,6 +141,21 @@ TEST(GlareSources, OfLuminairesOutsideOfTheTableAreNotRated) {
     }
 }
 
+/// CIE 117 knows one direction per luminaire. The integral of L^2 / p^2 over this opening of 1.2 m x 1.2 m, 0.4 m above
+/// the eye, is smaller by a quarter. Seen to fail with p and omega of each sample.
+TEST(GlareSources, OfWideLuminairesAreThoseOfTheirCentres) {
+    Scene scene = room();
+    Luminaire wide = disk({2, 2.3f, 1.6f}, {0, 0, -1});
+    auto web = std::make_shared<PhotometricWeb>(*std::get<MeasuredLight>(wide.kind).web);
+    web->opening = {LuminousOpening::Shape::box, {1.2f, 1.2f, 0}, 2};
+    std::get<MeasuredLight>(wide.kind).web = web;
+    scene.luminaires = {wide};
+    const double r2 = 1 + 0.09 + 0.16, cosine = 0.4 / std::sqrt(r2);
+    const auto sources = glare_sources(scene, RayCaster(scene), observer);
+    ASSERT_EQ(sources.size(), 1u);
+    expect_source(sources[0], 300 / 1.44, 1.44 * cosine / r2, position_index({1, 0.3f, 0.4f}, {1, 0, 0}));
+}
+
 /// A panel from H/R = 1.5 / 0.6 = 2.5 to 1.5 / 1.2 = 1.25 is rated from 1.5 / 1.9 = 0.789 m on: 0.411 / 0.6 of its
 /// area. L = M / pi and omega = integral of 1.5 / r^3 over the part, by the midpoint rule.
 TEST(GlareSources, OfPatchesAreRatedByTheirCells) {

@@ -87,8 +87,8 @@ class SourcePlaces {
             const float r = d.length();
             const double cosine = static_cast<double>(-geometry.normal().dot(d) / r);
             add({d / r, r, index, exitance_at(scene_, patch, p) / std::numbers::pi_v<float>,
-                 cosine * static_cast<double>(geometry.area()) / (n * n) / (static_cast<double>(r) * r), 1,
-                 source_of(patch, is_rated(d))});
+                 cosine * static_cast<double>(geometry.area()) / (n * n) / (static_cast<double>(r) * r),
+                 position_index(d, line_of_sight_), source_of(patch, is_rated(d))});
         }
     }
 
@@ -101,27 +101,27 @@ class SourcePlaces {
         return rated > 0 && static_cast<std::size_t>(rated) < count;
     }
 
-    /// Samples have equal solid angles; the opening's is irradiance / L.
+    /// CIE 117 rates a luminaire by the direction of its centre: L = I / A_p, omega = A_p / r^2 and one p. Samples over
+    /// the opening find what hides it.
     void add_luminaire(const Luminaire& luminaire, const MeasuredLight& light) {
         constexpr int per_side = 8, count = per_side * per_side;
         if (light.web->opening.is_point()) return;
-        const LuminaireFrame frame(light);
-        sums_.push_back({luminaire.name, is_rated(light.position - eye_)});
+        const V3f to_centre = light.position - eye_, d = LuminaireFrame(light).to_luminaire(-to_centre.normalized());
+        const float area = projected_area(light.web->opening, d);
+        if (!(area > 0)) return;
+        const Rgb radiance = light.factor * (light.web->intensity(d) / area);
+        const double solid_angle = static_cast<double>(area) / to_centre.length2() / count;
+        const double p = position_index(to_centre, line_of_sight_);
+        sums_.push_back({luminaire.name, is_rated(to_centre)});
         for (int i = 0; i < count; ++i) {
             const int column = i % per_side, row = i / per_side;
             const Illumination seen = illumination(luminaire, eye_, (static_cast<float>(column) + 0.5f) / per_side,
                                                    (static_cast<float>(row) + 0.5f) / per_side);
-            const V3f d = frame.to_luminaire(-seen.towards);
-            const float area = projected_area(light.web->opening, d);
-            const Rgb radiance = light.factor * (light.web->intensity(d) / area);
-            const double l = luminance(RgbD(radiance)), e = luminance(RgbD(seen.irradiance));
-            if (!(area > 0 && l > 0)) continue;
-            add({seen.towards, seen.distance, none, radiance, e / l / count, 1, sums_.size() - 1});
+            add({seen.towards, seen.distance, none, radiance, solid_angle, p, sums_.size() - 1});
         }
     }
 
-    void add(Place place) {
-        place.position_index = position_index(place.towards, line_of_sight_);
+    void add(const Place& place) {
         if (std::isfinite(place.position_index) && place.solid_angle > 0) places_.push_back(place);
     }
 
