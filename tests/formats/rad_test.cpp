@@ -478,6 +478,19 @@ TEST(Rad, OtherPatternsOfLightsAreWarnedOf) {
     expect_in(scene.warnings.entries()[0].message, "the power of the light is probably wrong");
 }
 
+/// Seen to fail, with a warning for each surface and each pattern below it: 500,500.
+TEST(Rad, PatternsOfManySurfacesAreReportedOnce) {
+    std::string text;
+    for (int i = 0; i < 1000; ++i)
+        text += fmt::format(
+            "{0} brightfunc b{1}\n2 1 .\n0\n0\nb{1} plastic m{1}\n0\n0\n5 .5 .5 .5 0 0\n"
+            "m{1} polygon f{1}\n0\n0\n9 0 0 {1} 1 0 {1} 0 1 {1}\n",
+            i == 0 ? "void" : fmt::format("b{}", i - 1), i);
+    const Scene scene = read(text);
+    EXPECT_EQ(scene.patches.size(), 2000u);
+    EXPECT_EQ(scene.warnings.entries().at(0).count, 1000u);
+}
+
 TEST(Rad, FilesThatIncludeThemselvesOrLeaveTheFolderAreRefused) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "scene");

@@ -117,6 +117,7 @@ std::uint32_t RadMaterials::find(std::string_view name, const Location& where) {
             "in 'oconv materials.rad room.rad'",
             name));
     Modifier missing{{}, where};
+    missing.surface = static_cast<std::uint32_t>(modifiers_.size());
     missing.primitive.type = missing_type;
     missing.primitive.name = missing_names_.emplace_back(name);
     index_.emplace(missing.primitive.name, static_cast<std::uint32_t>(modifiers_.size()));
@@ -134,14 +135,20 @@ void RadMaterials::define(const RadPrimitive& primitive, const Location& where) 
         if (primitive.modifier == "inherit") modifier.base = modifiers_[original].base;
     }
     if (primitive.modifier != "inherit") modifier.base = find(primitive.modifier, where);
-    if (types().at(modifier.primitive.type).role == Role::mixture) {
+    const Role role = types().at(modifier.primitive.type).role;
+    if (role == Role::mixture) {
         // Foreground, or background if void.
         const auto& strings = modifier.primitive.strings;
         if (strings.size() < 2) throw std::invalid_argument("a mixture needs a foreground and a background");
         modifier.base = find(strings[0], where);
         if (modifier.base == none) modifier.base = find(strings[1], where);
     }
-    index_[primitive.name] = static_cast<std::uint32_t>(modifiers_.size());
+    const auto index = static_cast<std::uint32_t>(modifiers_.size());
+    if (role == Role::material || role == Role::nothing)
+        modifier.surface = index;
+    else if (modifier.base != none)
+        modifier.surface = modifiers_[modifier.base].surface;
+    index_[primitive.name] = index;
     modifiers_.push_back(std::move(modifier));
 }
 
@@ -170,23 +177,27 @@ std::optional<RadMaterials::PatternedLight> RadMaterials::patterned_light(std::u
 }
 
 std::uint32_t RadMaterials::material(std::uint32_t modifier) {
-    // Bases are defined first: the chain ends.
-    for (; modifier != none; modifier = modifiers_[modifier].base) {
-        Modifier& m = modifiers_[modifier];
-        const Type& type = types().at(m.primitive.type);
-        if (type.role == Role::nothing) {
-            warn("unsupported-modifier", fmt::format("what has the material {} is left out", m.primitive.type), m);
-            return none;
-        }
-        if (type.role == Role::material) {
-            if (m.material != none) return m.material;
-            for (std::uint32_t i = m.base; i != none; i = modifiers_[i].base)
-                warn_of_pattern(modifiers_[i], type.convert == &RadMaterials::light);
-            return m.material = convert(m, type);
-        }
-        warn_of_pattern(m, false);
+    if (modifier == none) return none;
+    const std::uint32_t surface = modifiers_[modifier].surface;
+    warn_of_patterns(modifier, surface, to_material);
+    if (surface == none) return none;
+    Modifier& m = modifiers_[surface];
+    const Type& type = types().at(m.primitive.type);
+    if (type.role == Role::nothing) {
+        warn("unsupported-modifier", fmt::format("what has the material {} is left out", m.primitive.type), m);
+        return none;
     }
-    return none;
+    if (m.material != none) return m.material;
+    warn_of_patterns(m.base, none, type.convert == &RadMaterials::light ? behind_light : behind_material);
+    return m.material = convert(m, type);
+}
+
+void RadMaterials::warn_of_patterns(std::uint32_t begin, std::uint32_t end, Chain chain) {
+    // Bases are defined first: the chain ends.
+    for (std::uint32_t i = begin; i != end && !modifiers_[i].has_warned[chain]; i = modifiers_[i].base) {
+        modifiers_[i].has_warned[chain] = true;
+        warn_of_pattern(modifiers_[i], chain == behind_light);
+    }
 }
 
 void RadMaterials::warn_of_pattern(const Modifier& modifier, bool is_of_light) {

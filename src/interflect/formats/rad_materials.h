@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -55,9 +56,13 @@ class RadMaterials {
     struct Modifier {
         RadPrimitive primitive;
         Location where;
-        std::uint32_t base = none;      // modified by this one
-        std::uint32_t material = none;  // index, once used
+        std::uint32_t base = none;         // modified by this one
+        std::uint32_t material = none;     // index, once used
+        std::uint32_t surface = none;      // this one or its first base that is a material
+        std::array<bool, 3> has_warned{};  // per Chain: of this one and the rest
     };
+    /// Modifiers from a surface to its material, and behind it.
+    enum Chain : std::uint8_t { to_material, behind_material, behind_light };
     enum class Role { material, pattern, mixture, nothing };
     struct Type {
         Role role;
@@ -77,6 +82,8 @@ class RadMaterials {
     void unknown(const Modifier& modifier, Material& result);
     void reflect(const Modifier& modifier, const Rgb& specular, double roughness, Material& result);
     void warn_of_pattern(const Modifier& modifier, bool is_of_light);
+    /// Takes each modifier once per kind of chain.
+    void warn_of_patterns(std::uint32_t begin, std::uint32_t end, Chain chain);
     void warn(const std::string& kind, const std::string& message, const Modifier& modifier);
 
     Model& model_;
