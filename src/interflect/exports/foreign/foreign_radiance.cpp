@@ -58,14 +58,20 @@ std::string affine(const std::array<V3f, 3>& corners, const std::array<float, 3>
                        gradient.y, gradient.z);
 }
 
-/// Describes the place in the image; pixels of Radiance's pictures are squares, and the shorter side is 1.
+/// Describes a coordinate of a picture of `size` pixels along it. In Radiance the centres of the first and the last
+/// pixel are at 0 and, if the other side is the shorter one, at the ratio of the sides, else at 1.
+/// @param pixel  Expression; 0 at the centre of the first pixel.
+std::string picture_coordinate(const std::string& pixel, std::uint32_t size, std::uint32_t other_side) {
+    const double last = std::max(1.0, static_cast<double>(size) / other_side);
+    return fmt::format("{}*{:.9g}", pixel, last / (size - 1));
+}
+
 std::string place_in(const Tile& tile, const std::array<V3f, 3>& corners, const std::array<V2f, 3>& coordinates) {
-    const std::uint32_t side = std::min(tile.width, tile.height) + 2;
-    const auto along = [&](int k, std::uint32_t size) {
-        return fmt::format("(1+{}*frac{})/{}", size,
-                           affine(corners, {coordinates[0][k], coordinates[1][k], coordinates[2][k]}), side);
+    const auto along = [&](int k, std::uint32_t size, std::uint32_t other_side) {
+        const std::string place = affine(corners, {coordinates[0][k], coordinates[1][k], coordinates[2][k]});
+        return picture_coordinate(fmt::format("(.5+{}*frac{})", size, place), size + 2, other_side + 2);
     };
-    return along(0, tile.width) + " " + along(1, tile.height);
+    return along(0, tile.width, tile.height) + " " + along(1, tile.height, tile.width);
 }
 
 /// The surface of a mesh. Radiance has no texture coordinates at vertices: each triangle has its own mapping.
@@ -223,8 +229,15 @@ std::string sky_text(ForeignScene& scene) {
                             m.c, m.d, m.e, m.g, static_cast<double>(dome->ground) / std::numbers::pi * integral);
     } else {
         pattern = "sky.image";
-        text += fmt::format("void colorpict {} 7 red green blue \"{}\" . 1-Atan2(Dy,Dx)/PI 1-Acos(Dz)/PI\n0\n0\n",
-                            pattern, scene.add_file("sky.hdr", hdr_bytes(scene.sky_image(2, sky_direction))));
+        const Texture image = scene.sky_image(2, sky_direction);
+        const auto along = [](const char* share, std::uint32_t size, std::uint32_t other_side) {
+            const std::string pixel = fmt::format("bound(0,{0}*({1})-.5,{0}-1)", size, share);
+            return picture_coordinate(pixel, size, other_side);
+        };
+        text += fmt::format("void colorpict {} 7 red green blue \"{}\" . {} {}\n0\n0\n", pattern,
+                            scene.add_file("sky.hdr", hdr_bytes(image)),
+                            along(".5-Atan2(Dy,Dx)/(2*PI)", image.width, image.height),
+                            along("1-Acos(Dz)/PI", image.height, image.width));
     }
     return text + fmt::format("{} glow sky.glow\n0\n0\n4 {} 0\nsky.glow source sky\n0\n0\n4 0 0 1 360\n", pattern,
                               triple(radiance / efficacy));
