@@ -1,5 +1,5 @@
-# Installs `build` below `work`, moves the installation, builds the project `consumer` against it alone, and runs it.
-# cmake -D build=... -D consumer=... -D work=... -D generator=... -D compiler=... -D configuration=... -P check_package.cmake
+# Installs `build` below `work`, moves the installation, builds examples/cpp and `consumer` against it alone, and runs the latter.
+# cmake -D build=... -D source=... -D work=... -D generator=... -D compiler=... -D configuration=... -P check_package.cmake
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -20,15 +20,19 @@ foreach(file ${package_files})
 endforeach()
 
 run(${prefix}/bin/interflect --version)
-# The README's example, as printed.
-file(READ ${consumer}/../../../README.md readme)
-string(REGEX MATCH "```cpp\n(#include[^`]*)```" found "${readme}")
-if(NOT found)
-  message(FATAL_ERROR "the README has no complete program")
-endif()
-file(WRITE ${work}/readme.cpp "${CMAKE_MATCH_1}")
+# The README prints the example.
+file(READ ${source}/README.md readme)
+file(STRINGS ${source}/examples/cpp/office.cpp example REGEX "^[^/]")
+foreach(line IN LISTS example)
+  string(FIND "${readme}" "${line}" place)
+  if(place EQUAL -1)
+    message(FATAL_ERROR "README.md lacks this line of examples/cpp/office.cpp: ${line}")
+  endif()
+endforeach()
 
-run(${CMAKE_COMMAND} -D readme_program=${work}/readme.cpp -S ${consumer} -B ${work}/build -G ${generator} -D CMAKE_BUILD_TYPE=${configuration}
-    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_PREFIX_PATH=${prefix})
-run(${CMAKE_COMMAND} --build ${work}/build --config ${configuration})
-run(${work}/build/consumer)
+foreach(project examples/cpp tests/package/consumer)
+  run(${CMAKE_COMMAND} -S ${source}/${project} -B ${work}/${project} -G ${generator} -D CMAKE_BUILD_TYPE=${configuration}
+      -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_PREFIX_PATH=${prefix})
+  run(${CMAKE_COMMAND} --build ${work}/${project} --config ${configuration})
+endforeach()
+run(${work}/tests/package/consumer/consumer)
