@@ -19,9 +19,9 @@ TRAILING = re.compile(r"^\s*(?P<declaration>.*?)\s*///<\s?(?P<text>.*)$")
 FUNCTION = re.compile(r"(~?\w+)\s*\(")
 MEMBER = re.compile(r"(\w+)(?:\s*=[^;]*|\s*\{[^;]*\})?\s*[;,]?\s*$")
 COMMAND = re.compile(r"(?:^|(?<=\s))@(param|return|throws|note)\b\s*")
-ERROR = re.compile(r"(InputError|Stopped|TooManyPatches|std::runtime_error)\b[,:]?\s*")
+ERROR = re.compile(r"(InputError|Stopped|std::runtime_error)\b[,:]?\s*")
 # An error that follows another one: "InputError for an unknown extension; Stopped if ...".
-NEXT_ERROR = re.compile(r";\s+(?=(?:InputError|Stopped|TooManyPatches|std::runtime_error)\b)")
+NEXT_ERROR = re.compile(r";\s+(?=(?:InputError|Stopped|std::runtime_error)\b)")
 PYTHON_NAMES = {
     "std::runtime_error": "Error",
     "nullopt": "None",

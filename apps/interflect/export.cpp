@@ -148,9 +148,6 @@ std::vector<std::filesystem::path> write_or_explain(const std::filesystem::path&
                                                     const ExportOptions& options) {
     try {
         return write(path, solved, options);
-    } catch (const InputError& e) {
-        const bool is_too_large = std::string_view(e.what()).find("(max_bytes)") != std::string_view::npos;
-        throw is_too_large ? InputError(fmt::format("{}; see --texels-per-metre", e.what())) : e;
     } catch (const Stopped& e) {
         spdlog::warn("{}: nothing is written", e.what());
         return {};

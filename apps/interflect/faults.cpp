@@ -8,9 +8,12 @@
 #include <mutex>
 #include <new>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include "interflect/base/escapes.h"
 #include "interflect/base/machine_memory.h"
+#include "interflect/core.h"
 
 namespace interflect::command {
 
@@ -19,9 +22,22 @@ namespace {
 std::mutex mutex;
 std::filesystem::path last_checkpoint;
 
+/// Command line options by Fault::setting.
+constexpr std::array<std::pair<std::string_view, const char*>, 3> allowing_options = {
+    {{"max_patches", "--max-patches"},
+     {"outside_files", "--outside-files"},
+     {"texels_per_metre", "--texels-per-metre"}}};
+
+std::string explanation(const InputError& error) {
+    for (const auto& [setting, option] : allowing_options)
+        if (error.fault().setting == setting) return fmt::format("{}; see {}", error.what(), option);
+    return error.what();
+}
+
 }  // namespace
 
 std::string explanation(const std::exception& error) {
+    if (const auto* input = dynamic_cast<const InputError*>(&error)) return explanation(*input);
     // std::length_error: an array beyond the address space.
     if (!dynamic_cast<const std::bad_alloc*>(&error) && !dynamic_cast<const std::length_error*>(&error))
         return error.what();

@@ -6,7 +6,7 @@
 
 namespace interflect::command {
 
-/// Returns the message of an exception, with remedies if memory was exhausted.
+/// Returns the message of an exception. Adds the option that would allow the input, or remedies for exhausted memory.
 std::string explanation(const std::exception& error);
 
 /// Sets the last checkpoint of the run, for report_fault(); empty: no checkpoint.

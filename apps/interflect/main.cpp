@@ -105,7 +105,7 @@ int main(int argc, char** argv) try {
     const Dismissal at_the_end;
     return run(argc, argv);
 } catch (const interflect::InputError& e) {
-    spdlog::error("{}", e.what());
+    spdlog::error("{}", interflect::command::explanation(e));
     return interflect::command::bad_input;
 } catch (const std::exception& e) {
     spdlog::error("{}", interflect::command::explanation(e));

@@ -25,6 +25,8 @@ using namespace detail;
 
 namespace {
 
+bool is_patch_limit(const InputError& e) { return e.fault().setting == "max_patches"; }
+
 /// Memory while a scene is read, cut and prepared for ray tracing [bytes]. Measured: up to 290, for a sphere with 200
 /// divisions and for glTF instances of one triangle.
 constexpr std::size_t bytes_per_patch = 300;
@@ -168,16 +170,13 @@ Scene SceneOptions::load(bool needs_light) const {
         }();
         log_warnings(scene.warnings, needs_light ? "" : "no-light");
         return scene;
-    } catch (const TooManyPatches& e) {
-        if (limited.max_patches < read.max_patches)
+    } catch (const InputError& e) {
+        if (is_patch_limit(e) && limited.max_patches < read.max_patches)
             throw std::runtime_error(
                 fmt::format("{}: there is memory for no more, the limits of this process (its machine, ulimit -v, "
                             "control groups) leave {} MiB; a scene of fewer copies, fewer --curve-divisions need less",
                             e.what(), usable_memory() >> 20));
-        throw InputError(fmt::format("{}; --max-patches raises it", e.what()));
-    } catch (const InputError& e) {
-        const bool is_outside = std::string_view(e.what()).find("(outside_files)") != std::string_view::npos;
-        throw is_outside ? InputError(fmt::format("{}; --outside-files allows it", e.what())) : e;
+        throw;
     }
 }
 
@@ -225,7 +224,8 @@ Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) co
     const std::uint64_t most = std::min(read.max_patches, patches_in_memory(scene.patches.size()));
     try {
         return split_patches(scene, edge, most);
-    } catch (const TooManyPatches& e) {
+    } catch (const InputError& e) {
+        if (!is_patch_limit(e)) throw;
         if (most < read.max_patches)
             throw std::runtime_error(
                 fmt::format("{}: there is memory for no more, use a larger --mesh-size", e.what()));

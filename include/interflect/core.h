@@ -47,45 +47,37 @@ bool is_finite(const Imath::Vec3<T>& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }
 
-/// Invalid user input: a file, an argument, a scene. The message contains the location, the expected and the found
-/// value. The command line tool exits with code 3.
-class InputError : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-    /// @param line  1-based; 0 if no line applies. The message becomes "file:line: message".
-    InputError(const std::filesystem::path& file, std::int64_t line, const std::string& message)
-        : std::runtime_error(file.string() + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": " + message),
-          file_(file),
-          line_(line) {}
-
-    const std::filesystem::path& file() const { return file_; }  ///< Empty if no file applies.
-    std::int64_t line() const { return line_; }                  ///< 1-based; 0 if no line applies.
-    /// Name of the material, light, view, texture or object at fault, or "patch 3"; of the first fault if there are
-    /// several. Empty if none applies.
-    const std::string& object() const { return object_; }
-    /// All faults of a scene or of a plan, a sentence each; empty for a single fault.
-    const std::vector<std::string>& faults() const { return faults_; }
-
-    InputError& set_object(std::string object) {
-        object_ = std::move(object);
-        return *this;
-    }
-    InputError& set_faults(std::vector<std::string> faults) {
-        faults_ = std::move(faults);
-        return *this;
-    }
-
-  private:
-    std::filesystem::path file_;
-    std::int64_t line_ = 0;
-    std::string object_;
-    std::vector<std::string> faults_;
+/// One fault of an input.
+struct Fault {
+    std::string text;  ///< A sentence for the user, with the expected and the found value, without the file.
+    std::string object =
+        {};  ///< Name of the material, light, view, texture or object at fault, or "patch 3"; or empty.
+    /// Option that is wrong or too strict, such as "max_patches" of ReadOptions; or empty.
+    std::string setting = {};
+    std::filesystem::path file = {};  ///< Empty if no file applies.
+    std::int64_t line = 0;            ///< 1-based; 0 if no line applies.
 };
 
-/// A scene would exceed a limit of patches (ReadOptions::max_patches, which the message names).
-class TooManyPatches : public InputError {
+/// Invalid user input: a file, an argument, a scene. The command line tool exits with code 3.
+class InputError : public std::runtime_error {
   public:
-    using InputError::InputError;
+    /// The message becomes "file:line: text".
+    explicit InputError(Fault fault);
+    explicit InputError(const std::string& text) : InputError(Fault{text}) {}
+    /// @param line  1-based; 0 if no line applies.
+    InputError(const std::filesystem::path& file, std::int64_t line, const std::string& text)
+        : InputError(Fault{.text = text, .file = file, .line = line}) {}
+    /// @param message  Lists the faults. @param faults  At least one.
+    InputError(const std::string& message, std::vector<Fault> faults)
+        : std::runtime_error(message), faults_(std::move(faults)) {}
+
+    /// All faults of a scene or of a plan, at least one.
+    const std::vector<Fault>& faults() const { return faults_; }
+    /// The first fault, usually the only one.
+    const Fault& fault() const { return faults_.front(); }
+
+  private:
+    std::vector<Fault> faults_;
 };
 
 /// Valid but unsupported input, with one counted entry per kind.

@@ -117,8 +117,8 @@ void add_daylight(Scene& scene, const Daylight& added);
 /// other options at their defaults). `maze:9:furniture` has the size of the scene in Prikryl et al. 2000.
 /// @param luminaires  Added to the scene; each is named by its file and its index among the scene's lights: "lamp-3".
 /// @param added       Added after them, as by add_daylight().
-/// @throws InputError for an unknown extension, as the readers do, and for an invalid maze; TooManyPatches if the scene
-///         has more than options.max_patches.
+/// @throws InputError for an unknown extension, as the readers do, for an invalid maze, and for a scene of more than
+///         options.max_patches.
 Scene load_scene(const std::filesystem::path& path, const ReadOptions& options = {},
                  std::span<const PlacedLuminaire> luminaires = {}, const Daylight& added = {});
 

@@ -180,12 +180,12 @@ struct Scene {
 };
 
 /// Violations of the invariants above (index out of range, non-finite number, reflectance outside [0, 1), negative
-/// exitance, textured patch without coordinates, degenerate patch, invalid view) and of limits.h, one sentence each. At
-/// most 20; empty for a valid scene.
-std::vector<std::string> scene_faults(const Scene& scene);
+/// exitance, textured patch without coordinates, degenerate patch, invalid view) and of limits. At most 20; empty for a
+/// valid scene.
+std::vector<Fault> scene_faults(const Scene& scene);
 
 /// @param purpose  Start of the message: "cannot solve".
 /// @throws InputError that lists the faults, if any: "cannot solve 'room.mgf':" and a line each.
-void require_no_faults(const std::vector<std::string>& faults, const std::string& purpose, const Scene& scene);
+void require_no_faults(const std::vector<Fault>& faults, const std::string& purpose, const Scene& scene);
 
 }  // namespace interflect

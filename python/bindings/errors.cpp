@@ -8,10 +8,12 @@ namespace {
 
 py::object class_of(const char* name) { return py::module_::import("interflect._errors").attr(name); }
 
-void raise_input_error(const char* name, const InputError& e) {
-    const py::object type = class_of(name);
-    const py::object error = type(e.what(), e.file().string(), e.line(), e.object(), py::tuple(py::cast(e.faults())));
-    PyErr_SetObject(type.ptr(), error.ptr());
+void raise_input_error(const InputError& e) {
+    py::list faults;
+    for (const Fault& fault : e.faults())
+        faults.append(class_of("Fault")(fault.text, fault.object, fault.setting, fault.file.string(), fault.line));
+    const py::object type = class_of(e.fault().setting == "max_patches" ? "TooManyPatches" : "InputError");
+    PyErr_SetObject(type.ptr(), type(e.what(), faults).ptr());
 }
 
 }  // namespace
@@ -36,10 +38,8 @@ void bind_errors(py::module_&) {
             std::rethrow_exception(thrown);
         } catch (const py::builtin_exception&) {
             throw;  // such as py::type_error; for pybind11's own translator
-        } catch (const TooManyPatches& e) {
-            raise_input_error("TooManyPatches", e);
         } catch (const InputError& e) {
-            raise_input_error("InputError", e);
+            raise_input_error(e);
         } catch (const Stopped& e) {
             PyErr_SetString(class_of("Stopped").ptr(), e.what());
         } catch (const std::runtime_error& e) {

@@ -32,16 +32,20 @@ std::vector<std::uint32_t> patches_of(const py::handle& value, const std::string
     if (!array || array.ndim() != 1 || (kind != 'i' && kind != 'u' && kind != 'b') ||
         (kind == 'b' && array.shape(0) != static_cast<py::ssize_t>(patches))) {
         PyErr_Clear();
-        throw InputError(fmt::format("groups: '{}': expected indices of faces, or {} booleans", name, patches))
-            .set_object(name);
+        throw InputError(
+            Fault{.text = fmt::format("groups: '{}': expected indices of faces, or {} booleans", name, patches),
+                  .object = name,
+                  .setting = "groups"});
     }
     const py::array chosen = kind == 'b' ? py::array(array.attr("nonzero")().cast<py::tuple>()[0]) : array;
     std::vector<std::uint32_t> result;
     for (const py::handle& index : chosen) {
         const auto i = argument<std::int64_t>(index, "groups", "indices of faces");
         if (i < 0 || i >= static_cast<std::int64_t>(patches))
-            throw InputError(fmt::format("groups: '{}': there is no face {}; there are {}", name, i, patches))
-                .set_object(name);
+            throw InputError(
+                Fault{.text = fmt::format("groups: '{}': there is no face {}; there are {}", name, i, patches),
+                      .object = name,
+                      .setting = "groups"});
         result.push_back(static_cast<std::uint32_t>(i));
     }
     return result;

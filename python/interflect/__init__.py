@@ -25,7 +25,7 @@ from interflect._core import (
     read_radiance_view, validate, write_image,
 )
 from interflect._core import version as __version__
-from interflect._errors import Error, InputError, Stopped, TooManyPatches, Warning
+from interflect._errors import Error, Fault, InputError, Stopped, TooManyPatches, Warning
 from interflect._pictures import export, probe, rate_glare, render, tonemap, trace
 from interflect._scenes import load
 from interflect._solving import Solver, open_solution, solve
@@ -33,7 +33,7 @@ from interflect._view_factors import view_factors
 
 __all__ = [
     "AdvanceReport", "BlockDifference", "CieSky", "Consistency", "Daylight", "Deviation", "DirectionalLight", "Elements", "Environment",
-    "EnvironmentMap", "Error", "Finding", "FindingPlace", "GlareRating", "GlareSource", "IlluminanceSummary",
+    "EnvironmentMap", "Error", "Fault", "Finding", "FindingPlace", "GlareRating", "GlareSource", "IlluminanceSummary",
     "ImageDifference", "InputError", "LightGroup", "Luminaire", "Material", "MeasuredLight", "MeasuringGrid", "Measurement",
     "PerezSky", "PhotometricWeb", "PlacedLuminaire", "PlanarArea", "PointLight", "PowerBalance", "Progress",
     "Reconciliation", "Rendering", "Scene", "SkyDome", "SkyModel", "Solution", "Solver", "SpotLight", "Stopped", "Sun", "Texture", "TooManyPatches",

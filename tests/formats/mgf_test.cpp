@@ -1,6 +1,7 @@
 // The reader's results for each entity.
 #include "interflect/formats/mgf.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +29,7 @@ const std::string one_sided = "m grey =\n rd .5\n sides 1\n";
 
 Scene read(const std::string& text, const ReadOptions& options = {}) {
     Scene scene = read_mgf_text(text, "test.mgf", options);
-    EXPECT_EQ(scene_faults(scene), std::vector<std::string>());
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
     return scene;
 }
 

@@ -1,5 +1,6 @@
 // Normals of vertices in OBJ, PLY, MGF and glTF files, and on their way through the scene.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +36,7 @@ void expect_normals(const Scene& scene) {
     EXPECT_LT((normal_at(scene, {0, 0, 0}) - V3f(0, 0, 1)).length(), rounding);
     EXPECT_LT((normal_at(scene, {1, 0, 0}) - V3f(0.6f, 0, 0.8f)).length(), rounding);
     EXPECT_LT((normal_at(scene, {0, 1, 0}) - V3f(0, 0.6f, 0.8f)).length(), rounding);
-    EXPECT_EQ(scene_faults(scene), std::vector<std::string>());
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
 }
 
 const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 2\nvn 0.6 0 0.8\nvn 0 3 4\n";

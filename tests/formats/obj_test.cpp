@@ -185,8 +185,8 @@ TEST(Obj, FilesOutsideTheFolderAreRefused) {
         return message_of([&] { load_scene(folder.write("scene/room.obj", text + square + "usemtl a\nf 1 2 3\n")); });
     };
     expect_in(message("mtllib ../secret.mtl\n"), "room.obj:1: ");
-    expect_in(message("mtllib /etc/passwd\n"), "outside the scene's folder");
-    expect_in(message("mtllib a.mtl\n"), "a.mtl:2: the texture '../secret.png' lies outside the scene's folder");
+    expect_in(message("mtllib /etc/passwd\n"), "outside the folder of the scene");
+    expect_in(message("mtllib a.mtl\n"), "a.mtl:2: the texture '../secret.png' lies outside the folder of the scene");
 }
 
 /// Each was refused.

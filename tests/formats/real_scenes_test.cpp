@@ -1,5 +1,6 @@
 // Real scenes of the 1990s. The numbers were counted independently: faces by number of vertices with awk, areas and
 // powers with a 30-line Python script that supports only v, p, m, ed, f and the scale of xf.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,7 @@ namespace {
 
 Scene load(const std::string& name) {
     Scene scene = load_scene(testing_support::real_scenes() / name);
-    EXPECT_EQ(scene_faults(scene), std::vector<std::string>());
+    EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
     EXPECT_EQ(scene.files.size(), 1u);
     return scene;
 }

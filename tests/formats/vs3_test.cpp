@@ -9,6 +9,7 @@
 
 #include "interflect/core.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "tests/support/refusals.h"
 
 namespace interflect::detail {
 namespace {
@@ -113,8 +114,9 @@ TEST(Vs3, RefusesFaultsWithTheirLine) {
 TEST(Vs3, RefusesMorePatchesThanAllowed) {
     ReadOptions options;
     options.max_patches = 3;
-    EXPECT_THROW(read_vs3_bytes(square + "S 1 1 2 3 4 0 0 1 a\nS 2 4 3 2 1 0 0 1 b\n", "scene.vs3", options),
-                 TooManyPatches);
+    EXPECT_EQ(testing_support::refused_setting(
+                  [&] { read_vs3_bytes(square + "S 1 1 2 3 4 0 0 1 a\nS 2 4 3 2 1 0 0 1 b\n", "scene.vs3", options); }),
+              "max_patches");
 }
 
 }  // namespace

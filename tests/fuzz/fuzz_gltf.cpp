@@ -16,8 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         const interflect::Scene scene =
             interflect::detail::read_gltf_bytes({reinterpret_cast<const char*>(data), size}, "fuzz.glb", options);
-        for (const std::string& fault : interflect::scene_faults(scene)) {
-            std::fprintf(stderr, "%s\n", fault.c_str());
+        for (const interflect::Fault& fault : interflect::scene_faults(scene)) {
+            std::fprintf(stderr, "%s\n", fault.text.c_str());
             std::abort();
         }
     } catch (const interflect::InputError&) {

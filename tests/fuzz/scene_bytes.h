@@ -25,8 +25,8 @@ template <class Read>
 int require_scene_or_error(const Read& read) {
     try {
         const Scene scene = read(options());
-        for (const std::string& fault : scene_faults(scene)) {
-            std::fprintf(stderr, "%s\n", fault.c_str());
+        for (const Fault& fault : scene_faults(scene)) {
+            std::fprintf(stderr, "%s\n", fault.text.c_str());
             std::abort();
         }
         if (scene.patches.size() >

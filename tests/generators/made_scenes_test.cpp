@@ -1,4 +1,5 @@
 // Properties of all generated scenes: mazes, offices, rooms of boxes.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <ImathBox.h>
@@ -40,7 +41,7 @@ class MadeScenes : public testing::TestWithParam<MadeScene> {
 
 bool is_shell(const Scene& scene, const Patch& patch) { return scene.objects[patch.object].ends_with(".shell"); }
 
-TEST_P(MadeScenes, HaveNoFaults) { EXPECT_EQ(scene_faults(scene), std::vector<std::string>()); }
+TEST_P(MadeScenes, HaveNoFaults) { EXPECT_THAT(scene_faults(scene), testing::IsEmpty()); }
 
 TEST_P(MadeScenes, NamesAreDifferent) {
     EXPECT_EQ(std::set(scene.objects.begin(), scene.objects.end()).size(), scene.objects.size());

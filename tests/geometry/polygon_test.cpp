@@ -1,5 +1,6 @@
 #include "interflect/geometry/polygon.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +52,7 @@ Offered offer(const std::vector<std::vector<V3f>>& loops, bool two_sided = false
         }
     }
     offered.result = add_polygon(offered.scene, indices, 0, 0, two_sided);
-    EXPECT_EQ(scene_faults(offered.scene), std::vector<std::string>());
+    EXPECT_THAT(scene_faults(offered.scene), testing::IsEmpty());
     return offered;
 }
 

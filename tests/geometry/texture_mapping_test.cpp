@@ -6,6 +6,7 @@
 // seam between images divides a flat surface.
 #include "interflect/geometry/texture_mapping.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -65,7 +66,7 @@ void expect_near(const V2f& actual, const V2f& expected) {
 /// Expects unchanged image and chart coordinates at the corners and in the middle of each patch of material 0, and no
 /// chart elsewhere.
 void expect_laid(const Scene& scene) {
-    ASSERT_EQ(scene_faults(scene), std::vector<std::string>());
+    ASSERT_THAT(scene_faults(scene), testing::IsEmpty());
     ASSERT_EQ(scene.texture_coordinates.size(), scene.vertices.size());
     ASSERT_EQ(scene.lightmap_coordinates.size(), scene.vertices.size());
     for (const Patch& patch : scene.patches) {

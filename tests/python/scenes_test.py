@@ -107,12 +107,13 @@ class Faults(unittest.TestCase):
     def test_all_are_in_one_exception(self):
         error = self.faults(materials=[ifl.Material("white", 1.2), ifl.Material("black", -0.1, exitance=-5)],
                             faces=np.vstack([WALLS, [(8, 8, 8, 8)]]), face_materials=[0] * 6 + [7])
-        text = "\n".join(error.faults)
+        text = "\n".join(fault.text for fault in error.faults)
         for expected in ("'white'", "'black'", "patch 6", "no material 7"):
             self.assertIn(expected, text)
             self.assertIn(expected, str(error))
         self.assertGreaterEqual(len(error.faults), 4)
         self.assertEqual(error.object, "white")
+        self.assertEqual([fault.object for fault in error.faults], ["white", "black", "black", "patch 6", "patch 6"])
         self.assertIsNone(error.file)
         self.assertIsInstance(error, ValueError)
         self.assertIsInstance(error, ifl.Error)
@@ -138,7 +139,7 @@ class Faults(unittest.TestCase):
                 ({"face_objects": [1] * 7}, "patch 0: there is no object 1"),
                 ({"views": [VIEW.replace(look_at=VIEW.eye)]}, "view 'door'"),
         ):
-            self.assertIn(expected, "\n".join(self.faults(**changes).faults))
+            self.assertIn(expected, str(self.faults(**changes)))
 
     def test_wrong_kinds_of_objects(self):
         for call in (lambda: ifl.Material("x", reflectance="red"), lambda: ifl.Material(colour=1), lambda: ifl.View(3),

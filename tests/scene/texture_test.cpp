@@ -64,72 +64,75 @@ TEST(Lightmap, HasNoFaultsWhereAllVerticesOfAPatchOrNoneHaveCoordinates) {
     EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
 }
 
-struct Fault {
+struct FaultCase {
     const char* name;
     std::function<void(Scene&)> make;
     const char* message;
 };
-std::ostream& operator<<(std::ostream& out, const Fault& fault) { return out << fault.name; }
+std::ostream& operator<<(std::ostream& out, const FaultCase& fault) { return out << fault.name; }
 
-class TextureFaults : public testing::TestWithParam<Fault> {};
+class TextureFaults : public testing::TestWithParam<FaultCase> {};
 
 TEST_P(TextureFaults, AreFoundAndNamed) {
     Scene scene = textured_scene();
     GetParam().make(scene);
-    const std::vector<std::string> faults = scene_faults(scene);
+    const std::vector<Fault> faults = scene_faults(scene);
     ASSERT_FALSE(faults.empty());
-    EXPECT_THAT(faults[0], HasSubstr(GetParam().message));
+    EXPECT_THAT(faults[0].text, HasSubstr(GetParam().message));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, TextureFaults,
     testing::Values(
-        Fault{"NoSize", [](Scene& s) { s.textures[0].width = 0; }, "texture 'numbers.png' has 0 x 2 texels"},
-        Fault{"TooWide", [](Scene& s) { s.textures[0].width = max_texels_of_side + 1; }, "expected 1 to 16384 a side"},
-        Fault{"TexelsMissing", [](Scene& s) { s.textures[0].texels.pop_back(); }, "of 3 x 2 texels holds 5"},
-        Fault{"NegativeTexel", [](Scene& s) { s.textures[0].texels[4].z = -1; }, "1 from the left and 1 from the top"},
-        Fault{"InfiniteTexel", [](Scene& s) { s.textures[0].texels[0].x = std::numeric_limits<float>::infinity(); },
-              "not finite"},
-        Fault{"NoSuchTexture", [](Scene& s) { s.materials[0].exitance_texture = 1; }, "there is no texture 1"},
-        Fault{"ReflectsTooMuch", [](Scene& s) { s.materials[0].reflectance = Rgb(0.2f); },
-              "reflectance times its texture is up to (1.2"},
-        Fault{"LetsTooMuchThrough",
-              [](Scene& s) {
-                  s.materials[0].transmittance = Rgb(0.1f);
-                  s.materials[0].transmittance_texture = 0;
-              },
-              "times their textures, are up to (1.2"},
-        Fault{"NoSuchTransmittance", [](Scene& s) { s.materials[0].transmittance_texture = 7; },
-              "there is no texture 7"},
-        Fault{"EmitsTooMuch", [](Scene& s) { s.materials[0].exitance = Rgb(2e9f); }, "times its texture: exitance"},
-        Fault{"TooDark", [](Scene& s) { s.textures[0].texels.assign(6, Rgb(1e-10f)); }, "emits only 1e-10 lm/m2"},
-        Fault{"NoCoordinates", [](Scene& s) { s.texture_coordinates.clear(); },
-              "patch 0 has a texture, but no texture coordinates"},
-        Fault{"CoordinatesMissing", [](Scene& s) { s.texture_coordinates.pop_back(); },
-              "there are 4 vertices and 3 texture coordinates"},
-        Fault{"CoordinateNotANumber", [](Scene& s) { s.texture_coordinates[2].x = not_a_number; },
-              "vertex 2 has the texture coordinates (nan"},
-        Fault{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; }, "expected numbers up to 4096"},
-        Fault{"LightmapCoordinatesMissing",
-              [](Scene& s) {
-                  s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1}};
-              },
-              "there are 4 vertices and 3 lightmap coordinates"},
-        Fault{"LightmapCoordinateOutside",
-              [](Scene& s) {
-                  s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1.001f}, {0, 1}};
-              },
-              "vertex 2 has the lightmap coordinates (1, 1.001)"},
-        Fault{"HalfALightmapCoordinate",
-              [](Scene& s) {
-                  s.lightmap_coordinates = {{0, 0}, {not_a_number, 0}, {1, 1}, {0, 1}};
-              },
-              "vertex 1 has the lightmap coordinates (nan"},
-        Fault{"LightmapCoordinatesOfSomeVertices",
-              [](Scene& s) {
-                  s.lightmap_coordinates = {{0, 0}, {1, 0}, V2f(not_a_number), {0, 1}};
-              },
-              "patch 0 has lightmap coordinates at some of its vertices only"}),
+        FaultCase{"NoSize", [](Scene& s) { s.textures[0].width = 0; }, "texture 'numbers.png' has 0 x 2 texels"},
+        FaultCase{"TooWide", [](Scene& s) { s.textures[0].width = max_texels_of_side + 1; },
+                  "expected 1 to 16384 a side"},
+        FaultCase{"TexelsMissing", [](Scene& s) { s.textures[0].texels.pop_back(); }, "of 3 x 2 texels holds 5"},
+        FaultCase{"NegativeTexel", [](Scene& s) { s.textures[0].texels[4].z = -1; },
+                  "1 from the left and 1 from the top"},
+        FaultCase{"InfiniteTexel", [](Scene& s) { s.textures[0].texels[0].x = std::numeric_limits<float>::infinity(); },
+                  "not finite"},
+        FaultCase{"NoSuchTexture", [](Scene& s) { s.materials[0].exitance_texture = 1; }, "there is no texture 1"},
+        FaultCase{"ReflectsTooMuch", [](Scene& s) { s.materials[0].reflectance = Rgb(0.2f); },
+                  "reflectance times its texture is up to (1.2"},
+        FaultCase{"LetsTooMuchThrough",
+                  [](Scene& s) {
+                      s.materials[0].transmittance = Rgb(0.1f);
+                      s.materials[0].transmittance_texture = 0;
+                  },
+                  "times their textures, are up to (1.2"},
+        FaultCase{"NoSuchTransmittance", [](Scene& s) { s.materials[0].transmittance_texture = 7; },
+                  "there is no texture 7"},
+        FaultCase{"EmitsTooMuch", [](Scene& s) { s.materials[0].exitance = Rgb(2e9f); }, "times its texture: exitance"},
+        FaultCase{"TooDark", [](Scene& s) { s.textures[0].texels.assign(6, Rgb(1e-10f)); }, "emits only 1e-10 lm/m2"},
+        FaultCase{"NoCoordinates", [](Scene& s) { s.texture_coordinates.clear(); },
+                  "patch 0 has a texture, but no texture coordinates"},
+        FaultCase{"CoordinatesMissing", [](Scene& s) { s.texture_coordinates.pop_back(); },
+                  "there are 4 vertices and 3 texture coordinates"},
+        FaultCase{"CoordinateNotANumber", [](Scene& s) { s.texture_coordinates[2].x = not_a_number; },
+                  "vertex 2 has the texture coordinates (nan"},
+        FaultCase{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; },
+                  "expected numbers up to 4096"},
+        FaultCase{"LightmapCoordinatesMissing",
+                  [](Scene& s) {
+                      s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1}};
+                  },
+                  "there are 4 vertices and 3 lightmap coordinates"},
+        FaultCase{"LightmapCoordinateOutside",
+                  [](Scene& s) {
+                      s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1.001f}, {0, 1}};
+                  },
+                  "vertex 2 has the lightmap coordinates (1, 1.001)"},
+        FaultCase{"HalfALightmapCoordinate",
+                  [](Scene& s) {
+                      s.lightmap_coordinates = {{0, 0}, {not_a_number, 0}, {1, 1}, {0, 1}};
+                  },
+                  "vertex 1 has the lightmap coordinates (nan"},
+        FaultCase{"LightmapCoordinatesOfSomeVertices",
+                  [](Scene& s) {
+                      s.lightmap_coordinates = {{0, 0}, {1, 0}, V2f(not_a_number), {0, 1}};
+                  },
+                  "patch 0 has lightmap coordinates at some of its vertices only"}),
     testing::PrintToStringParamName());
 
 /// Reflectance and transmittance are added texel by texel if the textures have the same size.
@@ -143,10 +146,10 @@ TEST(TexturedScene, MayReflectWhereNothingGoesThrough) {
     scene.materials[0].transmittance_texture = 1;
     EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
     scene.materials[0].transmittance_texture = 0;
-    EXPECT_THAT(scene_faults(scene), testing::Contains(HasSubstr("are up to (1.9")));
+    EXPECT_THAT(scene_faults(scene), testing::Contains(testing::Field(&Fault::text, HasSubstr("are up to (1.9"))));
     scene.textures[0].width = 6, scene.textures[0].height = 1;  // sizes differ: the largest values count
     scene.materials[0].transmittance_texture = 1;
-    EXPECT_THAT(scene_faults(scene), testing::Contains(HasSubstr("are up to (1.9")));
+    EXPECT_THAT(scene_faults(scene), testing::Contains(testing::Field(&Fault::text, HasSubstr("are up to (1.9"))));
 }
 
 }  // namespace

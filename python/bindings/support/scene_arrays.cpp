@@ -19,7 +19,11 @@ using Integers = py::array_t<std::int64_t, py::array::c_style>;
 /// Checks arrays and remembers all faults, for one exception.
 class Arguments {
   public:
-    void add(const std::string& fault) { faults_.push_back(fault); }
+    void add(const Fault& fault) { faults_.push_back(fault); }
+    /// @param name  Of the argument, which starts the sentence.
+    void add(const char* name, const std::string& expected) {
+        add(Fault{.text = fmt::format("{}: {}", name, expected), .setting = name});
+    }
 
     /// Array (count, columns); empty, with a fault, for another shape or type. @param count  -1: any.
     Doubles numbers(const py::object& value, const char* name, py::ssize_t count, py::ssize_t columns) {
@@ -31,7 +35,7 @@ class Arguments {
         const py::array array = py::array::ensure(value);
         if (!array || (array.size() > 0 && array.dtype().kind() != 'i' && array.dtype().kind() != 'u')) {
             PyErr_Clear();
-            add(fmt::format("{}: expected integers, found {}", name, kind_of(array)));
+            add(name, fmt::format("expected integers, found {}", kind_of(array)));
             return Integers(0);
         }
         return checked<Integers>(array.attr("astype")("int64"), name, "integers", count, columns);
@@ -55,7 +59,7 @@ class Arguments {
         const Array array = Array::ensure(value);
         if (!array) {
             PyErr_Clear();
-            add(fmt::format("{}: expected an array of {}", name, kind));
+            add(name, fmt::format("expected an array of {}", kind));
             return Array(0);
         }
         const bool is_flat = columns.empty();
@@ -68,11 +72,11 @@ class Arguments {
             expected += fmt::format("{}{}", i == 0 ? ", " : " or ", columns[i]);
         std::string found;
         for (py::ssize_t i = 0; i < array.ndim(); ++i) found += fmt::format("{}{}", i > 0 ? ", " : "", array.shape(i));
-        add(fmt::format("{}: expected the shape {}), found ({})", name, expected + (is_flat ? "," : ""), found));
+        add(name, fmt::format("expected the shape {}), found ({})", expected + (is_flat ? "," : ""), found));
         return Array(0);
     }
 
-    std::vector<std::string> faults_;
+    std::vector<Fault> faults_;
 };
 
 /// Sets the origin and the vertices relative to it.
@@ -81,7 +85,8 @@ void place_vertices(Scene& scene, const Doubles& vertices, const Integers& faces
     const auto at = [&](py::ssize_t i) { return Imath::V3d(points(i, 0), points(i, 1), points(i, 2)); };
     for (py::ssize_t i = 0; i < points.shape(0); ++i)
         if (const Imath::V3d p = at(i); !is_finite(p)) {
-            arguments.add(fmt::format("vertex {} is ({}, {}, {}): expected finite numbers", i, p.x, p.y, p.z));
+            arguments.add({fmt::format("vertex {} is ({}, {}, {}): expected finite numbers", i, p.x, p.y, p.z),
+                           fmt::format("vertex {}", i), "vertices"});
             return;
         }
     detail::FaceSample sample;
@@ -107,7 +112,7 @@ std::vector<std::uint32_t> indices_of_faces(const py::object& value, const char*
     for (py::ssize_t f = 0; f < given.size(); ++f) {
         const std::int64_t index = given.at(f);
         if (index < 0 || index >= none) {
-            arguments.add(fmt::format("{}: face {} has {}, which is no index", name, f, index));
+            arguments.add(name, fmt::format("face {} has {}, which is no index", f, index));
             break;
         }
         result[static_cast<std::size_t>(f)] = static_cast<std::uint32_t>(index);
@@ -124,7 +129,7 @@ std::vector<bool> sides_of_faces(const py::object& value, py::ssize_t faces, Arg
     const auto given = py::array::ensure(value);
     if (!given || given.ndim() != 1 || given.shape(0) != faces || given.dtype().kind() != 'b') {
         PyErr_Clear();
-        arguments.add(fmt::format("two_sided: expected True, False or an array of {} booleans", faces));
+        arguments.add("two_sided", fmt::format("expected True, False or an array of {} booleans", faces));
         return result;
     }
     const auto flags = py::array_t<bool>(given).unchecked<1>();
@@ -142,7 +147,8 @@ void add_faces(Scene& scene, const Integers& faces, const std::vector<std::uint3
             if (c == 3 && (v == -1 || v == none)) continue;  // a triangle
             if (v < 0 || v >= static_cast<std::int64_t>(scene.vertices.size()))
                 return arguments.add(
-                    fmt::format("face {}: there is no vertex {}; there are {}", f, v, scene.vertices.size()));
+                    {fmt::format("face {}: there is no vertex {}; there are {}", f, v, scene.vertices.size()),
+                     fmt::format("face {}", f), "faces"});
             patch.vertices[static_cast<std::size_t>(c)] = static_cast<std::uint32_t>(v);
         }
         const auto i = static_cast<std::size_t>(f);
@@ -251,9 +257,9 @@ std::shared_ptr<Scene> scene_from_arrays(const py::object& vertices, const py::o
         set_attribute(scene->normals, normals, "normals", n, arguments);
         set_attribute(scene->texture_coordinates, texture_coordinates, "texture_coordinates", n, arguments);
         set_attribute(scene->lightmap_coordinates, lightmap_coordinates, "lightmap_coordinates", n, arguments);
-        if (corners.shape(0) == 0) arguments.add("faces: expected at least one");
+        if (corners.shape(0) == 0) arguments.add("faces", "expected at least one");
     }
-    for (const std::string& fault : scene_faults(*scene)) arguments.add(fault);
+    for (const Fault& fault : scene_faults(*scene)) arguments.add(fault);
     arguments.throw_faults(scene->name);
     return scene;
 }
@@ -271,7 +277,7 @@ std::shared_ptr<Texture> texture_from_array(const py::array_t<float, py::array::
     auto texture = std::make_shared<Texture>(
         Texture{name, static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), image.pixels});
     if (const std::string fault = texture_fault(*texture); !fault.empty())
-        throw InputError("texture '" + name + "' " + fault).set_object(name);
+        throw InputError(Fault{.text = "texture '" + name + "' " + fault, .object = name});
     return texture;
 }
 

@@ -127,7 +127,7 @@ void require_none(const std::string& fault) {
 }
 
 void require_valid(const Scene& scene) {
-    for (const std::string& fault : scene_faults(scene)) require_none(fault);
+    for (const Fault& fault : scene_faults(scene)) require_none(fault.text);
 }
 
 void require_valid(const Solution& solution) {

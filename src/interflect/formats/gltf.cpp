@@ -130,10 +130,10 @@ class SceneReader {
     void require_room(const GltfValue& node, std::uint64_t copies, std::uint64_t faces) {
         faces_ += static_cast<double>(copies) * static_cast<double>(faces);
         if (faces_ > static_cast<double>(asset_.options().max_patches))
-            throw TooManyPatches(
-                asset_.path(), 0,
+            throw GltfFault(
                 fmt::format("{}: its {} instances of {} faces would give more than {} patches (max_patches)",
-                            node.place(), copies, faces, asset_.options().max_patches));
+                            node.place(), copies, faces, asset_.options().max_patches),
+                "max_patches");
     }
 
     std::vector<M44d> places_of(const GltfNode& node, std::uint64_t faces) {
@@ -223,7 +223,7 @@ Scene read_gltf_bytes(std::string_view bytes, const fs::path& path, const ReadOp
     try {
         return scene_of(model_of(bytes, path, options), options);
     } catch (const GltfFault& fault) {
-        throw InputError(path, 0, fault.what());
+        throw InputError(Fault{.text = fault.what(), .setting = fault.setting, .file = path});
     }
 }
 

@@ -134,7 +134,8 @@ fs::path GltfAsset::file_of(const std::string& uri, const GltfValue& owner) cons
     const bool stays = !fs::path(name).is_absolute() && is_within(file, folder);
     if (!stays && !options_.outside_files)
         owner.fail(
-            fmt::format("'{}' is outside the folder of this file, which is not allowed (outside_files)", cut(uri)));
+            fmt::format("'{}' lies outside the folder of the scene, which is not allowed (outside_files)", cut(uri)),
+            "outside_files");
     return file;
 }
 

@@ -118,7 +118,9 @@ std::shared_ptr<const PhotometricWeb> GltfLights::web(std::uint32_t profile) {
         result = std::make_shared<PhotometricWeb>(
             read_enclosed_ies(text, name, asset_.path().parent_path(), asset_.options(), warnings));
     } catch (const InputError& fault) {
-        throw is_foreign ? InputError(without_quotes(fault.what(), name.string().size())) : fault;
+        if (!is_foreign) throw;
+        throw InputError(
+            Fault{.text = without_quotes(fault.what(), name.string().size()), .setting = fault.fault().setting});
     }
     for (const Warnings::Entry& w : warnings.entries())
         asset_.model.warnings.add(w.kind, is_foreign ? without_quotes(w.message) : w.message, w.where);

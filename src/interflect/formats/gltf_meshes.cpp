@@ -112,10 +112,9 @@ GltfMeshes::GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& ac
 void GltfMeshes::count_triangles(std::uint64_t count, const GltfValue& primitive) {
     triangles_ += count;
     if (triangles_ > asset_.options().max_patches)
-        throw TooManyPatches(
-            asset_.path(), /*line=*/0,
-            fmt::format("{}: with its {} triangles, the meshes exceed the limit of {} patches (max_patches)",
-                        primitive.place(), count, asset_.options().max_patches));
+        primitive.fail(fmt::format("with its {} triangles, the meshes exceed the limit of {} patches (max_patches)",
+                                   count, asset_.options().max_patches),
+                       "max_patches");
 }
 
 GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, const char* types) {

@@ -47,7 +47,7 @@ class GltfMeshes {
     void read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used, Mesh& mesh);
     GltfElements attribute(const GltfValue& primitive, const char* key, const char* types);
     std::vector<std::uint32_t> corners_of(const GltfValue& primitive, Vertices& vertices);
-    /// @throws TooManyPatches
+    /// @throws GltfFault beyond max_patches
     void count_triangles(std::uint64_t count, const GltfValue& primitive);
 
     GltfAsset& asset_;

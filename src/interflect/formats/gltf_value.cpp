@@ -25,8 +25,8 @@ std::string gltf_place(const std::string& list, std::size_t index, const std::st
                        name.size() > longest ? "..." : "");
 }
 
-void GltfValue::fail(const std::string& message) const {
-    throw GltfFault(place_.empty() ? message : place_ + ": " + message);
+void GltfValue::fail(const std::string& message, const std::string& setting) const {
+    throw GltfFault(place_.empty() ? message : place_ + ": " + message, setting);
 }
 
 const json* GltfValue::find(const char* key) const {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "interflect/scene.h"
@@ -14,7 +15,11 @@ namespace interflect::detail {
 
 /// Error with its place, without the file name.
 struct GltfFault : std::runtime_error {
-    using std::runtime_error::runtime_error;
+    /// @param setting_name  As in Fault.
+    explicit GltfFault(const std::string& text, std::string setting_name = {})
+        : std::runtime_error(text), setting(std::move(setting_name)) {}
+
+    std::string setting;
 };
 
 /// JSON value with its place, such as "meshes[3] 'chair'". Absent values act as empty. Getters throw GltfFault for
@@ -30,7 +35,7 @@ class GltfValue {
     bool exists() const { return json_ != nullptr; }
     bool has(const char* key) const { return find(key) != nullptr; }
     const std::string& place() const { return place_; }
-    [[noreturn]] void fail(const std::string& message) const;
+    [[noreturn]] void fail(const std::string& message, const std::string& setting = {}) const;
 
     GltfValue object(const char* key) const;
     GltfValue extension(const char* name) const { return object("extensions").object(name); }

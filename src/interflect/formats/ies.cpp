@@ -12,6 +12,7 @@
 #include "interflect/formats/number.h"
 #include "interflect/formats/photometric_planes.h"
 #include "interflect/formats/photometric_text.h"
+#include "interflect/formats/read_fault.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/scene/web_angles.h"
 
@@ -156,10 +157,11 @@ void IesReader::read_tilt(std::string_view tilt) {
     if (tilt.empty()) text_.refuse("expected TILT=NONE, TILT=INCLUDE or TILT=FILE");
     if (options_.max_include_depth < 1) text_.refuse("no other file may be read (max_include_depth is 0)");
     const fs::path path = folder_ / tilt;
-    if (!options_.outside_files && !is_within(path, folder_))
-        text_.refuse(
-            fmt::format("the TILT file '{}' lies outside the folder of this file, which is not allowed (outside_files)",
-                        path.string()));
+    try {
+        require_within(path, folder_, options_, fmt::format("the TILT file '{}'", path.string()));
+    } catch (const ReadFault& fault) {
+        text_.refuse(fault.what(), fault.setting);
+    }
     std::string content;
     try {
         content = read_photometric_text(path, options_);

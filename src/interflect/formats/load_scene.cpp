@@ -118,9 +118,10 @@ MazeOptions parse_maze(const std::string& name) {
 Scene load_maze(const std::string& name, const ReadOptions& options) {
     Scene scene = make_maze(parse_maze(name));
     if (scene.patches.size() > options.max_patches)
-        throw TooManyPatches(name, 0,
-                             fmt::format("this maze has {} patches, more than the limit of {} (max_patches)",
-                                         scene.patches.size(), options.max_patches));
+        throw InputError(Fault{.text = fmt::format("this maze has {} patches, more than the limit of {} (max_patches)",
+                                                   scene.patches.size(), options.max_patches),
+                               .setting = "max_patches",
+                               .file = name});
     return scene;
 }
 

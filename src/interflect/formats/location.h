@@ -4,11 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 #include "interflect/core.h"
 #include "interflect/formats/foreign_text.h"
+#include "interflect/formats/read_fault.h"
 
 namespace interflect::detail {
 
@@ -24,12 +26,12 @@ struct Location {
         return part.empty() ? file->string() : fmt::format("{}: {}", file->string(), part);
     }
     std::string shown(const std::string& message) const { return is_foreign ? without_quotes(message) : message; }
-    template <class Error = InputError>
-    Error error(const std::string& message) const {
-        Error error(*file, line, part.empty() ? shown(message) : fmt::format("{}: {}", part, shown(message)));
-        error.set_object(std::string(part));
-        return error;
+    /// @param setting  As in Fault.
+    InputError error(const std::string& message, const std::string& setting = {}) const {
+        const std::string text = part.empty() ? shown(message) : fmt::format("{}: {}", part, shown(message));
+        return InputError(Fault{text, std::string(part), setting, *file, line});
     }
+    InputError error(const std::invalid_argument& fault) const { return error(fault.what(), setting_of(fault)); }
 };
 
 }  // namespace interflect::detail

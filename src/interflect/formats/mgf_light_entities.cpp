@@ -11,6 +11,7 @@
 #include "interflect/core.h"
 #include "interflect/formats/foreign_text.h"
 #include "interflect/formats/mgf_reader.h"
+#include "interflect/formats/read_fault.h"
 #include "interflect/load.h"
 
 namespace interflect::detail {
@@ -108,7 +109,8 @@ std::shared_ptr<const PhotometricWeb> MgfReader::photometric_web(std::string_vie
         for (const Warnings::Entry& w : warnings.entries())
             scene_.warnings().add(w.kind, without_quotes(w.message), w.where);
     } catch (const InputError& unreadable) {
-        throw MgfFault(fmt::format("the luminaire {}", without_quotes(unreadable.what(), path.string().size())));
+        throw ReadFault(fmt::format("the luminaire {}", without_quotes(unreadable.what(), path.string().size())),
+                        unreadable.fault().setting);
     }
     scene_.add_file(path);
     return web;

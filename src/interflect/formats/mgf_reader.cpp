@@ -92,10 +92,8 @@ void MgfReader::read_lines() {
                 throw MgfFault(fmt::format("a line of {} characters; at most {} are read", file_->lines.length(),
                                            options_.max_line_length));
             read_line(file_->lines.words());
-        } catch (const PatchLimit& fault) {
-            throw here().error<TooManyPatches>(fault.what());
         } catch (const MgfFault& fault) {
-            throw here().error(fault.what());
+            throw here().error(fault);
         }
 }
 

@@ -1,4 +1,5 @@
 #include "interflect/formats/mgf_reader.h"
+#include "interflect/formats/read_fault.h"
 
 #include <fmt/format.h>
 
@@ -31,8 +32,9 @@ void MgfReader::open_transform(MgfWords words, const LineReader::Position& body)
                                scene_.patch_count()};
     for (const int size : transform.sequence.array_sizes()) transform.copies_together *= size;
     if (transform.copies_together > static_cast<double>(options_.max_patches))
-        throw PatchLimit(fmt::format("an array of {:.0f} copies is beyond the limit of {} patches (max_patches)",
-                                     transform.copies_together, options_.max_patches));
+        throw ReadFault(fmt::format("an array of {:.0f} copies is beyond the limit of {} patches (max_patches)",
+                                    transform.copies_together, options_.max_patches),
+                        "max_patches");
     transform.copy.assign(transform.sequence.array_sizes().size(), 0);
     transforms_.push_back(std::move(transform));
     place_copy(transforms_.back());

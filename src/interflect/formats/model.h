@@ -54,7 +54,7 @@ struct Model {
 ///
 /// Meshes with lightmap coordinates share their object's lightmap; other patches have NaN. Ignores the coordinates if
 /// instances with different transforms share them.
-/// @throws InputError for an invalid model, a scene without faces, and scene_faults(). @throws TooManyPatches
+/// @throws InputError for an invalid model, a scene without faces, and scene_faults().
 Scene scene_of(Model&& model, const ReadOptions& options);
 
 }  // namespace interflect::detail

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "interflect/core.h"
+#include "interflect/formats/location.h"
 #include "interflect/formats/model.h"
 #include "interflect/formats/scene_faces.h"
 #include "interflect/geometry/triangle_pairs.h"
@@ -70,10 +71,11 @@ void require_valid(const Model& model, const ReadOptions& options) {
     }
     // Two triangles may merge into one two-sided face.
     if (faces > static_cast<double>(options.max_patches))
-        throw TooManyPatches(model.file, 0,
-                             fmt::format("{:.0f} faces, its instances counted each, would give more than {} patches "
-                                         "(max_patches)",
-                                         faces, options.max_patches));
+        throw Location{&model.file}.error(
+            fmt::format("{:.0f} faces, its instances counted each, would give more than {} patches "
+                        "(max_patches)",
+                        faces, options.max_patches),
+            "max_patches");
 }
 
 std::vector<bool> objects_with_layouts(Model& model) {
@@ -110,10 +112,8 @@ class InstanceAdder {
         const Location where{&model_.file, 0, mesh.name};
         try {
             add(mesh, instance, where);
-        } catch (const PatchLimit& fault) {
-            throw where.error<TooManyPatches>(fault.what());
         } catch (const std::invalid_argument& fault) {
-            throw where.error(fault.what());
+            throw where.error(fault);
         }
     }
 

@@ -12,6 +12,7 @@
 #include "interflect/formats/line_reader.h"
 #include "interflect/formats/material_limits.h"
 #include "interflect/formats/number.h"
+#include "interflect/formats/read_fault.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/formats/texture_files.h"
 #include "interflect/formats/texture_limit.h"
@@ -64,9 +65,7 @@ void ObjMaterials::read(const fs::path& path, const Location& where) {
     if (!read_.insert(path.string()).second) return;
     if (options_.max_include_depth < 1)
         throw std::invalid_argument("no other file may be read (max_include_depth is 0)");
-    if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
-        throw std::invalid_argument(
-            fmt::format("'{}' lies outside the scene's folder, which is not allowed (outside_files)", path.string()));
+    require_within(path, model_.file.parent_path(), options_, fmt::format("'{}'", path.string()));
     std::error_code ignored;
     if (!fs::exists(path, ignored)) {
         warn("missing-file", fmt::format("there is no material library '{}'", path.filename().string()), where);
@@ -91,7 +90,7 @@ void ObjMaterials::read_text(std::string_view text, const fs::path& path) {
             try {
                 read_line(words, *current, here);
             } catch (const std::invalid_argument& fault) {
-                throw here.error(fault.what());
+                throw here.error(fault);
             }
         }
     }
@@ -126,11 +125,12 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
     std::string name = fmt::format("{}", fmt::join(words, " "));
     std::replace(name.begin(), name.end(), '\\', '/');
     fs::path path = where.file->parent_path() / name;
-    if (!options_.outside_files && !is_within(path, model_.file.parent_path()))
-        throw InputError(*where.file, where.line,
-                         fmt::format("the texture '{}' lies outside the scene's folder, which is not allowed "
-                                     "(outside_files)",
-                                     name));
+    try {
+        require_within(path, model_.file.parent_path(), options_, fmt::format("the texture '{}'", name));
+    } catch (const ReadFault& fault) {
+        throw InputError(
+            Fault{.text = fault.what(), .setting = fault.setting, .file = *where.file, .line = where.line});
+    }
     return path;
 }
 

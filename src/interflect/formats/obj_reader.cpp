@@ -60,7 +60,7 @@ void ObjReader::read(std::string_view text) {
         try {
             if (const Words words = words_of(lines); !words.empty()) read_line(lines, words, where);
         } catch (const std::invalid_argument& fault) {
-            throw where.error(fault.what());
+            throw where.error(fault);
         }
     }
 }
@@ -109,7 +109,7 @@ void ObjReader::read_ahead() {
         try {
             if (const Words words = words_of(lines); !words.empty()) read_vertex_data(words, where);
         } catch (const std::invalid_argument& fault) {
-            throw where.error(fault.what());
+            throw where.error(fault);
         }
     }
 }

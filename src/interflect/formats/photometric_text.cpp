@@ -94,6 +94,8 @@ std::vector<double> PhotometricText::numbers(std::size_t count, const std::strin
 
 std::string PhotometricText::where() const { return fmt::format("{}:{}", path_.string(), line_); }
 
-void PhotometricText::refuse(const std::string& message) const { throw InputError(path_, line_, message); }
+void PhotometricText::refuse(const std::string& message, const std::string& setting) const {
+    throw InputError(Fault{.text = message, .setting = setting, .file = path_, .line = line_});
+}
 
 }  // namespace interflect::detail

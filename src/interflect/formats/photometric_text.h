@@ -36,7 +36,7 @@ class PhotometricText {
 
     std::int64_t line_number() const { return line_; }  ///< Line of the latest word.
     std::string where() const;                          ///< As "file:line".
-    [[noreturn]] void refuse(const std::string& message) const;
+    [[noreturn]] void refuse(const std::string& message, const std::string& setting = {}) const;
 
   private:
     bool is_separator(char c) const;

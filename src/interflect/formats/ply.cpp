@@ -11,6 +11,7 @@
 #include "interflect/core.h"
 #include "interflect/formats/checked_options.h"
 #include "interflect/formats/file_to_world.h"
+#include "interflect/formats/location.h"
 #include "interflect/formats/material_limits.h"
 #include "interflect/formats/model.h"
 #include "interflect/formats/ply_header.h"
@@ -155,8 +156,9 @@ class PlyReader {
 
     void require_room(std::uint64_t faces) const {
         if (faces > options_.max_patches)
-            throw PatchLimit(
-                fmt::format("{} faces would give more than {} patches (max_patches)", faces, options_.max_patches));
+            throw ReadFault(
+                fmt::format("{} faces would give more than {} patches (max_patches)", faces, options_.max_patches),
+                "max_patches");
     }
 
     void read_faces(const PlyElement& element) {
@@ -276,10 +278,8 @@ Scene read_ply_bytes(std::string_view bytes, const fs::path& path, const ReadOpt
             if (const auto lines = values.lines()) line = last_of_header + 1 + *lines;
             throw;
         }
-    } catch (const PatchLimit& fault) {
-        throw TooManyPatches(path, line, fault.what());
     } catch (const std::invalid_argument& fault) {
-        throw InputError(path, line, fault.what());
+        throw Location{&path, line}.error(fault);
     }
     return scene_of(std::move(model), options);
 }

@@ -11,6 +11,7 @@
 #include "interflect/core.h"
 #include "interflect/formats/file_to_world.h"
 #include "interflect/formats/rad_sky.h"
+#include "interflect/formats/read_fault.h"
 #include "interflect/formats/scene_faces.h"
 #include "interflect/formats/text_file.h"
 #include "interflect/scene/web_angles.h"
@@ -77,10 +78,8 @@ void RadReader::read_file(const OpenFile& file) {
         const Location where = here(statements, file);
         try {
             read_statement(statements, kind, file);
-        } catch (const PatchLimit& fault) {
-            throw where.error<TooManyPatches>(fault.what());
         } catch (const std::invalid_argument& fault) {
-            throw where.error(fault.what());
+            throw where.error(fault);
         }
     }
     finish_light();
@@ -213,9 +212,8 @@ const SourceFile& RadReader::included_file(const std::string& name, const OpenFi
     if (!known) {
         std::error_code ignored;
         const SourceFile& beside = fs::exists(main_->path.parent_path() / name, ignored) ? *main_ : file.source;
-        if (!options_.outside_files && !is_within(beside.path.parent_path() / name, main_->path.parent_path()))
-            throw std::invalid_argument(
-                fmt::format("'{}' lies outside the scene's folder, which is not allowed (outside_files)", name));
+        require_within(beside.path.parent_path() / name, main_->path.parent_path(), options_,
+                       fmt::format("'{}'", name));
         const auto& [source, is_new] = sources_.find(name, beside);
         if (is_new) model_.files.push_back(source.path.string());
         known = &source;
@@ -238,10 +236,11 @@ std::vector<RadReader::Copy> RadReader::copies_of(const RadXform& xform, const s
     double count = static_cast<double>(outer.size());
     for (const int size : xform.transform.array_sizes()) count *= size;
     if (count > static_cast<double>(std::min<std::uint64_t>(max_copies, options_.max_patches)))
-        throw PatchLimit(
+        throw ReadFault(
             fmt::format("an array of {:.0f} copies, of which at most {} are read and each counts as a patch "
                         "at least (max_patches)",
-                        count, max_copies));
+                        count, max_copies),
+            "max_patches");
     repeated_.add(RepeatedWork::words_per_include + RepeatedWork::words_per_copy * static_cast<std::uint64_t>(count),
                   static_cast<std::uint64_t>(patches_));
     std::vector<Copy> result;
@@ -349,7 +348,8 @@ void RadReader::finish_light() {
         web = make_light_web(open.light.pattern, data_file(open.light), open.emitter);
     } catch (const std::invalid_argument& fault) {
         throw open.light.where.error(
-            fmt::format("the luminaire's data file '{}': {}", open.light.pattern.data_file, fault.what()));
+            fmt::format("the luminaire's data file '{}': {}", open.light.pattern.data_file, fault.what()),
+            setting_of(fault));
     }
     if (!(web.flux() > 0)) return;
     web.name = open.light.pattern.data_file;
@@ -389,8 +389,7 @@ const RadData& RadReader::data_file(const RadMaterials::PatternedLight& light) {
     const fs::path path = fs::exists(beside_scene, ignored) ? beside_scene : light.where.file->parent_path() / name;
     const auto [entry, is_new] = data_.try_emplace(path);
     if (!is_new) return entry->second;
-    if (!options_.outside_files && !is_within(path, folder))
-        throw std::invalid_argument("lies outside the scene's folder, which is not allowed (outside_files)");
+    require_within(path, folder, options_, "it");
     std::string text;
     try {
         text = read_text_file(path);
@@ -409,7 +408,8 @@ std::uint32_t RadReader::object(const std::string& name) {
 
 void RadReader::require_room(double faces, std::size_t copies) {
     if (patches_ + 2 * faces * static_cast<double>(copies) > static_cast<double>(options_.max_patches))
-        throw PatchLimit(fmt::format("this would give more than {} patches (max_patches)", options_.max_patches));
+        throw ReadFault(fmt::format("this would give more than {} patches (max_patches)", options_.max_patches),
+                        "max_patches");
 }
 
 PolygonMesh RadReader::polygon(const std::vector<double>& numbers, const Tessellation&) const {

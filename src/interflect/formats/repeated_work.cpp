@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "interflect/formats/scene_faces.h"
+#include "interflect/formats/read_fault.h"
 
 namespace interflect::detail {
 
@@ -19,8 +19,9 @@ constexpr std::uint64_t free_of_made = 50'000'000, words_per_made_patch = 1000;
 void RepeatedWork::add(std::uint64_t words, std::uint64_t patches) {
     words_ += words;
     if (words_ > free_of_limit + words_per_allowed_patch * max_patches_)
-        throw PatchLimit(
-            fmt::format("arrays and includes repeat more than {} patches (max_patches) could need", max_patches_));
+        throw ReadFault(
+            fmt::format("arrays and includes repeat more than {} patches (max_patches) could need", max_patches_),
+            "max_patches");
     if (words_ > free_of_made + words_per_made_patch * patches)
         throw std::invalid_argument(
             fmt::format("arrays and includes repeat {} million words, from which only {} patches were made: expected "

@@ -11,7 +11,7 @@ class RepeatedWork {
 
     explicit RepeatedWork(std::uint64_t max_patches) : max_patches_(max_patches) {}
 
-    /// @param patches  Made so far. @throws PatchLimit, std::invalid_argument
+    /// @param patches  Made so far. @throws ReadFault, std::invalid_argument
     void add(std::uint64_t words, std::uint64_t patches);
 
   private:

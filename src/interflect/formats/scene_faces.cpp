@@ -2,6 +2,7 @@
 
 #include <ImathBox.h>
 
+#include "interflect/formats/read_fault.h"
 #include "interflect/geometry/polygon.h"
 #include "interflect/scene/limits.h"
 
@@ -19,7 +20,7 @@ constexpr double largest_lost_width = 0x1p-16;
 
 void SceneFaces::require_room(double patches) const {
     if (static_cast<double>(scene_.patches.size() + left_out_) + patches > static_cast<double>(max_patches_))
-        throw PatchLimit(fmt::format("this would give more than {} patches (max_patches)", max_patches_));
+        throw ReadFault(fmt::format("this would give more than {} patches (max_patches)", max_patches_), "max_patches");
 }
 
 V3f SceneFaces::position(const Imath::V3d& world) const {

@@ -13,18 +13,13 @@
 
 namespace interflect::detail {
 
-/// More patches than ReadOptions::max_patches.
-struct PatchLimit : std::invalid_argument {
-    using std::invalid_argument::invalid_argument;
-};
-
 /// Adds faces relative to the scene's origin. Throws std::invalid_argument for invalid requests.
 class SceneFaces {
   public:
     /// @param scene  With name and origin.
     SceneFaces(Scene& scene, const ReadOptions& options) : scene_(scene), max_patches_(options.max_patches) {}
 
-    /// Counts omitted faces too. @throws PatchLimit
+    /// Counts omitted faces too. @throws ReadFault
     void require_room(double patches) const;
     /// @return  Relative to the scene's origin [m].
     V3f position(const Imath::V3d& world) const;

@@ -13,6 +13,7 @@
 #include "interflect/formats/extension.h"
 #include "interflect/formats/file_to_world.h"
 #include "interflect/formats/line_reader.h"
+#include "interflect/formats/location.h"
 #include "interflect/formats/material_limits.h"
 #include "interflect/formats/model.h"
 #include "interflect/formats/number.h"
@@ -100,9 +101,9 @@ void read_ascii_stl(std::string_view text, Model& model, const ReadOptions& opti
             if (!solid) fail("a vertex before the first 'solid'");
             if (words.size() != 4) fail(fmt::format("a vertex has {} coordinates, not 3", words.size() - 1));
             if (vertices % 3 == 0 && vertices / 3 >= options.max_patches / 2)
-                throw TooManyPatches(
-                    model.file, lines.line(),
-                    fmt::format("this would give more than {} patches (max_patches)", options.max_patches));
+                throw Location{&model.file, lines.line()}.error(
+                    fmt::format("this would give more than {} patches (max_patches)", options.max_patches),
+                    "max_patches");
             V3d x;
             for (int axis = 0; axis < 3; ++axis) {
                 const auto value = parse_number(words[axis + 1]);
@@ -135,9 +136,9 @@ Scene read_stl_bytes(std::string_view bytes, const fs::path& path, const ReadOpt
     const bool is_ascii = is_ascii_stl(bytes);
     if (const auto count = is_ascii ? std::nullopt : binary_triangles(bytes)) {
         if (*count > options.max_patches / 2)
-            throw TooManyPatches(
-                path, 0,
-                fmt::format("{} triangles would give more than {} patches (max_patches)", *count, options.max_patches));
+            throw Location{&path}.error(
+                fmt::format("{} triangles would give more than {} patches (max_patches)", *count, options.max_patches),
+                "max_patches");
         read_binary_stl(bytes, *count, model, options);
     } else {
         if (!is_ascii)

@@ -16,6 +16,7 @@
 #include "interflect/core.h"
 #include "interflect/formats/checked_options.h"
 #include "interflect/formats/file_to_world.h"
+#include "interflect/formats/location.h"
 #include "interflect/formats/material_limits.h"
 #include "interflect/formats/model.h"
 #include "interflect/formats/number.h"
@@ -173,9 +174,8 @@ class Vs3Reader {
         surface.line = words_.line();
         require_sequence("surface", surfaces_.size() + 1);
         if (surfaces_.size() >= options_.max_patches / 2)
-            throw TooManyPatches(
-                path_, words_.line(),
-                fmt::format("this would give more than {} patches (max_patches)", options_.max_patches));
+            throw Location{&path_, words_.line()}.error(
+                fmt::format("this would give more than {} patches (max_patches)", options_.max_patches), "max_patches");
         if (has_shapes_) {
             const std::string_view shape = words_.word();
             if (type != 'O') read_properties(surface);

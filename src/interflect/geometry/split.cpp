@@ -65,10 +65,11 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
         count += static_cast<double>(n.u) * static_cast<double>(n.v);
     }
     if (count > static_cast<double>(max_patches))
-        throw TooManyPatches(
-            scene.name, 0,
-            fmt::format("a mesh size of {} m asks for {:.3g} patches, more than the limit of {} (max_patches)",
-                        largest_edge, count, max_patches));
+        throw InputError(Fault{
+            .text = fmt::format("a mesh size of {} m asks for {:.3g} patches, more than the limit of {} (max_patches)",
+                                largest_edge, count, max_patches),
+            .setting = "max_patches",
+            .file = scene.name});
     Scene split = scene;
     split.vertices.clear();
     split.texture_coordinates.clear();

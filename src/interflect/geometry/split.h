@@ -6,7 +6,7 @@ namespace interflect::detail {
 
 /// Divides patches into grids, for methods without refinement. Triangles become n^2 triangles.
 /// @param largest_edge  Maximum edge of the pieces [m], > 0.
-/// @throws TooManyPatches above `max_patches`; InputError for an invalid edge or a scene with faults.
+/// @throws InputError above `max_patches`, for an invalid edge and a scene with faults.
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_patches);
 
 /// Returns an edge length [m]: 1/48 of the diagonal of core_bounds(), or more for at most about 200,000 patches.

@@ -62,10 +62,10 @@ std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& obj
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
         if (!object.empty() && is_part_of(object_name(scene, i), object)) patches.push_back(i);
     if (patches.empty())
-        throw InputError(
-            scene.name, 0,
-            fmt::format("there is no object '{}' with faces; {}", object, text_of_nearest(object, scene.objects)))
-            .set_object(object);
+        throw InputError(Fault{.text = fmt::format("there is no object '{}' with faces; {}", object,
+                                                   text_of_nearest(object, scene.objects)),
+                               .object = object,
+                               .file = scene.name});
     return patches;
 }
 

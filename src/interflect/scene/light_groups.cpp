@@ -95,9 +95,8 @@ bool matches_object(std::string_view pattern, std::string_view name) {
 std::size_t SourceGroups::index_of(const std::string& name) const {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-    throw InputError(names.empty() ? fmt::format("there is no light group '{}': the light was not kept by groups", name)
-                                   : fmt::format("there is no light group '{}'; there are {}", name, listed(names)))
-        .set_object(name);
+    const std::string known = names.empty() ? ": the light was not kept by groups" : "; there are " + listed(names);
+    throw InputError(Fault{.text = fmt::format("there is no light group '{}'{}", name, known), .object = name});
 }
 
 SourceGroups source_groups(const Scene& scene) {

@@ -22,21 +22,37 @@ constexpr std::size_t listed_faults = 20;
 bool is_share(const Rgb& c) { return is_finite(c) && std::min({c.x, c.y, c.z}) >= 0; }
 bool is_reflectance(const Rgb& c) { return is_share(c) && largest_channel(c) < 1; }
 
+/// Object of a fault. The text is made only for faults: scenes have millions of patches.
+struct Subject {
+    const std::string* name = nullptr;
+    std::string_view kind = {};  // of numbered ones
+    std::size_t index = 0;
+
+    std::string text() const {
+        if (name) return *name;
+        return kind.empty() ? std::string() : fmt::format("{} {}", kind, index);
+    }
+};
+
+Subject named(const std::string& name) { return {&name}; }
+Subject numbered(std::string_view kind, std::size_t index) { return {nullptr, kind, index}; }
+
 class Faults {
   public:
     template <class Describe>
-    void check(bool holds, const Describe& describe) {
-        if (!holds && list_.size() < listed_faults) list_.push_back(describe());
+    void check(bool holds, const Subject& subject, const Describe& describe) {
+        if (!holds && list_.size() < listed_faults) list_.push_back({describe(), subject.text()});
     }
-    template <class Name>
-    void add(const std::string& fault, const Name& name) {
-        check(fault.empty(), [&] { return name() + fault; });
+    /// @param fault  Predicate, or empty. @param start  Makes the start of the sentence.
+    template <class Start>
+    void add(const std::string& fault, const Subject& subject, const Start& start) {
+        check(fault.empty(), subject, [&] { return start() + fault; });
     }
     bool empty() const { return list_.empty(); }
-    std::vector<std::string> take() { return std::move(list_); }
+    std::vector<Fault> take() { return std::move(list_); }
 
   private:
-    std::vector<std::string> list_;
+    std::vector<Fault> list_;
 };
 
 bool has_vertices(const Scene& scene, const Patch& patch) {
@@ -45,53 +61,54 @@ bool has_vertices(const Scene& scene, const Patch& patch) {
 }
 
 void check_points(const Scene& scene, Faults& faults) {
-    const auto check = [&](const Imath::V3d& x, const auto& name) {
-        faults.check(is_finite(x), [&] { return name() + " is not finite"; });
-        faults.check(!is_finite(x) || is_within_reach(x), [&] {
-            return fmt::format("{} is ({:g}, {:g}, {:g}), farther than {:g} m from the origin", name(), x.x, x.y, x.z,
-                               farthest_coordinate);
+    const auto check = [&](const Imath::V3d& x, const Subject& point) {
+        faults.check(is_finite(x), point, [&] { return point.text() + " is not finite"; });
+        faults.check(!is_finite(x) || is_within_reach(x), point, [&] {
+            return fmt::format("{} is ({:g}, {:g}, {:g}), farther than {:g} m from the origin", point.text(), x.x, x.y,
+                               x.z, farthest_coordinate);
         });
     };
-    check(scene.origin, [] { return std::string("the origin"); });
-    for (std::size_t i = 0; i < scene.vertices.size(); ++i)
-        check(Imath::V3d(scene.vertices[i]), [&] { return fmt::format("vertex {}", i); });
+    const std::string origin = "the origin";
+    check(scene.origin, named(origin));
+    for (std::size_t i = 0; i < scene.vertices.size(); ++i) check(Imath::V3d(scene.vertices[i]), numbered("vertex", i));
     for (std::size_t i = 0; i < scene.contacts.size(); ++i)
         for (const V3f& end : {scene.contacts[i].a, scene.contacts[i].b})
-            check(Imath::V3d(end), [&] { return fmt::format("contact {}", i); });
+            check(Imath::V3d(end), numbered("contact", i));
 }
 
 void check_material(const Scene& scene, const Material& m, Faults& faults) {
     for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture, m.transmittance_texture})
-        faults.check(texture == none || texture < scene.textures.size(),
+        faults.check(texture == none || texture < scene.textures.size(), named(m.name),
                      [&] { return fmt::format("material '{}': there is no texture {}", m.name, texture); });
     const Rgb& r = m.reflectance;
-    faults.check(is_reflectance(r), [&] {
+    faults.check(is_reflectance(r), named(m.name), [&] {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
     });
     const Rgb &t = m.transmittance, &s = m.specular_reflectance;
     // Otherwise check_products() checks the texels, or the reflectance is at fault.
     const bool are_added = m.transmittance_texture == none && is_reflectance(r);
-    faults.check(is_share(t) && is_share(s) && (!are_added || largest_channel(Rgb(r + t + s)) <= 1), [&] {
-        return fmt::format(
-            "material '{}': transmittance ({}, {}, {}), specular reflectance ({}, {}, {}): expected 0 to 1, and no "
-            "more than 1 with the reflectance",
-            m.name, t.x, t.y, t.z, s.x, s.y, s.z);
-    });
-    faults.add(exitance_fault(m.exitance), [&] { return fmt::format("material '{}': ", m.name); });
+    faults.check(
+        is_share(t) && is_share(s) && (!are_added || largest_channel(Rgb(r + t + s)) <= 1), named(m.name), [&] {
+            return fmt::format(
+                "material '{}': transmittance ({}, {}, {}), specular reflectance ({}, {}, {}): expected 0 to 1, and no "
+                "more than 1 with the reflectance",
+                m.name, t.x, t.y, t.z, s.x, s.y, s.z);
+        });
+    faults.add(exitance_fault(m.exitance), named(m.name), [&] { return fmt::format("material '{}': ", m.name); });
 }
 
 void check_products(const Material& m, const std::vector<Texture>& textures, const std::vector<Rgb>& largest,
                     Faults& faults) {
     const Rgb r = textured(m.reflectance, m.reflectance_texture, largest);
-    faults.check(is_reflectance(r), [&] {
+    faults.check(is_reflectance(r), named(m.name), [&] {
         return fmt::format("material '{}': reflectance times its texture is up to ({}, {}, {}), not in [0, 1)", m.name,
                            r.x, r.y, r.z);
     });
-    faults.add(exitance_fault(textured(m.exitance, m.exitance_texture, largest)),
+    faults.add(exitance_fault(textured(m.exitance, m.exitance_texture, largest)), named(m.name),
                [&] { return fmt::format("material '{}' times its texture: ", m.name); });
     if (m.transmittance_texture == none) return;
     const Rgb sum = largest_sum(m, textures, largest);
-    faults.check(largest_channel(sum) <= 1, [&] {
+    faults.check(largest_channel(sum) <= 1, named(m.name), [&] {
         return fmt::format(
             "material '{}': reflectance and transmittance, times their textures, are up to ({}, {}, {}) in sum; "
             "expected at most 1",
@@ -102,19 +119,20 @@ void check_products(const Material& m, const std::vector<Texture>& textures, con
 void check_textures(const Scene& scene, Faults& faults) {
     std::uint64_t texels = 0;
     for (const Texture& texture : scene.textures) {
-        faults.add(texture_fault(texture), [&] { return fmt::format("texture '{}' ", texture.name); });
+        faults.add(texture_fault(texture), named(texture.name),
+                   [&] { return fmt::format("texture '{}' ", texture.name); });
         texels += texture.texels.size();
     }
-    faults.check(texels <= max_texels, [&] {
+    faults.check(texels <= max_texels, {}, [&] {
         return fmt::format("the textures have {} texels together; at most {} can be computed", texels, max_texels);
     });
     if (scene.texture_coordinates.empty()) return;
-    faults.check(scene.texture_coordinates.size() == scene.vertices.size(), [&] {
+    faults.check(scene.texture_coordinates.size() == scene.vertices.size(), {}, [&] {
         return fmt::format("there are {} vertices and {} texture coordinates", scene.vertices.size(),
                            scene.texture_coordinates.size());
     });
     for (std::size_t i = 0; i < scene.texture_coordinates.size(); ++i)
-        faults.add(texture_coordinate_fault(scene.texture_coordinates[i]),
+        faults.add(texture_coordinate_fault(scene.texture_coordinates[i]), numbered("vertex", i),
                    [&] { return fmt::format("vertex {} ", i); });
 }
 
@@ -123,13 +141,13 @@ bool is_missing(const V2f& c) { return std::isnan(c.x) && std::isnan(c.y); }
 void check_lightmap_coordinates(const Scene& scene, Faults& faults) {
     const std::vector<V2f>& all = scene.lightmap_coordinates;
     if (all.empty()) return;
-    faults.check(all.size() == scene.vertices.size(), [&] {
+    faults.check(all.size() == scene.vertices.size(), {}, [&] {
         return fmt::format("there are {} vertices and {} lightmap coordinates", scene.vertices.size(), all.size());
     });
     for (std::size_t i = 0; i < all.size(); ++i) {
         const V2f& c = all[i];
         const bool is_inside = c.x >= 0 && c.x <= 1 && c.y >= 0 && c.y <= 1;
-        faults.check(is_inside || is_missing(c), [&] {
+        faults.check(is_inside || is_missing(c), numbered("vertex", i), [&] {
             return fmt::format("vertex {} has the lightmap coordinates ({}, {}); expected 0 to 1, or NaN for none", i,
                                c.x, c.y);
         });
@@ -138,13 +156,13 @@ void check_lightmap_coordinates(const Scene& scene, Faults& faults) {
 
 void check_normals(const Scene& scene, Faults& faults) {
     if (scene.normals.empty()) return;
-    faults.check(scene.normals.size() == scene.vertices.size(), [&] {
+    faults.check(scene.normals.size() == scene.vertices.size(), {}, [&] {
         return fmt::format("there are {} vertices and {} normals", scene.vertices.size(), scene.normals.size());
     });
     constexpr float tolerance = 1e-3f;  // of the length
     for (std::size_t i = 0; i < scene.normals.size(); ++i) {
         const V3f& n = scene.normals[i];
-        faults.check(n == V3f(0) || std::abs(n.length() - 1) <= tolerance, [&] {
+        faults.check(n == V3f(0) || std::abs(n.length() - 1) <= tolerance, numbered("vertex", i), [&] {
             return fmt::format("vertex {} has the normal ({}, {}, {}); expected length 1, or 0 for none", i, n.x, n.y,
                                n.z);
         });
@@ -165,49 +183,42 @@ void check_materials(const Scene& scene, Faults& faults) {
     const std::vector<Rgb> largest = largest_texels(scene);
     for (const Material& m : scene.materials)
         if (m.is_textured()) check_products(m, scene.textures, largest, faults);
-    faults.add(brightness_fault(brightest_source(scene)), [] { return std::string("the scene "); });
+    faults.add(brightness_fault(brightest_source(scene)), {}, [] { return std::string("the scene "); });
 }
 
 void check_luminaire(const Scene& scene, const Luminaire& l, Faults& faults) {
-    faults.add(luminaire_fault(l), [&] { return fmt::format("light '{}' ", l.name); });
-    faults.check(l.object < scene.objects.size(),
+    faults.add(luminaire_fault(l), named(l.name), [&] { return fmt::format("light '{}' ", l.name); });
+    faults.check(l.object < scene.objects.size(), named(l.name),
                  [&] { return fmt::format("light '{}': there is no object {}", l.name, l.object); });
 }
 
 void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
     const Patch& p = scene.patches[i];
+    const Subject patch = numbered("patch", i);
     if (has_vertices(scene, p))
-        faults.add(patch_fault(scene, p), [&] { return fmt::format("patch {} ", i); });
+        faults.add(patch_fault(scene, p), patch, [&] { return fmt::format("patch {} ", i); });
     else
-        faults.check(false, [&] { return fmt::format("patch {}: a vertex index is out of range", i); });
-    faults.check(p.material < scene.materials.size(),
+        faults.check(false, patch, [&] { return fmt::format("patch {}: a vertex index is out of range", i); });
+    faults.check(p.material < scene.materials.size(), patch,
                  [&] { return fmt::format("patch {}: there is no material {}", i, p.material); });
     faults.check(p.material >= scene.materials.size() || !scene.materials[p.material].is_textured() ||
                      !scene.texture_coordinates.empty(),
-                 [&] { return fmt::format("patch {} has a texture, but no texture coordinates", i); });
-    faults.check(!has_vertices(scene, p) || !has_some_lightmap_coordinates_only(scene, p),
+                 patch, [&] { return fmt::format("patch {} has a texture, but no texture coordinates", i); });
+    faults.check(!has_vertices(scene, p) || !has_some_lightmap_coordinates_only(scene, p), patch,
                  [&] { return fmt::format("patch {} has lightmap coordinates at some of its vertices only", i); });
-    faults.check(p.object < scene.objects.size(),
+    faults.check(p.object < scene.objects.size(), patch,
                  [&] { return fmt::format("patch {}: there is no object {}", i, p.object); });
     const bool are_neighbours = p.other_side == i + 1 || p.other_side + 1 == i;
     faults.check(
         p.other_side == none ||
             (are_neighbours && p.other_side < scene.patches.size() && scene.patches[p.other_side].other_side == i),
+        patch,
         [&] { return fmt::format("patch {}: its other side {} is no neighbour that points back", i, p.other_side); });
-}
-
-/// Returns the name in "material 'white': ..." or "patch 3" of "patch 3 ...", as check_*() begin their sentences.
-std::string subject_of(const std::string& fault) {
-    for (const std::string_view kind : {"material '", "texture '", "light '", "view '"})
-        if (fault.starts_with(kind)) return fault.substr(kind.size(), fault.find('\'', kind.size()) - kind.size());
-    for (const std::string_view kind : {"patch ", "vertex "})
-        if (fault.starts_with(kind)) return fault.substr(0, fault.find_first_of(" :", kind.size()));
-    return {};
 }
 
 }  // namespace
 
-std::vector<std::string> scene_faults(const Scene& scene) {
+std::vector<Fault> scene_faults(const Scene& scene) {
     Faults faults;
     const auto the_scene = [] { return std::string("the scene "); };
     check_points(scene, faults);
@@ -215,19 +226,20 @@ std::vector<std::string> scene_faults(const Scene& scene) {
     check_lightmap_coordinates(scene, faults);
     check_normals(scene, faults);
     for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
-    faults.add(sky_count_fault(scene), the_scene);
+    faults.add(sky_count_fault(scene), {}, the_scene);
     check_materials(scene, faults);
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i) check_patch(scene, i, faults);
-    if (!scene.patches.empty()) faults.add(scene_width_fault(scene_width(scene)), the_scene);
-    for (const View& v : scene.views) faults.add(view_fault(v), [&] { return fmt::format("view '{}': ", v.name); });
+    if (!scene.patches.empty()) faults.add(scene_width_fault(scene_width(scene)), {}, the_scene);
+    for (const View& v : scene.views)
+        faults.add(view_fault(v), named(v.name), [&] { return fmt::format("view '{}': ", v.name); });
     return faults.take();
 }
 
-void require_no_faults(const std::vector<std::string>& faults, const std::string& purpose, const Scene& scene) {
+void require_no_faults(const std::vector<Fault>& faults, const std::string& purpose, const Scene& scene) {
     if (faults.empty()) return;
     std::string message = purpose + " '" + scene.name + "':";
-    for (const std::string& fault : faults) message += "\n  " + fault;
-    throw InputError(message).set_object(subject_of(faults.front())).set_faults(faults);
+    for (const Fault& fault : faults) message += "\n  " + fault.text;
+    throw InputError(message, faults);
 }
 
 }  // namespace interflect

@@ -59,9 +59,10 @@ const View& find_view(const Scene& scene, const std::string& name) {
     if (view != scene.views.end()) return *view;
     std::string known;
     for (const View& v : scene.views) known += (known.empty() ? "" : ", ") + v.name;
-    throw InputError(scene.name, 0,
-                     "there is no view '" + name + "'; " + (known.empty() ? "it names none" : "it names: " + known))
-        .set_object(name);
+    throw InputError(
+        Fault{.text = "there is no view '" + name + "'; " + (known.empty() ? "it names none" : "it names: " + known),
+              .object = name,
+              .file = scene.name});
 }
 
 View overview(const Scene& scene) {

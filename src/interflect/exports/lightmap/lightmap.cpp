@@ -270,10 +270,12 @@ void require_memory(double image_texels, double chart_texels, const LightmapOpti
         chart_texels * (texel_bytes + shading_bytes);
     if (bytes > static_cast<double>(options.max_bytes))
         throw InputError(
-            fmt::format("lightmap: {:.3g} million texels need {:.0f} MiB of memory, the limit (max_bytes) is {} MiB: "
-                        "expected fewer than {:g} texels_per_metre{}",
-                        image_texels / 1e6, bytes / (1 << 20), options.max_bytes >> 20, options.texels_per_metre,
-                        gathers ? ", or a shading other than gather" : ""));
+            Fault{.text = fmt::format(
+                      "lightmap: {:.3g} million texels need {:.0f} MiB of memory, the limit (max_bytes) is {} MiB: "
+                      "expected fewer than {:g} texels_per_metre{}",
+                      image_texels / 1e6, bytes / (1 << 20), options.max_bytes >> 20, options.texels_per_metre,
+                      gathers ? ", or a shading other than gather" : ""),
+                  .setting = "texels_per_metre"});
 }
 
 }  // namespace

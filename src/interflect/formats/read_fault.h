@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <utility>
+
+#include "interflect/load.h"
+
+namespace interflect::detail {
+
+/// Invalid input that an option of ReadOptions would allow, without its place, which the reader adds.
+struct ReadFault : std::invalid_argument {
+    /// @param setting  Name of the option.
+    ReadFault(const std::string& text, std::string setting_name)
+        : std::invalid_argument(text), setting(std::move(setting_name)) {}
+
+    std::string setting;
+};
+
+inline std::string setting_of(const std::invalid_argument& fault) {
+    const auto* read_fault = dynamic_cast<const ReadFault*>(&fault);
+    return read_fault ? read_fault->setting : "";
+}
+
+/// @param subject  Start of the message: "the texture 'wood.png'".
+/// @throws ReadFault if `path` leaves `folder` and may not.
+void require_within(const std::filesystem::path& path, const std::filesystem::path& folder, const ReadOptions& options,
+                    const std::string& subject);
+
+}  // namespace interflect::detail
