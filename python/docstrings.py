@@ -41,8 +41,8 @@ PYTHON_NAMES = {
 }
 PYTHON_NAME = re.compile("|".join(
     rf"(?<![\w.:\"]){re.escape(name)}(?![\w(])" for name in sorted(PYTHON_NAMES, key=len, reverse=True)))
-# A reference in parentheses to code that Python does not have: "(see flat_surfaces.h)", "(Method::follows_dimming)".
-REFERENCE = re.compile(r"\s\((?:see )?(?:[\w ]+\.h|\w+\(\)|\w+::\w+)\)")
+# A reference in parentheses to code that Python does not have: "(see cut_at_contacts())", "(Method::follows_dimming)".
+REFERENCE = re.compile(r"\s\((?:see )?(?:\w+\(\)|\w+::\w+)\)")
 
 
 @dataclass

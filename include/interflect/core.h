@@ -123,9 +123,9 @@ struct Monitor {
     std::function<void(const Progress&)> on_progress;
     /// Once true, the work ends within milliseconds. May be set by another thread or a signal handler; may be null.
     const std::atomic<bool>* stop = nullptr;
-    /// Processes that share the work; null: this one works alone. The others make the same call or, for pictures,
-    /// measurements and exports, wait for it (render/light_help.h). `stop` of the first one counts, and ends the work
-    /// after some seconds.
+    /// Processes that share a run of the solver; null: this one works alone. All of them make the same call. `stop` of
+    /// the first one counts, and ends the work after some seconds. Only the command shares pictures, measurements and
+    /// exports; elsewhere their monitor needs null.
     Ranks* ranks = nullptr;
 };
 

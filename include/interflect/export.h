@@ -22,7 +22,7 @@ namespace interflect {
 struct BakeOptions {
     Shading shading = Shading::hybrid;  ///< `smooth`, `hybrid` or `gather`.
     /// Points per texel or vertex where direct light is sampled, or gathered directions; >= 2. 0: the number in
-    /// default_samples. Not for `smooth`.
+    /// default_samples. Not for Shading::smooth.
     int samples = 0;
     std::uint64_t seed = 1;
 };

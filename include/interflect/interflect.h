@@ -6,7 +6,7 @@
 ///     scene = cut_at_contacts(scene);                      // prepare.h: light does not leak below walls
 ///     const RayCaster ray_caster(scene);                   // ray_caster.h
 ///     SolveOptions options;                                // solve_options.h: method, views, limits
-///     options.views = {{scene.views.at(0)}};
+///     options.views = {{scene.views[0]}};
 ///     const Solution solution = solve(scene, ray_caster, options);    // solve.h; step by step: Solver in solver.h
 ///     for (const Leaf& leaf : leaves(scene, solution)) ... // solution.h: irradiance and errors of the mesh; files
 ///     render(scene, solution, ray_caster, scene.views[0]); // render.h, shading.h; image.h writes files

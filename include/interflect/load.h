@@ -22,7 +22,7 @@ enum class Axis { x, minus_x, y, minus_y, z, minus_z };
 /// allocated.
 struct ReadOptions {
     /// Length of the file's unit [m], in [1e-9, 1e9]: scales all coordinates, for every format. Views in a separate
-    /// file (view_list_path) are in metres.
+    /// file (load_scene()) are in metres.
     double unit = 1;
     Axis up_axis = Axis::z;  ///< Up axis of the file, which is rotated to z.
     /// Flat pieces per quarter circle of a curved surface, 1 to 1000. Pieces of an emitting surface have its exact
@@ -109,12 +109,12 @@ double usual_sun_illuminance(int cie_type, double sun_altitude);
 ///         max_skies in the resulting scene.
 void add_daylight(Scene& scene, const Daylight& added);
 
-/// Reads a scene in the format of the file name's extension (.mgf, .gltf, .glb, .obj, .ply, .rad, .stl, .vs3), and its
-/// named views if the file view_list_path() exists. The result has no scene_faults(). A scene without light gets the
-/// warning "no-light".
+/// Reads a scene in the format of the file name's extension (.mgf, .gltf, .glb, .obj, .ply, .rad, .stl, .vs3), and
+/// named views from an optional file beside it: office.views.json for office.mgf. The result has no scene_faults(). A
+/// scene without light gets the warning "no-light".
 ///
-/// Instead of a file, `maze:ROOMS` or `maze:ROOMS:furniture` creates that maze and its views in memory (make_maze(),
-/// other options at their defaults). `maze:9:furniture` has the size of the scene in Prikryl et al. 2000.
+/// Instead of a file, `maze:ROOMS` or `maze:ROOMS:furniture` creates that maze and its views in memory, as the
+/// command's make-scene does by default. `maze:9:furniture` has the size of the scene in Prikryl et al. 2000.
 /// @param luminaires  Added to the scene; each is named by its file and its index among the scene's lights: "lamp-3".
 /// @param added       Added after them, as by add_daylight().
 /// @throws InputError for an unknown extension, as the readers do, for an invalid maze, and for a scene of more than

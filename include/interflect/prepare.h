@@ -18,7 +18,8 @@ struct ContactOptions {
     float touch_distance = 1e-4f;
     /// Minimum extent of connected segments [m], >= 0; smaller ones are ignored. Faces with less area than its
     /// square stay whole. Faces closer than half of it and 0.002 of the smaller one's diameter count as touching. Twice
-    /// default_element_size() (the side of the smallest elements) is suitable.
+    /// the side of the smallest elements is suitable. That side is 5 mm, at most a thousandth of the median side of the
+    /// patches, weighted by their area.
     float min_extent = 0;
     /// Maximum ratio of length to width of quadrilateral pieces, >= 1. Longer pieces are divided across, unless
     /// narrower than twice `min_extent` or 0.002 of the face's diameter.
@@ -31,9 +32,10 @@ struct ContactOptions {
 
 /// Cuts faces along the segments in which other faces meet them. No element then extends to both sides of a wall or is
 /// partly covered. Segments are: an edge on the face (a wall or a leg on a floor); the intersection with a face that
-/// passes through it; and the outline of a coplanar face that hides a part of it (paper on a desk). Of two coplanar
-/// faces, the one of the larger flat surface is cut (see flat_surfaces.h). Contacts behind a one-sided face, segments
-/// on the face's own border and intersections at less than one degree are ignored.
+/// passes through it; and the outline of a coplanar face that hides a part of it (paper on a desk). If two
+/// faces are coplanar, the face of the larger flat surface is cut; a flat surface consists of faces in nearly one plane
+/// that share material, object and whole edges. Contacts behind a one-sided face, segments on the face's own border and
+/// intersections at less than one degree are ignored.
 ///
 /// Each face is cut by a binary space partition in its plane: the line of a segment cuts the whole convex piece that
 /// contains it. Pieces are triangles and convex quadrilaterals with the face's material, object, texture and lightmap

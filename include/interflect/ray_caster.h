@@ -39,8 +39,9 @@ class RayCaster {
     RayCaster(const RayCaster&) = delete;
     RayCaster& operator=(const RayCaster&) = delete;
 
-    /// Finds the first hit of every ray, on the calling thread. Rays pass through the back of one-sided faces. Of
-    /// coincident faces always the same one is hit (see coincident.h).
+    /// Finds the first hit of every ray, on the calling thread. Rays pass through the back of one-sided faces.
+    /// Coincident faces have a fixed priority: faces of smaller flat surfaces (see cut_at_contacts()), then emitters,
+    /// then the order in the scene.
     /// @throws InputError unless the numbers of rays and hits are equal.
     void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
 
@@ -48,8 +49,8 @@ class RayCaster {
     /// patch's corners, relative to the scene's origin, and u = 2^-24 the rounding of a float. The rounding errors sum
     /// to at most 24 u c: 8 u c for the start point (corners, normal, interpolation, offset), and 16 u c for Embree's
     /// robust test, which subtracts the start point from corners at a distance of up to 2 c. For coincident faces the
-    /// offset is at least 4 times their distance limit, pair_tolerance(), which is 4 u times the larger face's c: 16 u
-    /// where 8 are needed. Independent of all other faces.
+    /// offset is at least 4 times the distance within which they coincide, 4 u times the larger face's c: 16 u where 8
+    /// are needed. Independent of all other faces.
     float ray_offset(std::uint32_t patch) const { return ray_offsets_[patch]; }
 
     /// Fraction of a patch's area, in [0, 1], that rays can hit, and from which light may be emitted. Below 1 if
@@ -58,7 +59,8 @@ class RayCaster {
     /// Whether uncovered_share() is below 1 anywhere.
     bool has_covered_patches() const;
 
-    /// @throws InputError unless this ray caster was made for a scene of the same geometry (geometry_fingerprint).
+    /// @throws InputError unless this ray caster was made for a scene of the same geometry: origin, corners of patches
+    ///         and pairs of sides.
     void require_made_for(const Scene& scene) const;
 
     /// Scene::origin: world coordinates of (0, 0, 0) in ray coordinates [m].

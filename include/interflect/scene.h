@@ -151,7 +151,8 @@ struct View {
 /// in the file first.
 struct Scene {
     std::string name;  ///< Source file.
-    /// World coordinates of the vertices' origin [m]. Chosen by readers (origin_for in core.h) to preserve precision.
+    /// World coordinates of the vertices' origin [m]. Readers choose it to preserve precision: 0, or near the middle of
+    /// a scene that is farther than about 8 of its radii from 0.
     Imath::V3d origin{0, 0, 0};
     std::vector<V3f> vertices;  ///< Relative to `origin` [m]. Unused vertices are ignored.
     /// (u, v) of every vertex, or empty if no patch is textured.

@@ -13,29 +13,30 @@ namespace interflect {
 enum class Shading {
     /// Irradiance of the solution, constant on each leaf.
     flat,
-    /// Irradiance of the solution, interpolated between the leaves of a smooth surface: see SmoothField.
+    /// Irradiance of the solution, interpolated between the leaves of a smooth surface: continuous, linear on triangles
+    /// and bilinear on quadrilaterals.
     smooth,
     /// Direct light by shadow rays, with the light without occluders as a control variate: unbiased for any number of
     /// samples. Indirect light is interpolated between sparse points that gather 128 to 1,024 directions each
     /// (irradiance caching, Ward et al. 1988); where no point is near, it is gathered. Biased by the error of the
     /// solution from the second bounce on, and by interpolation. The standard error includes the noise of the points
-    /// and
-    /// an estimate of the error of interpolation, not the solution's own error.
+    /// and an estimate of the error of interpolation, not the solution's own error.
     hybrid,
     /// Final gathering (Reichert 1992; Jensen 1996). Direct light is sampled as by `path`: emitting patches and
     /// luminaires in proportion to their unoccluded contribution. Indirect light is gathered by cosine-distributed
     /// rays, which end at the radiosity rho H of the element hit. If that element fills too large a solid angle, as in
     /// corners, the path continues as in path tracing. Contact shadows are therefore sharp, and the mesh affects only a
     /// small fraction of indirect light. For finer elements the light converges to path tracing. Unbiased for any
-    /// number
-    /// of samples but for the error of the solution from the second bounce on, which the standard error excludes.
+    /// number of samples but for the error of the solution from the second bounce on, which the standard error
+    /// excludes.
     gather,
     /// Path tracing (Kajiya 1986), an independent reference for the radiosity solver. Surfaces are diffuse; light
     /// passes straight through thin glass. Mirrors are followed from the camera only; other mirrored light is lost, as
     /// in the solver. A path continues in cosine-distributed directions until Russian roulette on its throughput ends
-    /// it. At each vertex an emitting patch is sampled by LightTree and connected by a shadow ray, which counts if
-    /// RayCaster hits that patch. Reflected rays that hit an emitting patch also count; the balance heuristic weights
-    /// both. Random numbers are Owen-scrambled Sobol' points. Unbiased for any number of samples.
+    /// it. At each vertex an emitting patch is sampled by its estimated unoccluded irradiance (Conty and Kulla 2018)
+    /// and connected by a shadow ray, which counts if RayCaster hits that patch. Reflected rays that hit an emitting
+    /// patch also count; the balance heuristic weights both. Random numbers are Owen-scrambled Sobol' points. Unbiased
+    /// for any number of samples.
     path,
     /// Instant radiosity (Keller 1997) without bias (Kollig and Keller 2004). Direct light as by `path`, indirect light
     /// by shadow rays to virtual lights, which random walks from the light sources leave at their reflections. Paths

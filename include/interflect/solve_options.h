@@ -28,7 +28,7 @@ enum class ImportanceUse {
     full,    ///< V and all its bounces (Eq. 7): visible surfaces and their illumination.
 };
 
-/// Refinement criterion of the mesh. See refine_by_variance() and Oracle.
+/// Refinement criterion of the mesh (docs/method.md, A run).
 enum class RefinementCriterion {
     variance,  ///< Splits elements whose children are expected to differ by more than their noise.
     /// Splits elements whose children are expected to differ visibly, and by more than their noise. Needs views and
@@ -37,7 +37,7 @@ enum class RefinementCriterion {
     power,  ///< Splits pairs of elements by the power exchanged between them (Eq. 14, 15), as in the paper.
 };
 
-/// Properties of a solution method, for choosing one. All are listed in solver/methods/table.cpp.
+/// Properties of a solution method, for choosing one from `methods`.
 struct Method {
     const char* name = "";
     const char* source = "";                        ///< Author and year.

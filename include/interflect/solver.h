@@ -21,11 +21,11 @@ struct Run;
 struct SavedRun;
 }  // namespace detail
 
-/// State of a run when advance() returns.
+/// State of a run when Solver::advance() returns.
 struct AdvanceReport {
     double error = std::numeric_limits<double>::infinity();  ///< Estimated; infinite before an estimate exists.
     std::int64_t rays = 0;                                   ///< Since the run began.
-    double seconds = 0;                                      ///< Spent in advance() since the run began.
+    double seconds = 0;                                      ///< Spent in Solver::advance() since the run began.
     bool is_finished = false;                                ///< The run has reached a limit of its plan.
     bool is_stopped = false;                                 ///< Monitor::stop ended it.
 };
