@@ -112,7 +112,9 @@ def with_joined_comments(header: str) -> list[str]:
 
 
 def without_initialisers(declaration: str) -> str:
-    return re.sub(r"\{[^{}]*\}|=[^,;]*", "", declaration)
+    while (inner := re.sub(r"\{[^{}]*\}", "", declaration)) != declaration:
+        declaration = inner
+    return re.sub(r"=[^,;]*", "", declaration)
 
 
 def is_function(declaration: str) -> bool:

@@ -15,8 +15,7 @@
 #include "interflect/core.h"
 #include "interflect/image.h"
 #include "interflect/image/pending_image.h"
-#include "interflect/metrics/flip.h"
-#include "interflect/metrics/metrics.h"
+#include "interflect/metrics.h"
 
 namespace interflect::command {
 

@@ -10,6 +10,7 @@
 ///     const Solution solution = solve(scene, ray_caster, options);    // solve.h; step by step: Solver in solver.h
 ///     for (const Leaf& leaf : leaves(scene, solution)) ... // solution.h: irradiance and errors of the mesh; files
 ///     render(scene, solution, ray_caster, scene.views[0]); // render.h, shading.h; image.h writes files
+///     compare(image, reference).flip;                      // metrics.h: differences of pictures
 ///     measure_irradiance(...);                             // measure.h: lux at points and grids, glare, probes
 ///     export_solution("office.glb", scene, solution);      // export.h: lit glTF, lightmaps, other renderers
 ///     view_factors(scene, ray_caster, object_groups(scene));          // view_factors.h: exchange of radiation
@@ -25,6 +26,7 @@
 #include "interflect/light_sources.h"
 #include "interflect/load.h"
 #include "interflect/measure.h"
+#include "interflect/metrics.h"
 #include "interflect/prepare.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"

@@ -4,7 +4,7 @@
 #include "fields.h"
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
-#include "interflect/metrics/metrics.h"
+#include "interflect/metrics.h"
 #include "interflect/render.h"
 #include "long_work.h"
 
@@ -189,30 +189,28 @@ void bind_rendering(py::module_& m) {
 }
 
 void bind_differences(py::module_& m) {
-    using detail::BlockDifference, detail::ImageDifference;
-    py::class_<BlockDifference>(m, "BlockDifference", "Difference of luminances averaged over square blocks.")
-        .def_readonly("block", &BlockDifference::block, "Side of a block [pixels].")
-        .def_readonly("relative_rmse", &BlockDifference::relative_rmse, "Relative root mean square error.")
+    py::class_<BlockDifference>(m, "BlockDifference", docs::BlockDifference)
+        .def_readonly("block", &BlockDifference::block, docs::BlockDifference_block)
+        .def_readonly("relative_rmse", &BlockDifference::relative_rmse, docs::BlockDifference_relative_rmse)
         .def_readonly("trimmed_relative_rmse", &BlockDifference::trimmed_relative_rmse,
-                      "The same without the worst 1% of blocks.")
+                      docs::BlockDifference_trimmed_relative_rmse)
         .def("__repr__", [](const BlockDifference& d) {
             return fmt::format("<BlockDifference: {} x {} pixels, relative_rmse {:.4g}>", d.block, d.block,
                                d.relative_rmse);
         });
-    py::class_<ImageDifference, std::shared_ptr<ImageDifference>>(m, "ImageDifference", "Image minus reference.")
-        .def_readonly("ratio_of_means", &ImageDifference::ratio_of_means, "Mean luminance: image / reference.")
-        .def_readonly("rmse", &ImageDifference::rmse, "sqrt(mean of (a - b)^2) [unit of the images].")
-        .def_readonly("relative_mse", &ImageDifference::relative_mse,
-                      "Mean of (a - b)^2 / (b^2 + (0.01 m)^2), where m is the mean luminance of b.")
-        .def_readonly("maximum", &ImageDifference::maximum, "Largest absolute difference [unit of the images].")
+    py::class_<ImageDifference, std::shared_ptr<ImageDifference>>(m, "ImageDifference", docs::ImageDifference)
+        .def_readonly("ratio_of_means", &ImageDifference::ratio_of_means, docs::ImageDifference_ratio_of_means)
+        .def_readonly("rmse", &ImageDifference::rmse, docs::ImageDifference_rmse)
+        .def_readonly("relative_mse", &ImageDifference::relative_mse, docs::ImageDifference_relative_mse)
+        .def_readonly("maximum", &ImageDifference::maximum, docs::ImageDifference_maximum)
         .def_readonly("perceptual_distance", &ImageDifference::perceptual_distance,
-                      "First model of Rushmeier et al. 1995.")
-        .def_readonly("flip", &ImageDifference::flip, "Mean of `flip_map` (Andersson et al. 2020).")
-        .def_readonly("blocks", &ImageDifference::blocks, "For blocks of 1, 5 and 9 pixels.")
-        .def_readonly("non_finite_pixels", &ImageDifference::non_finite_pixels, "If > 0, measures are NaN.")
+                      docs::ImageDifference_perceptual_distance)
+        .def_readonly("flip", &ImageDifference::flip, docs::ImageDifference_flip)
+        .def_readonly("blocks", &ImageDifference::blocks, docs::ImageDifference_blocks)
+        .def_readonly("non_finite_pixels", &ImageDifference::non_finite_pixels, docs::ImageDifference_non_finite_pixels)
         .def_property_readonly(
             "flip_map", [](const ImageDifference& d) { return array_of(d.flip_map); },
-            "(height, width, 3) float32: visible difference of each pixel, 0 to 1.")
+            array_text("(height, width, 3) float32", docs::ImageDifference_flip_map).c_str())
         .def("__repr__", [](const ImageDifference& d) {
             return fmt::format("<ImageDifference: relative_mse {:.4g}, ratio_of_means {:.4g}, flip {:.4g}>",
                                d.relative_mse, d.ratio_of_means, d.flip);
@@ -305,21 +303,18 @@ void bind_pictures(py::module_& m) {
         [](const Floats& image, const Floats& reference, bool scale, double field_of_view, bool tone_mapped) {
             const Image a = image_of(image, "image"), b = image_of(reference, "reference");
             return pure_work(0, [&] {
-                return std::make_shared<detail::ImageDifference>(
-                    detail::compare(a, b, {scale, field_of_view, tone_mapped}));
+                return std::make_shared<ImageDifference>(compare(a, b, {scale, field_of_view, tone_mapped}));
             });
         },
         py::arg("image"), py::arg("reference"), py::kw_only(), py::arg("scale") = false, py::arg("field_of_view") = 45,
         py::arg("tone_mapped") = false,
-        Documented(
-            "Computes the difference of two pictures of the same light, as `interflect compare` does "
-            "(docs/metrics.md).",
-            {{"image", "(height, width, 3). Larger than the reference by a whole factor, it is averaged over blocks."},
-             {"reference", "(height, width, 3)."},
-             {"scale", "Whether to divide the image by the ratio of the means first."},
-             {"field_of_view", "Vertical angle of the picture, for `flip` [degrees], in (0, 180)."},
-             {"tone_mapped", "Whether both are display values in [0, 1]."}})
-            .raises("InputError: for other sizes, and for an option out of range."));
+        Documented(docs::compare, {{"image",
+                                    "(height, width, 3). Larger than the reference by a whole factor, it is "
+                                    "averaged over blocks."},
+                                   {"reference", "(height, width, 3)."},
+                                   {"scale", docs::CompareOptions_scale},
+                                   {"field_of_view", docs::CompareOptions_field_of_view},
+                                   {"tone_mapped", docs::CompareOptions_tone_mapped}}));
 }
 
 }  // namespace interflect::python

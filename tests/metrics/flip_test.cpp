@@ -1,5 +1,3 @@
-#include "interflect/metrics/flip.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "interflect/core.h"
 #include "interflect/image/false_colour.h"
 #include "interflect/image/legend.h"
+#include "interflect/metrics.h"
 
 namespace interflect {
 
@@ -115,6 +114,7 @@ TEST(Flip, FineDetailsCountLessFromFarAway) {
 TEST(Flip, RefusesWhatItCannotCompare) {
     EXPECT_THROW(flip_map(Image(3, 2), Image(2, 3)), InputError);
     EXPECT_THROW(flip_map(Image(), Image()), InputError);
+    EXPECT_THROW(show_flip_map(Image()), InputError);
     for (const double pixels_per_degree : {0.0, -1.0, 1001.0, std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(flip_map(Image(3, 2), Image(3, 2), {pixels_per_degree}), InputError) << pixels_per_degree;
 }

@@ -1,4 +1,4 @@
-#include "interflect/metrics/metrics.h"
+#include "interflect/metrics.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,6 @@
 
 #include "interflect/core.h"
 #include "interflect/image.h"
-#include "interflect/metrics/flip.h"
-#include "interflect/metrics/perceptual.h"
 
 namespace interflect {
 
@@ -152,6 +150,10 @@ TEST(Compare, RefusesSizesThatAreNoWholeMultiple) {
         }
     }
     EXPECT_THROW(compare(Image(2, 2), Image()), InputError);
+    Image lacks_pixels(2, 2);
+    lacks_pixels.pixels.resize(3);
+    EXPECT_THROW(compare(Image(2, 2), lacks_pixels), InputError);
+    EXPECT_THROW(compare(lacks_pixels, Image(2, 2)), InputError);
 }
 
 TEST(Compare, CountsPixelsThatAreNotFinite) {

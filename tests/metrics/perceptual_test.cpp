@@ -1,5 +1,3 @@
-#include "interflect/metrics/perceptual.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "interflect/core.h"
 #include "interflect/image/visual_adaptation.h"
+#include "interflect/metrics.h"
 
 namespace interflect {
 

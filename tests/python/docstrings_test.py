@@ -30,6 +30,7 @@ struct Lamp {
     float power = 0;   ///< Of all sides [lm],
                        ///< without the back.
     float height = 1, width = 1;  ///< Sides [m].
+    std::array<Tube, 2> tubes{{{1, 0}, {2, 0}}};  ///< By length.
     /// Sets the size. Takes long. @param height, width  Sides [m],
     ///     > 0.
     /// @param monitor  Its stop.
@@ -50,7 +51,8 @@ class Comments(unittest.TestCase):
         self.found = docstrings.comments(HEADER)
 
     def test_members_are_found_under_their_scopes(self) -> None:
-        self.assertEqual(set(self.found), {"Lamp", "Lamp_power", "Lamp_height", "Lamp_width", "Lamp_resize", "group"})
+        self.assertEqual(set(self.found), {"Lamp", "Lamp_power", "Lamp_height", "Lamp_width", "Lamp_tubes", "Lamp_resize",
+                                          "group"})
 
     def test_a_trailing_comment_of_two_lines_is_one(self) -> None:
         self.assertEqual(self.found["Lamp_power"].text, "Of all sides [lm], without the back.")

@@ -10,7 +10,6 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/generators/boxes.h"
-#include "interflect/metrics/metrics.h"
 #include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes.h"

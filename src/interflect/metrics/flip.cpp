@@ -1,12 +1,11 @@
 // Formulas and constants of Andersson et al. 2020 (docs/metrics.md).
-#include "interflect/metrics/flip.h"
-
 #include <ImathMatrix.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -14,8 +13,11 @@
 #include "interflect/core.h"
 #include "interflect/image/false_colour.h"
 #include "interflect/image/legend.h"
+#include "interflect/metrics.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -267,4 +269,4 @@ Image show_flip_map(const Image& map) {
     return with_legend(picture, scale, "FLIP: 0 looks the same, 1 as different as can be");
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

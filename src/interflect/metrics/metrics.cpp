@@ -1,4 +1,4 @@
-#include "interflect/metrics/metrics.h"
+#include "interflect/metrics.h"
 
 #include <fmt/format.h>
 
@@ -10,10 +10,8 @@
 
 #include "interflect/core.h"
 #include "interflect/image.h"
-#include "interflect/metrics/flip.h"
-#include "interflect/metrics/perceptual.h"
 
-namespace interflect::detail {
+namespace interflect {
 
 namespace {
 
@@ -24,7 +22,7 @@ constexpr double trimmed_share = 0.99;  // of the blocks
 double quotient(double numerator, double denominator) { return numerator == 0 ? 0 : numerator / denominator; }
 
 Image at_size_of(const Image& reference, const Image& image) {
-    const int factor = reference.width > 0 ? image.width / reference.width : 0;
+    const int factor = image.width / reference.width;
     if (factor < 1 || image.width != factor * reference.width || image.height != factor * reference.height)
         throw InputError(
             fmt::format("cannot compare an image of {} x {} pixels with a reference of {} x {}: expected "
@@ -114,6 +112,7 @@ ImageDifference not_a_number(std::int64_t non_finite_pixels) {
 }  // namespace
 
 ImageDifference compare(const Image& full_size_image, const Image& reference, const CompareOptions& options) {
+    require_pixels(reference);
     Image image = at_size_of(reference, full_size_image);
     if (const auto count = count_non_finite(full_size_image) + count_non_finite(reference)) return not_a_number(count);
 
@@ -135,4 +134,4 @@ ImageDifference compare(const Image& full_size_image, const Image& reference, co
     return difference;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

@@ -1,5 +1,3 @@
-#include "interflect/metrics/perceptual.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +9,11 @@
 
 #include "interflect/core.h"
 #include "interflect/image/visual_adaptation.h"
+#include "interflect/metrics.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -85,4 +86,4 @@ double perceptual_distance(const Image& image, const Image& reference, double fi
     return std::sqrt(weighted_power(values, width, image.height / field_of_view));
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

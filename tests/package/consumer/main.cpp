@@ -78,6 +78,7 @@ int main() {
     const auto picture =
         interflect::render(solver.scene(), solver.solution(), solver.ray_caster(), view, {.width = 4, .height = 4});
     expect(picture.escaped_rays == 0, "no ray to leave a closed cube");
+    expect(interflect::compare(picture.image, picture.image).flip == 0, "a picture to look like itself");
 
     dim_a_lamp();
     std::puts("consumer: all is well");
