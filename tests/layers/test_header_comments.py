@@ -19,7 +19,6 @@ EXCEPTIONS = {
     "other programs": r"AgX|NaN|OpenEXR|SciPy|csr_matrix|oconv .*",
     "attributes and names in files": r"TEXCOORD_1|look_at|maze:\S+",
     "variables of the example in interflect.h": r"ray_caster",
-    "limits of scene_faults(), still to be described": r"limits\.h",
 }
 EXCEPTION = re.compile("|".join(EXCEPTIONS.values()))
 

@@ -12,7 +12,7 @@ namespace interflect::detail {
 
 /// Invalid input that an option of ReadOptions would allow, without its place, which the reader adds.
 struct ReadFault : std::invalid_argument {
-    /// @param setting  Name of the option.
+    /// @param setting_name  Of the option.
     ReadFault(const std::string& text, std::string setting_name)
         : std::invalid_argument(text), setting(std::move(setting_name)) {}
 
