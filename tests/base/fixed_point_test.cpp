@@ -7,6 +7,7 @@
 #include <random>
 
 #include "interflect/base/parallel.h"
+#include "tests/support/parameter_names.h"
 
 namespace interflect {
 
@@ -80,7 +81,8 @@ TEST_P(FixedPointTerms, NeitherOverflowNorVanish) {
 
 INSTANTIATE_TEST_SUITE_P(Count, FixedPointTerms,
                          testing::Values(1, 1000, std::int64_t{1} << 40, 1'000'000'000'000,
-                                         (std::int64_t{1} << 40) + 1));
+                                         (std::int64_t{1} << 40) + 1),
+                         testing_support::printed_name);
 
 TEST(FixedPoint, KeepsTheTinyAndHugeTotalsOfFloats) {
     for (const double total : {1e-45, 1e-20, 1.0, 1e20, 1e45}) {

@@ -2,6 +2,7 @@
 // dimensions share one scrambling.
 
 #include "interflect/base/points.h"
+#include "tests/support/parameter_names.h"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +60,8 @@ bool is_stratified(const std::vector<Point>& points, const Digits& digits) {
 }
 
 class PointSets : public testing::TestWithParam<PointSet> {};
-INSTANTIATE_TEST_SUITE_P(Both, PointSets, testing::Values(PointSet::sobol, PointSet::random));
+INSTANTIATE_TEST_SUITE_P(Both, PointSets, testing::Values(PointSet::sobol, PointSet::random),
+                         testing_support::printed_name);
 
 TEST_P(PointSets, LieInTheOpenUnitCube) {
     for (const Point& p : points(GetParam(), 3, 0, 5000))

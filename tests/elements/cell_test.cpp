@@ -1,5 +1,6 @@
 // Cells of the regular 1:4 subdivision: the parts cover the whole, and search finds the part that contains a point.
 #include "interflect/elements/cell.h"
+#include "tests/support/parameter_names.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +47,7 @@ TEST_P(Cells, ChildrenAreQuarters) {
     EXPECT_FLOAT_EQ(area, parent.size * parent.size);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shape, Cells, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Shape, Cells, testing::Bool(), testing_support::printed_name);
 
 }  // namespace
 }  // namespace interflect

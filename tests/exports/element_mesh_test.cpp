@@ -9,6 +9,7 @@
 
 #include "interflect/base/random.h"
 #include "interflect/render/smooth/smooth_field.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -99,8 +100,8 @@ TEST_P(ElementMeshOf, CornersHaveTheIrradianceOfSmoothShading) {
             }
 }
 
-INSTANTIATE_TEST_SUITE_P(Quadrilaterals, ElementMeshOf, testing::Values(false));
-INSTANTIATE_TEST_SUITE_P(Triangles, ElementMeshOf, testing::Values(true));
+INSTANTIATE_TEST_SUITE_P(Quadrilaterals, ElementMeshOf, testing::Values(false), testing_support::printed_name);
+INSTANTIATE_TEST_SUITE_P(Triangles, ElementMeshOf, testing::Values(true), testing_support::printed_name);
 
 }  // namespace
 }  // namespace interflect

@@ -103,6 +103,7 @@ struct UnusableLayout {
     std::function<void(Scene&)> change;
     const char* fault;
 };
+void PrintTo(const UnusableLayout& layout, std::ostream* out) { *out << layout.name; }
 
 class UnusableLightmapLayout : public testing::TestWithParam<UnusableLayout> {};
 
@@ -141,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(Faults, UnusableLightmapLayout,
                                                             lay_out(s, 2, {1, 0.95f}, {-0.05f, 0}, {0, 0.05f});
                                                         },
                                                         "is mostly empty"}),
-                         [](const auto& test) { return test.param.name; });
+                         testing::PrintToStringParamName());
 
 // The front keeps its place; the back with the same coordinates receives a chart. Fails if both keep the layout.
 TEST(LightmapLayout, IsThatOfTheFrontWhereBothSidesAreLit) {

@@ -14,6 +14,7 @@
 #include "interflect/render/smooth/smooth_field.h"
 #include "interflect/solve.h"
 #include "tests/exports/lightmaps.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -104,7 +105,8 @@ TEST_P(RoomLightmap, IsNotMirrored) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, RoomLightmap,
-                         testing::Values(V3f(3, 4, 2.5f), V3f(6, 8, 2.7f), V3f(12, 5, 3), V3f(2, 2, 2)));
+                         testing::Values(V3f(3, 4, 2.5f), V3f(6, 8, 2.7f), V3f(12, 5, 3), V3f(2, 2, 2)),
+                         testing_support::printed_name);
 
 // A lightmap with texels smaller than the elements matches smooth shading, at borders too. The difference is that of
 // bilinear interpolation between texels: about a tenth of the change over an element. Fails with charts that are
@@ -161,6 +163,7 @@ struct WallCase {
     const char* name;
     float thickness, end, texels_per_metre;
 };
+void PrintTo(const WallCase& wall, std::ostream* out) { *out << wall.name; }
 
 class LightmapBesideWall : public testing::TestWithParam<WallCase> {};
 
@@ -188,20 +191,26 @@ INSTANTIATE_TEST_SUITE_P(Walls, LightmapBesideWall,
                          testing::Values(WallCase{"Through", 0.01f, 4, 20}, WallCase{"ThroughCoarse", 0.01f, 4, 5},
                                          WallCase{"Free", 0.01f, 3, 20}, WallCase{"FreeCoarse", 0.01f, 3, 5},
                                          WallCase{"FreeThin", 0, 3, 20}, WallCase{"FreeThick", 0.12f, 3, 20}),
-                         [](const auto& test) { return test.param.name; });
+                         testing::PrintToStringParamName());
 
-class SealedRoomsLightmap : public testing::TestWithParam<TwoRoomsOptions> {};
+struct TwoRooms {
+    const char* name;
+    TwoRoomsOptions options;
+};
+void PrintTo(const TwoRooms& rooms, std::ostream* out) { *out << rooms.name; }
+
+class SealedRoomsLightmap : public testing::TestWithParam<TwoRooms> {};
 
 // Two solved rooms on both sides of a wall 1 cm thick; one is sealed and dark. Light there in excess of smooth shading
 // leaked through texels.
 TEST_P(SealedRoomsLightmap, LeaksNoLight) {
-    const Scene scene = cut_at_contacts(make_two_rooms(GetParam()));
+    const Scene scene = cut_at_contacts(make_two_rooms(GetParam().options));
     const Solution solution =
         solve(scene, RayCaster(scene), {.method = find_method("hsrr"), .limits = {.rays = 300'000}});
     const Lightmap lightmap = make_lightmap(scene, solution, at(10));
     const ElementVertices vertices(scene, *solution.forest);
     const SmoothField smooth(*solution.forest, vertices, solution.irradiance);
-    const float radians = GetParam().turn * std::numbers::pi_v<float> / 180;
+    const float radians = GetParam().options.turn * std::numbers::pi_v<float> / 180;
     const V3f across(std::cos(radians), std::sin(radians), 0);
     double lit = 0, dark = 0, of_smooth_shading = 0;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
@@ -228,13 +237,13 @@ TEST_P(SealedRoomsLightmap, LeaksNoLight) {
 
 // The same, with rays at every texel. Seen to fail when records of indirect light reach across contacts.
 TEST_P(SealedRoomsLightmap, LeaksNoLightWithHybridShading) {
-    const Scene scene = cut_at_contacts(make_two_rooms(GetParam()));
+    const Scene scene = cut_at_contacts(make_two_rooms(GetParam().options));
     const Solution solution =
         solve(scene, RayCaster(scene), {.method = find_method("hsrr"), .limits = {.rays = 300'000}});
     ExportOptions options = at(10);
     options.bake.shading = Shading::hybrid;
     const Lightmap lightmap = make_lightmap(scene, solution, options);
-    const float radians = GetParam().turn * std::numbers::pi_v<float> / 180;
+    const float radians = GetParam().options.turn * std::numbers::pi_v<float> / 180;
     const V3f across(std::cos(radians), std::sin(radians), 0);
     double lit = 0, dark = 0;
     for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
@@ -251,8 +260,9 @@ TEST_P(SealedRoomsLightmap, LeaksNoLightWithHybridShading) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Walls, SealedRoomsLightmap,
-                         testing::Values(TwoRoomsOptions{}, TwoRoomsOptions{.turn = 30},
-                                         TwoRoomsOptions{.turn = 30, .furniture = true}));
+                         testing::Values(TwoRooms{"Straight", {}}, TwoRooms{"Turned", {.turn = 30}},
+                                         TwoRooms{"TurnedAndFurnished", {.turn = 30, .furniture = true}}),
+                         testing::PrintToStringParamName());
 
 class LightmapOfGroups : public testing::TestWithParam<std::tuple<Shading, LightmapContent>> {};
 
@@ -291,10 +301,12 @@ TEST_P(LightmapOfGroups, SumsToTheTotal) {
 
 INSTANTIATE_TEST_SUITE_P(All, LightmapOfGroups,
                          testing::Combine(testing::Values(Shading::smooth, Shading::gather, Shading::hybrid),
-                                          testing::Values(LightmapContent::irradiance, LightmapContent::radiance)));
+                                          testing::Values(LightmapContent::irradiance, LightmapContent::radiance)),
+                         testing_support::printed_name);
 
 class SampledLightmap : public testing::TestWithParam<Shading> {};
-INSTANTIATE_TEST_SUITE_P(Shading, SampledLightmap, testing::Values(Shading::gather, Shading::hybrid));
+INSTANTIATE_TEST_SUITE_P(Shading, SampledLightmap, testing::Values(Shading::gather, Shading::hybrid),
+                         testing_support::printed_name);
 
 // Closed box, exitance M and reflectance rho everywhere: H = M / (1 - rho) at every point. Every texel finds this
 // value, also in corners. Rays that started beyond a wall would escape, and those texels would lose half.

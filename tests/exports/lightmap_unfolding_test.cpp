@@ -81,6 +81,7 @@ struct UnfoldedCase {
     std::size_t max_charts;
     double stretch;  // of edges
 };
+void PrintTo(const UnfoldedCase& unfolded, std::ostream* out) { *out << unfolded.name; }
 
 class UnfoldedLightmap : public testing::TestWithParam<UnfoldedCase> {
   protected:
@@ -145,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, UnfoldedLightmap,
                                          UnfoldedCase{"SphereOfTriangles", sphere, 24, 12, true, 40, 0.1},
                                          UnfoldedCase{"Ramp", ramp, 80, 2, true, 12, 0.1},
                                          UnfoldedCase{"Saddle", saddle, 12, 12, true, 20, 0.1}),
-                         [](const auto& test) { return test.param.name; });
+                         testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace interflect

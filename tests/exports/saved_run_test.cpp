@@ -163,10 +163,10 @@ std::vector<Case> cases() {
     for (std::size_t i = 0; i < with_a_lamp; ++i) {
         const Case c = all[i];
         const Method method = c.options.method;
-        all.push_back({c.name + "_with_images", c.options, Sources::images});
+        all.push_back({c.name + "_images", c.options, Sources::images});
         if (!method.takes_luminaires) continue;
-        all.push_back({c.name + "_with_outdoor_light", c.options, Sources::outdoor});
-        if (method.separates_groups) all.push_back({c.name + "_with_lights", c.options, Sources::luminaires});
+        all.push_back({c.name + "_outdoors", c.options, Sources::outdoor});
+        if (method.separates_groups) all.push_back({c.name + "_lights", c.options, Sources::luminaires});
     }
     return all;
 }
@@ -218,7 +218,7 @@ TEST_P(SavedRun, HasTheSameBitsInManyCalls) {
     }
 }
 
-TEST_P(SavedRun, HasTheSameBitsWhenSavedAndOpenedBeforeEveryIteration) {
+TEST_P(SavedRun, HasTheSameBitsIfSavedEachIteration) {
     const Solution expected = solve(scene, RayCaster(scene), GetParam().options);
     Solver solver(scene, GetParam().options);
     do {

@@ -35,6 +35,7 @@ struct Sides {
     float front, back;  // irradiance
     std::vector<bool> shown;
 };
+void PrintTo(const Sides& sides, std::ostream* out) { *out << sides.name; }
 
 class ShownPatches : public testing::TestWithParam<Sides> {};
 
@@ -53,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Of, ShownPatches,
                                          Sides{"DimBackAboveTheLimit", 100, 1.1e-3f, {true, true, true}},
                                          Sides{"DimBackOfADimFront", 1, 3e-5f, {true, false, true}},
                                          Sides{"DimBackOfADimFrontAboveTheLimit", 1, 4e-5f, {true, true, true}}),
-                         [](const auto& test) { return std::string(test.param.name); });
+                         testing::PrintToStringParamName());
 
 TEST(ShownPatchesOfALamp, AreBothThoughNothingLightsThem) {
     EXPECT_EQ(shown_patches(two_squares(100), with_light(std::vector<Rgb>(3, Rgb(0)))), std::vector<bool>(3, true));

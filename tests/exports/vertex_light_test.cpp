@@ -12,6 +12,7 @@
 #include "interflect/base/random.h"
 #include "interflect/export.h"
 #include "tests/exports/lightmaps.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -84,7 +85,7 @@ class VertexLightOfAFloor : public testing::TestWithParam<bool> {
 
     std::size_t triangles = 0;
 };
-INSTANTIATE_TEST_SUITE_P(InTriangles, VertexLightOfAFloor, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(InTriangles, VertexLightOfAFloor, testing::Bool(), printed_name);
 
 // Errors between the tested points may be a third larger than at them. Point lights have no noise.
 TEST_P(VertexLightOfAFloor, IsInterpolatedAsWellAsAsked) {

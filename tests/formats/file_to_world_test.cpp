@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "interflect/formats/obj.h"
 #include "interflect/load.h"
 #include "tests/formats/read_faults.h"
@@ -17,6 +19,10 @@ struct Up {
     Axis axis;
     V3d direction, of_x;  // in the file; the image of x
 };
+void PrintTo(const Up& up, std::ostream* out) {
+    constexpr std::array names{"x", "minus_x", "y", "minus_y", "z", "minus_z"};
+    *out << names.at(static_cast<std::size_t>(up.axis));
+}
 class FileToWorld : public testing::TestWithParam<Up> {};
 
 TEST_P(FileToWorld, TurnsUpToZAndScales) {
@@ -29,7 +35,8 @@ TEST_P(FileToWorld, TurnsUpToZAndScales) {
 INSTANTIATE_TEST_SUITE_P(, FileToWorld,
                          testing::Values(Up{Axis::x, {1, 0, 0}, {0, 0, 1}}, Up{Axis::minus_x, {-1, 0, 0}, {0, 0, -1}},
                                          Up{Axis::y, {0, 1, 0}, {1, 0, 0}}, Up{Axis::minus_y, {0, -1, 0}, {1, 0, 0}},
-                                         Up{Axis::z, {0, 0, 1}, {1, 0, 0}}, Up{Axis::minus_z, {0, 0, -1}, {1, 0, 0}}));
+                                         Up{Axis::z, {0, 0, 1}, {1, 0, 0}}, Up{Axis::minus_z, {0, 0, -1}, {1, 0, 0}}),
+                         testing::PrintToStringParamName());
 
 TEST(ReadOptions, UnitOutsideItsRangeIsRefused) {
     for (const double unit : {0.0, -1.0, 1e10, 0.0 / 0.0}) {

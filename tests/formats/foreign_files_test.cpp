@@ -96,6 +96,7 @@ TEST_F(TiltFiles, OfFilesWithinAGltfLieInItsFolder) {
 struct NamingScene {
     const char *name, *scene, *text, *file;
 };
+void PrintTo(const NamingScene& scene, std::ostream* out) { *out << scene.name; }
 
 class NamedFiles : public testing::TestWithParam<NamingScene> {};
 TEST_P(NamedFiles, AreNotQuoted) {
@@ -129,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(All, NamedFiles,
                                                      "other"},
                                          NamingScene{"RadInclude", "scene.rad", "!xform other\n", "other"},
                                          NamingScene{"GltfLuminaire", "scene.gltf", gltf_with_lamp, "other.ies"}),
-                         [](const auto& scene) { return scene.param.name; });
+                         testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace interflect

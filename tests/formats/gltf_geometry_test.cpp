@@ -91,6 +91,7 @@ struct ModeCase {
     int mode;
     std::vector<std::vector<V3f>> triangles;
 };
+void PrintTo(const ModeCase& mode, std::ostream* out) { *out << mode.name; }
 
 class GltfModes : public testing::TestWithParam<ModeCase> {};
 
@@ -123,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(All, GltfModes,
                                                   {{points[0], points[1], points[2]},
                                                    {points[0], points[2], points[3]},
                                                    {points[0], points[3], points[4]}}}),
-                         [](const auto& mode) { return mode.param.name; });
+                         testing::PrintToStringParamName());
 
 TEST(GltfModes, PointsAndLinesAreLeftOut) {
     GltfBuilder file;
@@ -150,6 +151,7 @@ struct IntegerCase {
     bool normalized;
     std::string bytes;
 };
+void PrintTo(const IntegerCase& type, std::ostream* out) { *out << type.name; }
 
 class GltfIntegers : public testing::TestWithParam<IntegerCase> {};
 
@@ -174,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
                     IntegerCase{"UnsignedByteOfOne", 5121, true, integer_positions<std::uint8_t>(255)},
                     IntegerCase{"ShortOfOne", 5122, true, integer_positions<std::int16_t>(32767)},
                     IntegerCase{"UnsignedShortOfOne", 5123, true, integer_positions<std::uint16_t>(65535)}),
-    [](const auto& type) { return type.param.name; });
+    testing::PrintToStringParamName());
 
 TEST(GltfAccessors, InterleavedElementsAreAStrideApart) {
     GltfBuilder file;

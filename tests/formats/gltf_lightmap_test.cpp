@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "tests/formats/gltf_builder.h"
+#include "tests/support/parameter_names.h"
 
 namespace interflect {
 namespace {
@@ -82,7 +83,8 @@ TEST_P(NoPlaceInALightmap, IsIgnoredWithAWarning) {
 constexpr float infinity = std::numeric_limits<float>::infinity();
 INSTANTIATE_TEST_SUITE_P(At, NoPlaceInALightmap,
                          testing::Values(V2f(1.001f, 0), V2f(0, -0.001f), V2f(3, 3), V2f(0, infinity),
-                                         V2f(infinity - infinity, 0)));
+                                         V2f(infinity - infinity, 0)),
+                         printed_name);
 
 TEST(GltfLightmap, OneForEveryVertexIsNeeded) {
     EXPECT_THAT(triangle_with_layout({{0, 0}, {1, 1}}).fault(), HasSubstr("2 texture coordinates for 3 vertices"));

@@ -14,6 +14,7 @@
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
 #include "tests/formats/gltf_builder.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -92,6 +93,7 @@ struct Layer {
     json factors;
     bool reflects;
 };
+void PrintTo(const Layer& layer, std::ostream* out) { *out << layer.extension << ' ' << layer.factors; }
 
 class GltfLayers : public testing::TestWithParam<Layer> {};
 
@@ -117,7 +119,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Layer{"KHR_materials_iridescence", {{"iridescenceFactor", 1}}, true},
                     Layer{"KHR_materials_iridescence", json::object(), false},
                     Layer{"KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}}, true},
-                    Layer{"KHR_materials_anisotropy", json::object(), false}));
+                    Layer{"KHR_materials_anisotropy", json::object(), false}),
+    printed_name);
 
 /// Colours of vertices were ignored.
 TEST(GltfMaterials, AreMultipliedByTheColoursOfVertices) {

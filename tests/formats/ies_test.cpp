@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "interflect/core.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/photometry_files.h"
 #include "tests/support/scenes.h"
 
@@ -59,6 +60,7 @@ struct OpeningCase {
     V3f size;  // along the C0 plane, across, up
     int axis = 2;
 };
+void PrintTo(const OpeningCase& opening, std::ostream* out) { *out << opening.sizes; }
 class IesOpening : public testing::TestWithParam<OpeningCase> {};
 INSTANTIATE_TEST_SUITE_P(
     All, IesOpening,
@@ -70,7 +72,8 @@ INSTANTIATE_TEST_SUITE_P(
         OpeningCase{"-1 -1 -1", Shape::ellipsoid, {1, 1, 1}}, OpeningCase{"-1 2 -1", Shape::cylinder, {2, 1, 1}, 0},
         OpeningCase{"0 2 -1", Shape::cylinder, {2, 1, 1}, 0}, OpeningCase{"2 -1 -1", Shape::cylinder, {1, 2, 1}, 1},
         OpeningCase{"2 0 -1", Shape::cylinder, {1, 2, 1}, 1}, OpeningCase{"-1 0 -1", Shape::ellipsoid, {1, 1, 1}},
-        OpeningCase{"0 -1 -1", Shape::ellipsoid, {1, 1, 1}}));
+        OpeningCase{"0 -1 -1", Shape::ellipsoid, {1, 1, 1}}),
+    printed_name);
 
 TEST_P(IesOpening, HasItsShapeAndSize) {
     const LuminousOpening opening = web_of({.opening = GetParam().sizes}).opening;
@@ -172,6 +175,7 @@ TEST(Ies, TiltIsThatOfTheMeasurement) {
 struct Oddity {
     std::string kind, text;
 };
+void PrintTo(const Oddity& oddity, std::ostream* out) { *out << oddity.kind; }
 class IesOddity : public testing::TestWithParam<Oddity> {};
 INSTANTIATE_TEST_SUITE_P(
     All, IesOddity,
@@ -183,7 +187,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Oddity{"ies-negative", IesText{.intensity = [](double v, double) { return v > 0 ? -1 : 5; }}.str()},
                     Oddity{"ies-opening", IesText{.opening = "1 1 -1"}.str()},
                     Oddity{"ies-reserved", IesText{.last_factor = 0.5}.str()},
-                    Oddity{"ies-trailing", IesText().str() + "1 2 3"}));
+                    Oddity{"ies-trailing", IesText().str() + "1 2 3"}),
+    [](const auto& test) { return printed_name(test) + '_' + std::to_string(test.index); });
 
 TEST_P(IesOddity, IsToleratedWithOneWarning) {
     const Read found = read(GetParam().text);

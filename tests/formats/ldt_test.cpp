@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "interflect/core.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/photometry_files.h"
 
 namespace interflect {
@@ -56,6 +57,7 @@ TEST(Ldt, LineBreaksAreFree) {
 struct Oddity {
     std::string kind, text;
 };
+void PrintTo(const Oddity& oddity, std::ostream* out) { *out << oddity.kind; }
 
 /// Counts lines from 1.
 std::string with_line(const LdtText& ldt, int n, const std::string& line) {
@@ -74,7 +76,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Oddity{"ldt-lamps", LdtText{.lamp_sets = 3}.str()}, Oddity{"ldt-tilt", LdtText{.tilt = 15}.str()},
                     Oddity{"ldt-angles", LdtText{.gamma = {0, 80}}.str()},
                     Oddity{"ldt-negative", LdtText{.intensity = [](double g, double) { return g > 0 ? -1 : 5; }}.str()},
-                    Oddity{"ldt-trailing", LdtText().str() + "1\r\n2"}));
+                    Oddity{"ldt-trailing", LdtText().str() + "1\r\n2"}),
+    [](const auto& test) { return printed_name(test) + '_' + std::to_string(test.index); });
 
 TEST_P(LdtOddity, IsToleratedWithOneWarning) {
     const Read found = read(GetParam().text);

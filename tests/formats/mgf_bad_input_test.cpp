@@ -42,6 +42,7 @@ struct BadLine {
     const char* line;      // the seventh, after the vertices; then all that a face needs to use it
     const char* expected;  // part of the message
 };
+void PrintTo(const BadLine& bad, std::ostream* out) { *out << bad.name; }
 
 class MgfBadLine : public testing::TestWithParam<BadLine> {};
 
@@ -99,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"BillionCopies", "xf -a 1000000000 -t 1 0 0", "(max_patches)"},
         BadLine{"BillionCopiesTogether", "xf -a 10000 -t 1 0 0 -a 100000 -t 0 1 0", "(max_patches)"},
         BadLine{"MissingInclude", "i nowhere.mgf", "there is no such file"}),
-    [](const auto& bad_line) { return bad_line.param.name; });
+    testing::PrintToStringParamName());
 
 TEST(MgfBadInput, SpotLightWithoutACone) {
     expect_in(message(three_vertices + "v x =\n n 0 0 1\nlight spot x 1 50 45\nf a b d\n"),

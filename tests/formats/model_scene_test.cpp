@@ -122,6 +122,7 @@ struct BadModel {
     void (*spoil)(Model&);
     const char* message;
 };
+void PrintTo(const BadModel& bad, std::ostream* out) { *out << bad.name; }
 
 class BadModels : public testing::TestWithParam<BadModel> {};
 
@@ -167,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(
                      m.meshes[0].indices = {0, 1, 1};
                  },
                  "no usable face is left"}),
-    [](const auto& test) { return std::string(test.param.name); });
+    testing::PrintToStringParamName());
 
 TEST(ModelScene, TooManyFacesAreRefusedBeforeTheyAreMade) {
     ReadOptions options;

@@ -14,6 +14,7 @@
 #include "interflect/image/srgb.h"
 #include "interflect/load.h"
 #include "tests/formats/read_faults.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -48,7 +49,8 @@ TEST_P(ObjIndices, OfAnyFormGiveTheSameFaces) {
 INSTANTIATE_TEST_SUITE_P(, ObjIndices,
                          testing::Values("f 1 2 3 4\n", "f 1/1 2/1 3/1 4/1\n", "f 1//1 2//1 3//1 4//1\n",
                                          "f 1/1/1 2/1/1 3/1/1 4/1/1\n", "f -4 -3 -2 -1\n", "f 1 2 \\\n 3 4\n",
-                                         "f 1 2 3\nf 1 3 4\n", "f 1 2 3 4 4\n"));
+                                         "f 1 2 3\nf 1 3 4\n", "f 1 2 3 4 4\n"),
+                         printed_name);
 
 TEST(Obj, PolygonsOfAnyShapeKeepTheirArea) {
     const Scene scene = read("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\n");  // an inverted W
@@ -74,6 +76,7 @@ struct Finish {
     const char* lines;
     Rgb reflectance, exitance, transmittance;
 };
+void PrintTo(const Finish& finish, std::ostream* out) { *out << finish.name; }
 class ObjMaterial : public testing::TestWithParam<Finish> {};
 TEST_P(ObjMaterial, IsMapped) {
     const TemporaryFolder folder;
@@ -102,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Finish{"Dissolve", "Kd .4 .4 .4\nd .25\n", Rgb(.1f), Rgb(0), Rgb(.75f)},
                     Finish{"Transparency", "Kd .4 .4 .4\nTr .75\n", Rgb(.1f), Rgb(0), Rgb(.75f)},
                     Finish{"DissolveBeforeTransparency", "Kd .4 .4 .4\nTr 1\nd 1\n", Rgb(.4f), Rgb(0), Rgb(0)}),
-    [](const auto& finish) { return finish.param.name; });
+    testing::PrintToStringParamName());
 
 /// A triangle 2 mm long and 3 um wide, six float steps at its position, beside a floor of 8 x 8 m. It is negligible,
 /// not a sign of too coarse coordinates. Seen to be refused when its length counts.
@@ -237,7 +240,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadText{"LongName", "o " + std::string(1000, 'a'), "name is too long"},
                     BadText{"FarAway", "v 1e20 0 0\nf 1 2 5", "object '', material 'default'"},
                     BadText{"Binary", std::string(1, '\x02'), "this is not a text file"}),
-    [](const auto& bad) { return bad.param.name; });
+    testing::PrintToStringParamName());
 
 class MtlBadText : public testing::TestWithParam<BadText> {};
 TEST_P(MtlBadText, IsNamedWithItsFault) {
@@ -256,7 +259,7 @@ INSTANTIATE_TEST_SUITE_P(, MtlBadText,
                                          BadText{"NoShare", "d 2", "d is 2; expected 0 to 1"},
                                          BadText{"TooBright", "Ke 1e20 0 0", "of the material 'a' the exitance"},
                                          BadText{"LongName", "newmtl " + std::string(1000, 'a'), "is too long"}),
-                         [](const auto& bad) { return bad.param.name; });
+                         testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace interflect

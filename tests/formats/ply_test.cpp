@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -55,9 +56,14 @@ TEST_P(PlyForm, GivesTheSameFace) {
     EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));
     EXPECT_EQ(scene.materials[scene.patches[0].material].reflectance, Rgb(0.5f));
 }
+std::string form_name(const testing::TestParamInfo<std::string>& form) {
+    constexpr std::array names{"Text", "LittleEndian", "BigEndian"};
+    return names.at(form.index);
+}
 INSTANTIATE_TEST_SUITE_P(, PlyForm,
                          testing::Values(header("ascii") + square + face, binary(std::endian::little),
-                                         binary(std::endian::big)));
+                                         binary(std::endian::big)),
+                         form_name);
 
 TEST(Ply, DataAfterTheLastElementGivesAWarning) {
     const auto kinds = [](const std::string& bytes) {
@@ -199,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"NaN", header("ascii") + "nan 0 0\n2 0 0\n2 1 0\n0 1 0\n" + face,
                 "part.ply:12: expected a finite number, not 'nan'"},
         BadText{"Cut", header("ascii") + square + "7 4 0 1", "ends within a list of 4"}),
-    [](const auto& bad) { return bad.param.name; });
+    testing::PrintToStringParamName());
 
 TEST(Ply, LimitOfPatchesIsNamed) {
     expect_in(message_of([] { read(header("ascii") + square + face, {.max_patches = 0}); }), "max_patches");

@@ -85,6 +85,7 @@ struct Curve {
     double area;    // of the true surface [m^2]
     double volume;  // between it and the origin [m^3], positive if its front faces away from there
 };
+void PrintTo(const Curve& curve, std::ostream* out) { *out << curve.name; }
 class RadCurve : public testing::TestWithParam<Curve> {};
 
 TEST_P(RadCurve, ComesCloseToTheTrueSurface) {
@@ -120,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(, RadCurve,
                                          Curve{"Cup", "cup c 0 0 8 0 0 0 0 0 3 4 0", 20 * pi, -16 * pi},
                                          Curve{"Ring", "ring r 0 0 8 0 0 3 0 0 5 1 2", 3 * pi, 3 * pi},
                                          Curve{"RingOfSwappedRadii", "ring r 0 0 8 0 0 3 0 0 -5 2 1", 3 * pi, -3 * pi}),
-                         [](const auto& curve) { return curve.param.name; });
+                         testing::PrintToStringParamName());
 
 TEST(Rad, LightEmitsFromItsFrontAlone) {
     const Scene scene = read("void light lamp 0 0 3 10 20 30\nlamp polygon p 0 0 9 0 0 0  2 0 0  0 1 0\n");
@@ -143,6 +144,7 @@ struct MaterialCase {
     const char* definition;  // of the material m
     Rgb reflectance, specular_reflectance, transmittance;
 };
+void PrintTo(const MaterialCase& material, std::ostream* out) { *out << material.name; }
 class RadMaterial : public testing::TestWithParam<MaterialCase> {};
 
 TEST_P(RadMaterial, IsMapped) {
@@ -178,7 +180,7 @@ INSTANTIATE_TEST_SUITE_P(
                      Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
         MaterialCase{"QuotedName", "void plastic \"m\" 0 0 5 .2 .4 .6 0 0", Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
         MaterialCase{"TooWhite", "void plastic m 0 0 5 1 1 1 0 0", Rgb(.99f), Rgb(0), Rgb(0)}),
-    [](const auto& material) { return material.param.name; });
+    testing::PrintToStringParamName());
 
 // t = (sqrt(.8402528435 + .0072522239 T^2) - .9166530661) / .0036261119 / T for n = 1.52: Radiance's reference manual.
 TEST(Rad, TransmissivityOfGlassIsRadiances) {
@@ -330,6 +332,7 @@ struct SkyCase {
     V3f towards_sun;   // by gensky
     double tolerance;  // relative: gensky writes three digits, and approximates the integral of the intermediate sky
 };
+void PrintTo(const SkyCase& sky, std::ostream* out) { *out << sky.name; }
 class RadSky : public testing::TestWithParam<SkyCase> {};
 INSTANTIATE_TEST_SUITE_P(
     , RadSky,
@@ -363,7 +366,7 @@ INSTANTIATE_TEST_SUITE_P(
                 89478,
                 {.604023f, .219846f, .766044f},
                 .006}),
-    [](const auto& sky) { return sky.param.name; });
+    testing::PrintToStringParamName());
 
 /// Was left out.
 TEST_P(RadSky, HasTheIlluminanceOfRadiances) {
@@ -579,7 +582,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"CutPrism", "!genprism grey p 3 0 0 1 1 0", "genprism ends where a coordinate is expected"},
         BadText{"NoScale", "!xform -s 0 part.rad", "-s cannot scale by 0"},
         BadText{"Binary", "\x01", "this is not a text file"}),
-    [](const auto& bad) { return bad.param.name; });
+    testing::PrintToStringParamName());
 
 TEST(Rad, WhatNoSurfaceUsesMayBeWrong) {
     EXPECT_EQ(read(grey + "void plastic bad 0 0 3 -1 -1 -1\n" + square).patches.size(), 2u);

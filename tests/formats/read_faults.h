@@ -28,5 +28,6 @@ struct BadText {
     std::string text;
     const char* expected;  // part of the message
 };
+inline void PrintTo(const BadText& bad, std::ostream* out) { *out << bad.name; }
 
 }  // namespace interflect::testing_support

@@ -39,7 +39,8 @@ TEST_P(StlForm, GivesTheSameTriangle) {
     EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));  // from its corners, not from the file
     EXPECT_EQ(scene.materials[scene.patches[0].material].reflectance, Rgb(0.5f));
 }
-INSTANTIATE_TEST_SUITE_P(, StlForm, testing::Values("solid part\n" + facet + "endsolid part\n", binary()));
+INSTANTIATE_TEST_SUITE_P(, StlForm, testing::Values("solid part\n" + facet + "endsolid part\n", binary()),
+                         [](const auto& test) { return test.index == 0 ? "Text" : "Binary"; });
 
 TEST(Stl, SolidsAreObjects) {
     const Scene scene =
@@ -93,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"CutVertex", "solid a\nfacet\nvertex 0 0\n", ":3: a vertex has 2 coordinates"},
         BadText{"TwoVertices", "solid a\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendloop\n", ":5: a facet must have three"},
         BadText{"Cut", "solid a\nfacet\nvertex 0 0 0\n", "the file ends within a facet"}),
-    [](const auto& bad) { return bad.param.name; });
+    testing::PrintToStringParamName());
 
 TEST(Stl, LimitOfPatchesIsNamed) {
     for (const std::string& bytes : {binary(), "solid\n" + facet})

@@ -141,6 +141,7 @@ struct BadTexture {
     const char* lines;     // from the tenth on; then a face uses them
     const char* expected;  // part of the message
 };
+void PrintTo(const BadTexture& bad, std::ostream* out) { *out << bad.name; }
 
 class MgfBadTexture : public MgfTextures, public testing::WithParamInterface<BadTexture> {};
 
@@ -172,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadTexture{"CoordinateNotANumber", "uv 0 x", "'x' is not a finite number"},
         BadTexture{"CoordinateTooFar", "uv 0 5000", "expected numbers up to 4096"},
         BadTexture{"OneCoordinate", "uv 0", "expected 'uv u v'"}),
-    [](const auto& bad) { return bad.param.name; });
+    testing::PrintToStringParamName());
 
 TEST_F(MgfTextures, NeedCoordinates) {
     EXPECT_THAT(fault(three_vertices + "m paint =\n texture rd image.exr\nv e =\n p 0 1 0\nf a b e\n"),

@@ -93,21 +93,30 @@ TEST_P(PatchGeometries, FindsTheParametersOfItsPoints) {
         }
 }
 
+struct SkewCase {
+    const char* name;
+    std::vector<V3f> corners;
+};
+void PrintTo(const SkewCase& skew, std::ostream* out) { *out << skew.name; }
+
 // Convex quadrilaterals far from parallelograms. Meant to fail with Newton's method instead of the closed form, which
 // did not converge for the first of them.
-class SkewQuadrilaterals : public testing::TestWithParam<std::vector<V3f>> {};
+class SkewQuadrilaterals : public testing::TestWithParam<SkewCase> {};
 INSTANTIATE_TEST_SUITE_P(Corners, SkewQuadrilaterals,
-                         testing::Values(std::vector<V3f>{{1.841784f, 3.850133f, 0},
-                                                          {0.9566491f, 4.369944f, 0},
-                                                          {1.294364f, 3.382406f, 0},
-                                                          {1.583523f, 3.48129f, 0}},
-                                         std::vector<V3f>{{0, 0, 0}, {10, 0, 0}, {0.6f, 0.9f, 0}, {0, 0.7f, 0}},
-                                         std::vector<V3f>{{0, 0, 0}, {0.1f, 0, 0}, {1, 3, 0}, {-2, 3, 0}},
-                                         std::vector<V3f>{{0, 0, 0}, {1, 0, 0}, {1.001f, 0.001f, 0}, {0, 1, 0}}));
+                         testing::Values(SkewCase{"Narrow",
+                                                  {{1.841784f, 3.850133f, 0},
+                                                   {0.9566491f, 4.369944f, 0},
+                                                   {1.294364f, 3.382406f, 0},
+                                                   {1.583523f, 3.48129f, 0}}},
+                                         SkewCase{"LongSide", {{0, 0, 0}, {10, 0, 0}, {0.6f, 0.9f, 0}, {0, 0.7f, 0}}},
+                                         SkewCase{"ShortSide", {{0, 0, 0}, {0.1f, 0, 0}, {1, 3, 0}, {-2, 3, 0}}},
+                                         SkewCase{"AlmostSquare",
+                                                  {{0, 0, 0}, {1, 0, 0}, {1.001f, 0.001f, 0}, {0, 1, 0}}}),
+                         testing::PrintToStringParamName());
 
 TEST_P(SkewQuadrilaterals, HaveParametersThatLeadBackToTheirPoints) {
     for (std::size_t first = 0; first < 4; ++first) {  // for each first corner
-        std::vector<V3f> corners = GetParam();
+        std::vector<V3f> corners = GetParam().corners;
         std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first), corners.end());
         const Single single(corners);
         const PatchGeometry geometry = single.geometry();

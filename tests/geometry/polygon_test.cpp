@@ -11,6 +11,7 @@
 
 #include "interflect/geometry/outline_crossings.h"
 #include "interflect/geometry/patch_geometry.h"
+#include "tests/support/parameter_names.h"
 
 namespace interflect {
 
@@ -207,7 +208,7 @@ TEST_P(PolygonSize, DoesNotMatter) {
     EXPECT_NEAR(l.area() / (s * s), 4.0, 1e-5);
     EXPECT_EQ(offer(scaled(unit_square)).scene.patches.size(), 1u);
 }
-INSTANTIATE_TEST_SUITE_P(Metres, PolygonSize, testing::Values(1e-4f, 1.0f, 1e4f));
+INSTANTIATE_TEST_SUITE_P(Metres, PolygonSize, testing::Values(1e-4f, 1.0f, 1e4f), testing_support::printed_name);
 
 /// A random polygon around the origin without crossings: its vertices have rising angles. Also returns its exact area.
 std::vector<V3f> random_star(std::mt19937& random, const Imath::V3d& u, const Imath::V3d& v, double& area) {

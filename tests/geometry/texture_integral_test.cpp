@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "interflect/base/random.h"
+#include "tests/support/parameter_names.h"
 
 namespace interflect {
 
@@ -52,7 +53,8 @@ void expect_near(const Rgb& actual, const Rgb& expected, float tolerance) {
 }
 
 class TextureIntegralOfSize : public testing::TestWithParam<float> {};  // size of triangles, in repeats
-INSTANTIATE_TEST_SUITE_P(FromTexelsToRepeats, TextureIntegralOfSize, testing::Values(0.01f, 0.1f, 1.0f, 6.0f));
+INSTANTIATE_TEST_SUITE_P(FromTexelsToRepeats, TextureIntegralOfSize, testing::Values(0.01f, 0.1f, 1.0f, 6.0f),
+                         testing_support::printed_name);
 
 TEST_P(TextureIntegralOfSize, AgreesWithManyPoints) {
     const Texture texture = random_texture(19, 5);

@@ -163,23 +163,30 @@ TEST(VertexCoordinates, StayInTheLightmapWhateverRoundingDoes) {
     EXPECT_EQ(interpolated(scene, vertices, weights).lightmap, V2f(1, 0));
 }
 
+struct Coordinates {
+    const char* name;
+    std::vector<V2f> Scene::*member;
+};
+void PrintTo(const Coordinates& coordinates, std::ostream* out) { *out << coordinates.name; }
+
 /// Two squares side by side, each with the whole image or lightmap and so with separate vertices.
-class SeamInAFlatSurface : public testing::TestWithParam<std::vector<V2f> Scene::*> {};
+class SeamInAFlatSurface : public testing::TestWithParam<Coordinates> {};
 
 TEST_P(SeamInAFlatSurface, DoesNotDivideIt) {
     Scene scene;
     add_material(scene, Rgb(0.5f), Rgb(0));
     scene.objects = {""};
     scene.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}};
-    scene.*GetParam() = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    scene.*GetParam().member = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {1, 0}, {1, 1}, {0, 1}};
     scene.patches = {{.vertices = {0, 1, 2, 3}}, {.vertices = {4, 5, 6, 7}}};
     const std::vector<std::uint32_t> surface = flat_surfaces(scene);
     EXPECT_EQ(surface[0], surface[1]);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, SeamInAFlatSurface,
-                         testing::Values(&Scene::texture_coordinates, &Scene::lightmap_coordinates),
-                         [](const auto& test) { return test.index == 0 ? "Textures" : "Lightmaps"; });
+                         testing::Values(Coordinates{"Textures", &Scene::texture_coordinates},
+                                         Coordinates{"Lightmaps", &Scene::lightmap_coordinates}),
+                         testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace interflect

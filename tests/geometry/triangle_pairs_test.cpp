@@ -56,6 +56,7 @@ struct Unmergeable {
     std::vector<V3f> vertices;
     std::vector<std::uint32_t> triangles;
 };
+void PrintTo(const Unmergeable& pair, std::ostream* out) { *out << pair.name; }
 
 class UnmergeablePair : public testing::TestWithParam<Unmergeable> {};
 
@@ -73,13 +74,14 @@ INSTANTIATE_TEST_SUITE_P(
                     Unmergeable{"InALine", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {0, 1, 3, 1, 2, 3}},
                     Unmergeable{"BackToBack", unit_square, {0, 1, 2, 0, 3, 2}},
                     Unmergeable{"Twice", unit_square, {0, 1, 2, 0, 1, 2}}),
-    [](const auto& test) { return std::string(test.param.name); });
+    testing::PrintToStringParamName());
 
 struct CoordinatesOfPair {
     const char* name;
     std::vector<V2f> textures, lightmap;
     std::size_t faces;
 };
+void PrintTo(const CoordinatesOfPair& pair, std::ostream* out) { *out << pair.name; }
 
 class CoordinatesOfPairs : public testing::TestWithParam<CoordinatesOfPair> {};
 
@@ -98,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(With, CoordinatesOfPairs,
                                          CoordinatesOfPair{"BothLinear", linear, linear, 1},
                                          CoordinatesOfPair{"PlaceInNoLightmap", linear,
                                                            std::vector<V2f>(4, V2f(std::nanf(""))), 1}),
-                         [](const auto& test) { return std::string(test.param.name); });
+                         testing::PrintToStringParamName());
 
 /// A grid of cells 1 by 0.7, with its triangles in random order and orientation: all triangles are paired.
 TEST(TrianglePairs, AGridIsMergedWholeWhateverTheOrder) {

@@ -7,6 +7,7 @@
 
 #include "interflect/core.h"
 #include "interflect/image/srgb.h"
+#include "tests/support/parameter_names.h"
 
 namespace interflect {
 
@@ -30,7 +31,8 @@ Image ramp() {
 class Operators : public testing::TestWithParam<Tonemap> {};
 INSTANTIATE_TEST_SUITE_P(All, Operators,
                          testing::Values(Tonemap::srgb, Tonemap::reinhard, Tonemap::filmic, Tonemap::agx, Tonemap::ward,
-                                         Tonemap::tumblin, Tonemap::ferwerda));
+                                         Tonemap::tumblin, Tonemap::ferwerda),
+                         testing_support::printed_name);
 
 TEST_P(Operators, RiseFromBlackToWhite) {
     const Image shown = tone_map(ramp(), 0, GetParam());
@@ -62,7 +64,8 @@ TEST_P(Operators, DoNotHideWhatIsNotFinite) {
 }
 
 class Curves : public testing::TestWithParam<Tonemap> {};
-INSTANTIATE_TEST_SUITE_P(All, Curves, testing::Values(Tonemap::srgb, Tonemap::reinhard, Tonemap::filmic, Tonemap::agx));
+INSTANTIATE_TEST_SUITE_P(All, Curves, testing::Values(Tonemap::srgb, Tonemap::reinhard, Tonemap::filmic, Tonemap::agx),
+                         testing_support::printed_name);
 
 TEST_P(Curves, KeepMidGrey) { EXPECT_NEAR(mapped(grey(0.18f), 0, GetParam()).x, 0.18, 0.04); }
 

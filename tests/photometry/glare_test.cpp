@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "interflect/core.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -31,7 +32,8 @@ TEST_P(PositionIndex, IsThatOfTheTable) {
 INSTANTIATE_TEST_SUITE_P(Cie117, PositionIndex,
                          testing::Values(std::tuple(0.0f, 1.0), std::tuple(0.1f, 1.26), std::tuple(0.2f, 1.53),
                                          std::tuple(0.3f, 1.90), std::tuple(0.5f, 2.86), std::tuple(0.7f, 4.20),
-                                         std::tuple(1.0f, 7.00), std::tuple(1.3f, 10.35), std::tuple(1.7f, 16.20)));
+                                         std::tuple(1.0f, 7.00), std::tuple(1.3f, 10.35), std::tuple(1.7f, 16.20)),
+                         printed_name);
 
 /// sigma = 45 degrees, tau = 90: ln p = (35.2 - 28.7001 - 1.22 e^-20) 0.045 + (21 + 24.0003 - 24.0003) 0.02025.
 TEST(PositionIndex, IsSmallerToTheSide) {

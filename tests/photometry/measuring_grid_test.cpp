@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "interflect/core.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -20,6 +21,7 @@ using testing::HasSubstr;
 struct TableRow {
     double length, spacing, rounding;
 };
+void PrintTo(const TableRow& row, std::ostream* out) { *out << row.length; }
 class GridSpacing : public testing::TestWithParam<TableRow> {};
 TEST_P(GridSpacing, IsThatOfTheStandard) {
     const auto [length, spacing, rounding] = GetParam();
@@ -31,7 +33,8 @@ TEST_P(GridSpacing, IsThatOfTheStandard) {
 INSTANTIATE_TEST_SUITE_P(Table, GridSpacing,
                          testing::Values(TableRow{0.4, 0.15, 0.05}, TableRow{0.6, 0.2, 0.061}, TableRow{1, 0.2, 1e-9},
                                          TableRow{2, 0.3, 0.026}, TableRow{5, 0.6, 0.02}, TableRow{10, 1, 1e-9},
-                                         TableRow{25, 2, 0.11}, TableRow{50, 3, 0.09}, TableRow{100, 5, 1e-9}));
+                                         TableRow{25, 2, 0.11}, TableRow{50, 3, 0.09}, TableRow{100, 5, 1e-9}),
+                         printed_name);
 
 TEST(GridSpacing, OfALongAreaIsThatOfItsShorterSide) {
     EXPECT_DOUBLE_EQ(grid_spacing(20, 10), 1);

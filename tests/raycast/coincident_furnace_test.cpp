@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "interflect/elements/forest.h"
@@ -62,6 +63,10 @@ TEST(CoincidentFurnace, FloorInABlackSlabLosesNoLight) {
 double emitted(const Solution& solution) { return solution.emitted_power.x; }
 
 enum class Copy { same_corners, other_first_corner, in_quarters };
+void PrintTo(Copy copy, std::ostream* out) {
+    constexpr std::array names{"same_corners", "other_first_corner", "in_quarters"};
+    *out << names.at(static_cast<std::size_t>(copy));
+}
 
 void double_walls(Scene& scene, Copy copy) {
     const std::vector<Patch> walls = scene.patches;
@@ -79,7 +84,8 @@ void double_walls(Scene& scene, Copy copy) {
 
 class DoubledWalls : public testing::TestWithParam<Copy> {};
 INSTANTIATE_TEST_SUITE_P(Copies, DoubledWalls,
-                         testing::Values(Copy::same_corners, Copy::other_first_corner, Copy::in_quarters));
+                         testing::Values(Copy::same_corners, Copy::other_first_corner, Copy::in_quarters),
+                         testing::PrintToStringParamName());
 
 // The reported faces have B = M / (1 - rho), and only one of each pair emits power. Seen to fail, with twice the light,
 // when Materials does not use uncovered_share().

@@ -13,6 +13,7 @@
 
 #include "interflect/geometry/split.h"
 #include "interflect/ray_caster.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -186,7 +187,7 @@ struct DecalOnTable {
 };
 
 class Decal : public testing::TestWithParam<float> {};  // offset, in ray offsets
-INSTANTIATE_TEST_SUITE_P(OffsetInLifts, Decal, testing::Values(0.0f, 0.1f, -0.1f, 0.2f, -0.2f));
+INSTANTIATE_TEST_SUITE_P(OffsetInLifts, Decal, testing::Values(0.0f, 0.1f, -0.1f, 0.2f, -0.2f), printed_name);
 
 TEST_P(Decal, AnswersEveryRayThatMeetsTheTableWithinIt) {
     int wrong = 0;

@@ -392,10 +392,19 @@ TEST(RayCaster, KnowsItsScene) {
 
 TEST(RayCaster, ReportsItsMemory) { EXPECT_GT(RayCaster(grey_box()).memory(), 54u * sizeof(V3f)); }
 
-class PreparedRayInterfaces : public testing::TestWithParam<RayInterface> {};
+struct NamedInterface {
+    const char* name;
+    RayInterface interface;
+};
+void PrintTo(const NamedInterface& named, std::ostream* out) { *out << named.name; }
+
+class PreparedRayInterfaces : public testing::TestWithParam<NamedInterface> {};
 INSTANTIATE_TEST_SUITE_P(All, PreparedRayInterfaces,
-                         testing::Values(RayInterface::single, RayInterface::packet8, RayInterface::packet16,
-                                         RayInterface::stream));
+                         testing::Values(NamedInterface{"single", RayInterface::single},
+                                         NamedInterface{"packet8", RayInterface::packet8},
+                                         NamedInterface{"packet16", RayInterface::packet16},
+                                         NamedInterface{"stream", RayInterface::stream}),
+                         testing::PrintToStringParamName());
 
 TEST_P(PreparedRayInterfaces, HitAsManyAsTrace) {
     Scene scene = triangulated(grey_box());
@@ -406,7 +415,7 @@ TEST_P(PreparedRayInterfaces, HitAsManyAsTrace) {
     for (const std::size_t count : {1, 7, 16, 1023, 1024, 10'005}) {  // full and partial packets and groups
         std::vector<Ray> rays(count);
         for (Ray& ray : rays) ray = {V3f(0.5f, 1, 1.5f), direction_on_sphere(random)};
-        PreparedRays prepared(rays, GetParam());
+        PreparedRays prepared(rays, GetParam().interface);
         EXPECT_EQ(prepared.group_count(), (count + 1023) / 1024);
         EXPECT_EQ(prepared.hit_count(), 0u);
         for (std::size_t group = 0; group < prepared.group_count(); ++group) prepared.trace_group(ray_caster, group);

@@ -103,6 +103,7 @@ struct LitScene {
     Scene scene;
     View view = into_corner;
 };
+void PrintTo(const LitScene& lit, std::ostream* out) { *out << lit.name; }
 
 std::vector<LitScene> lit_scenes() {
     std::vector<LitScene> all;
@@ -168,8 +169,7 @@ TEST_P(HybridScene, HasTheMeanOfPathTracing) {
     EXPECT_NEAR(indirect / mean_of(expected.indirect), 1, tolerance(indirect_error));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, HybridScene, testing::ValuesIn(lit_scenes()),
-                         [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(Scenes, HybridScene, testing::ValuesIn(lit_scenes()), testing::PrintToStringParamName());
 
 /// In a furnace with exitance M and reflectance rho, irradiance is H = M / (1 - rho) and indirect irradiance rho H at
 /// every point. Seen to fail when records count emitted light, or omit the reflectance. Fails for

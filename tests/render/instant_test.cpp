@@ -15,6 +15,7 @@
 
 #include "interflect/render.h"
 #include "interflect/render/reflections/virtual_lights.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 #include "tests/support/statistics.h"
@@ -94,7 +95,7 @@ double p_value(const std::vector<Rendering>& runs, const std::vector<Rendering>&
 // A closed box with exitance M and reflectance rho everywhere has the radiance M / (1 - rho) / pi.
 
 class InstantFurnace : public testing::TestWithParam<float> {};
-INSTANTIATE_TEST_SUITE_P(Rho, InstantFurnace, testing::Values(0.1f, 0.5f, 0.9f));
+INSTANTIATE_TEST_SUITE_P(Rho, InstantFurnace, testing::Values(0.1f, 0.5f, 0.9f), testing_support::printed_name);
 
 TEST_P(InstantFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
     const Rgb rho = Rgb(1, 0.9f, 0.5f) * GetParam(), exitance(2, 1, 0.5f);

@@ -26,6 +26,7 @@ struct SeenPatchCase {
     std::vector<V3f> corners;
     V3f x;
 };
+void PrintTo(const SeenPatchCase& seen, std::ostream* out) { *out << seen.name; }
 
 Scene scene_of(const std::vector<V3f>& corners) {
     Scene scene;
@@ -48,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(
         SeenPatchCase{"Trapezium", {{0, 0, 1}, {0.5f, 2, 1}, {1, 2, 1}, {3, 0, 1}}, {1, 1, 0.4f}},
         SeenPatchCase{"Triangle", {{0, 0, 1}, {0.2f, 2, 1.3f}, {3, 0.1f, 0.8f}}, {0.7f, 0.6f, 0.5f}},
         SeenPatchCase{"NarrowTriangle", {{0, 0, 1}, {0, 3, 1}, {0.02f, 1, 1}}, {0.3f, 1, 0.5f}}),
-    [](const auto& test) { return test.param.name; });
+    testing::PrintToStringParamName());
 
 /// The mean of cosine / density is the irradiance by Lambert's formula, from a plane that faces the patch and an
 /// oblique one. The density of a direction is the same when it is found by chance.

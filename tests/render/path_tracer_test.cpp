@@ -21,6 +21,7 @@
 
 #include "interflect/core.h"
 #include "tests/support/form_factors.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
@@ -98,7 +99,7 @@ class PathFurnace : public testing::TestWithParam<float> {
     }
     static inline const Rgb exitance{2, 1, 0.5f};
 };
-INSTANTIATE_TEST_SUITE_P(Rho, PathFurnace, testing::Values(0.1f, 0.5f, 0.9f));
+INSTANTIATE_TEST_SUITE_P(Rho, PathFurnace, testing::Values(0.1f, 0.5f, 0.9f), testing_support::printed_name);
 
 TEST_P(PathFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
     const Pictures seen = pictures();

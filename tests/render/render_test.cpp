@@ -14,6 +14,7 @@
 #include "interflect/render/pictures/outlines.h"
 #include "interflect/render/pictures/quantity_picture.h"
 #include "interflect/render/smooth/element_vertices.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -48,7 +49,8 @@ Image picture(const Scene& scene, const std::vector<Rgb>& h, const PictureOption
 }
 
 class FlatAndSmooth : public testing::TestWithParam<Shading> {};
-INSTANTIATE_TEST_SUITE_P(Shading, FlatAndSmooth, testing::Values(Shading::flat, Shading::smooth));
+INSTANTIATE_TEST_SUITE_P(Shading, FlatAndSmooth, testing::Values(Shading::flat, Shading::smooth),
+                         testing_support::printed_name);
 
 TEST_P(FlatAndSmooth, LuminanceIsRadiosityOverPi) {
     Scene scene;

@@ -54,8 +54,7 @@ std::vector<MeasuredIrradiance> measured(const Scene& scene, int samples, Shadin
 }
 
 class EverySky : public testing::TestWithParam<KnownSky> {};
-INSTANTIATE_TEST_SUITE_P(All, EverySky, testing::ValuesIn(known_skies()),
-                         [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, EverySky, testing::ValuesIn(known_skies()), testing::PrintToStringParamName());
 
 /// Planes that face up, sideways, aslant and down, by path tracing and gathering. Five standard errors: one test in
 /// a million would fail by chance.

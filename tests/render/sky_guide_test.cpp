@@ -106,7 +106,7 @@ MeanAndError statistics_of(const std::vector<double>& errors) {
 
 class SkyThroughAWindow : public testing::TestWithParam<KnownSky> {};
 INSTANTIATE_TEST_SUITE_P(EverySky, SkyThroughAWindow, testing::ValuesIn(known_skies()),
-                         [](const auto& test) { return test.param.name; });
+                         testing::PrintToStringParamName());
 
 // Five standard errors: one test in a million would fail by chance. Maps are integrated to about a percent.
 TEST_P(SkyThroughAWindow, IsTheIntegralOverIt) {

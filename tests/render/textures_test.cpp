@@ -12,6 +12,7 @@
 #include "interflect/generators/boxes.h"
 #include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
@@ -70,7 +71,7 @@ const View in_front{"front", V3f(0.5f, -10, 0.5f), V3f(0.5f, 0, 0.5f), V3f(0, 0,
                     static_cast<float>(2 * std::atan(0.5 / 10) * 180 / pi)};
 
 class Ramp : public testing::TestWithParam<Shading> {};
-INSTANTIATE_TEST_SUITE_P(Shadings, Ramp, testing::Values(Shading::flat, Shading::smooth));
+INSTANTIATE_TEST_SUITE_P(Shadings, Ramp, testing::Values(Shading::flat, Shading::smooth), printed_name);
 
 TEST_P(Ramp, TexelsAreWhereTheyBelong) {
     constexpr int side = 8;

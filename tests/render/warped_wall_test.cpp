@@ -24,6 +24,7 @@ using namespace testing_support;
 const Imath::V3d in_lit_room(2, 2, 1), in_dark_room(6, 2, 1);
 
 enum class Wall { polygon, patch };
+void PrintTo(Wall wall, std::ostream* out) { *out << (wall == Wall::polygon ? "AsPolygon" : "AsPatch"); }
 
 /// @param wall  polygon: added as readers do; patch: a warped patch, as callers of the library can make one.
 Scene two_rooms(Wall wall) {
@@ -47,9 +48,8 @@ Scene two_rooms(Wall wall) {
 }
 
 class WarpedWall : public testing::TestWithParam<Wall> {};
-INSTANTIATE_TEST_SUITE_P(Made, WarpedWall, testing::Values(Wall::polygon, Wall::patch), [](const auto& made) {
-    return std::string(made.param == Wall::polygon ? "AsPolygon" : "AsPatch");
-});
+INSTANTIATE_TEST_SUITE_P(Made, WarpedWall, testing::Values(Wall::polygon, Wall::patch),
+                         testing::PrintToStringParamName());
 
 /// Rays from both sides start on the bilinear surface of the wall and must not hit it.
 TEST_P(WarpedWall, IsLeftByRaysThatStartOnIt) {

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "interflect/core.h"
+#include "tests/support/parameter_names.h"
 
 namespace interflect {
 namespace {
@@ -103,6 +104,9 @@ struct PerezCase {
                (1 + c * std::exp(d * sun_angle) + e * std::pow(std::cos(sun_angle), 2));
     }
 };
+void PrintTo(const PerezCase& sky, std::ostream* out) {
+    *out << sky.direct << ' ' << sky.diffuse << ' ' << sky.altitude;
+}
 class Perez : public testing::TestWithParam<PerezCase> {};
 TEST_P(Perez, AgreesWithRadiance) {
     const PerezCase& c = GetParam();
@@ -130,7 +134,8 @@ INSTANTIATE_TEST_SUITE_P(
         PerezCase{500, 200, 45, -1.0192924, -0.5421561, 13.973204, -3.2668666, 0.02881627, 26788.752, 48042.865},
         PerezCase{650, 120, 30, -0.9662276, -0.3256743, 13.086292, -3.4132977, 0.31739513, 17551.926, 62339.974},
         PerezCase{450, 100, 60, -0.9691652, -0.2121963, 16.402601, -3.9427347, 0.70632199, 13425.93, 46895.875},
-        PerezCase{850, 80, 60, -0.9934176, -0.2118527, 22.314481, -6.0958235, 1.3087871, 10818.779, 88086.71}));
+        PerezCase{850, 80, 60, -0.9934176, -0.2118527, 22.314481, -6.0958235, 1.3087871, 10818.779, 88086.71}),
+    testing_support::printed_name);
 
 TEST(PerezDaylight, RefusesWhatCannotBe) {
     EXPECT_THROW(perez_daylight(800, 100, 0), InputError);

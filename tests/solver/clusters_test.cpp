@@ -16,6 +16,7 @@
 #include "interflect/solver/clusters/patch_clusters.h"
 #include "interflect/solver/error/finish_solution.h"
 #include "interflect/solver/shrinkage/cluster_shrinkage.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -199,7 +200,7 @@ TEST(ClusterShrinkage, AcceptsPatchesWhoseNoiseIsNotKnownYet) {
 }
 
 class ClusterRisk : public testing::TestWithParam<float> {};
-INSTANTIATE_TEST_SUITE_P(Contrast, ClusterRisk, testing::Values(0.0f, 0.2f, 0.5f, 1.0f));
+INSTANTIATE_TEST_SUITE_P(Contrast, ClusterRisk, testing::Values(0.0f, 0.2f, 0.5f, 1.0f), printed_name);
 
 TEST_P(ClusterRisk, IsAboutTheErrorThatIsLeft) {
     Box box;

@@ -14,6 +14,7 @@
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/brute_force.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {
@@ -66,7 +67,7 @@ class Sample {
 
 class DenseSolution : public testing::TestWithParam<PointSet> {};
 INSTANTIATE_TEST_SUITE_P(Points, DenseSolution, testing::Values(PointSet::sobol, PointSet::random),
-                         [](const auto& test) { return test.param == PointSet::sobol ? "sobol" : "random"; });
+                         testing::PrintToStringParamName());
 
 TEST_P(DenseSolution, IsTheMeanInAColourfulBox) {
     const Scene scene = colourful_box();

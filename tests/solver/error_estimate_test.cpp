@@ -42,7 +42,7 @@ WeightedView view(bool shows_lamp) {
     return v;
 }
 
-SolveOptions options_for(const char* method, bool shows_lamp, std::int64_t rays, std::uint64_t seed) {
+SolveOptions options_for(const std::string& method, bool shows_lamp, std::int64_t rays, std::uint64_t seed) {
     SolveOptions options{.method = find_method(method)};
     options.views = {view(shows_lamp)};
     options.limits.rays = rays;
@@ -56,7 +56,7 @@ Image picture(const Scene& scene, const RayCaster& ray_caster, const Solution& s
 }
 
 /// Parameters: the method, and whether the lamp is in the picture.
-class ErrorEstimate : public testing::TestWithParam<std::tuple<const char*, bool>> {
+class ErrorEstimate : public testing::TestWithParam<std::tuple<std::string, bool>> {
   protected:
     const Scene scene_ = room();
     const RayCaster ray_caster_{scene_};

@@ -29,6 +29,7 @@ struct Pair {
     Rectangle from, to;
     double form_factor;  // from catalogues and textbooks
 };
+void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.name; }
 
 const Pair parallel_squares{"parallel", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}, 0.199825};
 const Pair perpendicular_squares{
@@ -44,7 +45,7 @@ Scene scene_of(const Pair& pair) {
 
 class TwoSquares : public testing::TestWithParam<Pair> {};
 INSTANTIATE_TEST_SUITE_P(All, TwoSquares, testing::Values(parallel_squares, perpendicular_squares),
-                         [](const auto& test) { return test.param.name; });
+                         testing::PrintToStringParamName());
 
 TEST_P(TwoSquares, ClosedFormIsTheCataloguesFigure) {
     const auto& [name, from, to, expected] = GetParam();

@@ -17,6 +17,7 @@
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
 #include "tests/solver/variants.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -90,7 +91,7 @@ struct Runs {
 };
 
 class Furnace : public testing::TestWithParam<double> {};  // rho
-INSTANTIATE_TEST_SUITE_P(Rho, Furnace, testing::Values(0.0, 0.1, 0.5, 0.9, 0.95));
+INSTANTIATE_TEST_SUITE_P(Rho, Furnace, testing::Values(0.0, 0.1, 0.5, 0.9, 0.95), printed_name);
 
 TEST_P(Furnace, IsUnbiasedAndWouldNoticeOnePercent) {
     const double rho = GetParam(), expected = expected_irradiance(rho);
@@ -199,7 +200,7 @@ TEST_P(DeepFurnace, HasTheSameIrradianceEverywhere) {
 // A closed room of surface S and reflectance rho, with one luminaire of power Phi. All emitted and reflected light is
 // received, so S E = Phi + rho S E for any objects in the room.
 class ClosedRoom : public testing::TestWithParam<double> {};  // rho
-INSTANTIATE_TEST_SUITE_P(Rho, ClosedRoom, testing::Values(0.0, 0.5, 0.9, 0.95));
+INSTANTIATE_TEST_SUITE_P(Rho, ClosedRoom, testing::Values(0.0, 0.5, 0.9, 0.95), printed_name);
 
 TEST_P(ClosedRoom, HasTheMeanIrradianceOfItsPowerBalance) {
     const double rho = GetParam();

@@ -17,6 +17,7 @@
 #include "interflect/solve.h"
 #include "interflect/solver.h"
 #include "interflect/solver/light/materials.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -95,7 +96,8 @@ TEST(LightGroups, PatternsMatch) {
 }
 
 class LightGroupsOf : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, LightGroupsOf, testing::Values("srr", "hsrr", "ihsrr", "wdrs", "hwdrs"));
+INSTANTIATE_TEST_SUITE_P(Methods, LightGroupsOf, testing::Values("srr", "hsrr", "ihsrr", "wdrs", "hwdrs"),
+                         printed_name);
 
 TEST_P(LightGroupsOf, SumToTheUngroupedSolution) {
     const Scene grouped = lit_room();
@@ -152,7 +154,7 @@ TEST(Dimming, IsWhatSolvingTheDimmedSceneGives) {
 }
 
 class ExitanceOf : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Methods, ExitanceOf, testing::Values("hsrr", "ihsrr"));
+INSTANTIATE_TEST_SUITE_P(Methods, ExitanceOf, testing::Values("hsrr", "ihsrr"), printed_name);
 
 /// Dims groups in the middle of a run, one to 0 and back. The result must be the solution of the dimmed scene.
 TEST_P(ExitanceOf, ChangesInTheMiddleOfARun) {

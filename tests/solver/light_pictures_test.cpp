@@ -23,12 +23,13 @@ struct Hierarchy {
     const char* method;
     RefinementCriterion criterion;
 };
+void PrintTo(const Hierarchy& hierarchy, std::ostream* out) { *out << hierarchy.name; }
 class LightSourcesOnTheHierarchy : public testing::TestWithParam<Hierarchy> {};
 INSTANTIATE_TEST_SUITE_P(All, LightSourcesOnTheHierarchy,
                          testing::Values(Hierarchy{"ihsrr_by_variance", "ihsrr", RefinementCriterion::variance},
                                          Hierarchy{"ihsrr_by_power", "ihsrr", RefinementCriterion::power},
                                          Hierarchy{"hwdrs", "hwdrs", RefinementCriterion::power}),
-                         [](const auto& test) { return test.param.name; });
+                         testing::PrintToStringParamName());
 
 TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
     Scene scene = room_with_window({300, 350, 420});

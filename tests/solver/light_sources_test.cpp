@@ -19,6 +19,7 @@
 #include "interflect/solver/light/materials.h"
 #include "tests/solver/room_with_window.h"
 #include "tests/support/form_factors.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 #include "tests/support/statistics.h"
@@ -138,6 +139,7 @@ struct SourceAndMethod {
     Source source;
     std::string method;
 };
+void PrintTo(const SourceAndMethod& pair, std::ostream* out) { *out << pair.source.name << '_' << pair.method; }
 std::vector<SourceAndMethod> all_pairs() {
     std::vector<SourceAndMethod> pairs;
     for (const Source& source : sources())
@@ -170,11 +172,7 @@ TEST_P(LightSources, LightAnOpenFloor) {
     EXPECT_GT(bonferroni(p_values), false_alarm) << "expected " << expected_sum << ", found " << sums[0];
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LightSources, testing::ValuesIn(all_pairs()), [](const auto& test) {
-    std::string name = test.param.source.name + "_" + test.param.method;
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-});
+INSTANTIATE_TEST_SUITE_P(All, LightSources, testing::ValuesIn(all_pairs()), printed_name);
 
 /// A lamp close to one large face, which is initially a single element. Rays leave it in all directions, and the oracle
 /// must know the distance of the lamp for each: the power of an accepted ray is spread over the whole element. Seen to

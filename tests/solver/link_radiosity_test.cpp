@@ -29,6 +29,7 @@
 #include "tests/solver/reference_rooms.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/form_factors.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -153,7 +154,7 @@ TEST(LinkRadiosity, TrianglesExchangeWhatTheirSquareDoes) {
 // On undivided patches the result is the dense solution, apart from quadrature and lines of sight.
 
 class Furnace : public testing::TestWithParam<float> {};  // rho
-INSTANTIATE_TEST_SUITE_P(Rho, Furnace, testing::Values(0.0f, 0.5f, 0.9f));
+INSTANTIATE_TEST_SUITE_P(Rho, Furnace, testing::Values(0.0f, 0.5f, 0.9f), printed_name);
 
 TEST_P(Furnace, OfPatchesIsExactButForQuadrature) {
     const Scene scene = closed_box({1, 2, 3}, 3, {{"wall", Rgb(GetParam()), Rgb(2)}});

@@ -123,7 +123,7 @@ TEST_P(EveryMethod, FillsAFurnaceEvenly) {
     }
 }
 
-TEST_P(EveryFlatMethod, HasTheDenseSolutionAsItsMeanAndCountsWhatEscapes) {
+TEST_P(EveryFlatMethod, HasTheMeanOfTheDenseSolutionAndCountsEscapes) {
     const Scene scene = open_colourful_box();
     const FormFactors f = exact_form_factors(scene);
     const std::vector<RgbD> exact = dense_irradiance(scene, f);

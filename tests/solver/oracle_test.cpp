@@ -22,6 +22,7 @@ struct Pair {
     const char* name;
     Rectangle receiver, shooter;
 };
+void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.name; }
 
 const Rectangle floor_tile{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 Rectangle ceiling_at(double height, double size = 1) {
@@ -38,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(Pairs, FormFactorEstimate,
                                          Pair{"small_shooter", floor_tile, ceiling_at(3, 0.25)},
                                          Pair{"corner", floor_tile, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}}},
                                          Pair{"aside", floor_tile, {{5, 0, 2}, {0, 1, 0}, {1, 0, 0}}}),
-                         [](const auto& test) { return test.param.name; });
+                         testing::PrintToStringParamName());
 
 TEST_P(FormFactorEstimate, IsAnUpperEstimateOfTheRightSize) {
     const double exact = form_factor(GetParam().receiver, GetParam().shooter);

@@ -69,6 +69,7 @@ struct Source {
     Luminaire luminaire;
     double expected;  // power received by the floor
 };
+void PrintTo(const Source& source, std::ostream* out) { *out << source.name; }
 
 std::vector<Source> sources() {
     const V3f slanted(3, 0.4f, -3.2f);

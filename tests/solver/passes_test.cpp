@@ -20,6 +20,7 @@
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
 #include "tests/support/form_factors.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -96,7 +97,7 @@ double deviation_of(const std::vector<double>& x) {
 }
 
 class TotalPower : public testing::TestWithParam<float> {};  // mean reflectance
-INSTANTIATE_TEST_SUITE_P(Rho, TotalPower, testing::Values(0.5f, 0.8f, 0.92f, 0.97f));
+INSTANTIATE_TEST_SUITE_P(Rho, TotalPower, testing::Values(0.5f, 0.8f, 0.92f, 0.97f), printed_name);
 
 TEST_P(TotalPower, IsUnbiasedAndItsDeviationFallsAsTheRootOfTheRays) {
     constexpr std::uint64_t runs = 40;

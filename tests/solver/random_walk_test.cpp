@@ -25,6 +25,7 @@
 #include "interflect/solver/light/materials.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -78,7 +79,7 @@ struct Runs {
 
 class RandomWalks : public testing::TestWithParam<ImportanceUse> {};
 INSTANTIATE_TEST_SUITE_P(Importance, RandomWalks, testing::Values(ImportanceUse::off, ImportanceUse::full),
-                         [](const auto& test) { return test.param == ImportanceUse::off ? "off" : "full"; });
+                         testing::PrintToStringParamName());
 
 // A closed box with exitance M and reflectance rho everywhere has H = M / (1 - rho).
 TEST_P(RandomWalks, FillsAFurnaceEvenly) {

@@ -22,6 +22,7 @@
 #include "interflect/solver/iteration/merge.h"
 #include "interflect/solver/refinement/variance_refinement.h"
 #include "interflect/solver/transport/received.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -164,7 +165,7 @@ TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {
 }
 
 class Risk : public testing::TestWithParam<double> {};
-INSTANTIATE_TEST_SUITE_P(SignalToNoise, Risk, testing::Values(0.0, 0.5, 1.0, 2.0, 5.0));
+INSTANTIATE_TEST_SUITE_P(SignalToNoise, Risk, testing::Values(0.0, 0.5, 1.0, 2.0, 5.0), printed_name);
 
 TEST_P(Risk, IsTheMeanSquareErrorThatIsLeft) {
     constexpr int trials = 200'000;

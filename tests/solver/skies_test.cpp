@@ -50,8 +50,7 @@ std::vector<std::vector<double>> solved(const Scene& scene, std::int64_t rays, i
 }
 
 class EverySky : public testing::TestWithParam<KnownSky> {};
-INSTANTIATE_TEST_SUITE_P(All, EverySky, testing::ValuesIn(known_skies()),
-                         [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(All, EverySky, testing::ValuesIn(known_skies()), testing::PrintToStringParamName());
 
 /// Tests a convex box lit from outside: each side has the irradiance of an open plane.
 TEST_P(EverySky, LightsTheSidesOfABox) {

@@ -19,6 +19,7 @@
 #include "interflect/solver/light/materials.h"
 #include "tests/solver/reference_rooms.h"
 #include "tests/solver/variants.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -60,7 +61,7 @@ Solution solved_on_threads(int threads, const Scene& scene, const SolveOptions& 
 }
 
 class Reproducible : public testing::TestWithParam<PointSet> {};
-INSTANTIATE_TEST_SUITE_P(Points, Reproducible, testing::Values(PointSet::sobol, PointSet::random));
+INSTANTIATE_TEST_SUITE_P(Points, Reproducible, testing::Values(PointSet::sobol, PointSet::random), printed_name);
 
 TEST_P(Reproducible, SameSeedSameBitsForAnyNumberOfThreads) {
     const Scene scene = furnished_room();

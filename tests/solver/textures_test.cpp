@@ -4,12 +4,14 @@
 // elements are not computed.
 #include <gtest/gtest.h>
 
+#include <string>
 #include <vector>
 
 #include "interflect/elements/forest.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/light/radiosity.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 #include "tests/support/textured_scenes.h"
@@ -21,7 +23,7 @@ namespace {
 
 using namespace testing_support;
 
-Solution solved(const Scene& scene, const char* method, std::int64_t rays = 600'000, std::uint64_t seed = 1) {
+Solution solved(const Scene& scene, const std::string& method, std::int64_t rays = 600'000, std::uint64_t seed = 1) {
     SolveOptions options{.method = find_method(method)};
     options.limits.rays = rays;
     options.seed = seed;
@@ -84,14 +86,15 @@ double ceiling_irradiance(const Solution& s) {
     return sum / area;
 }
 
-class HalfDarkFloor : public testing::TestWithParam<std::tuple<const char*, Halves>> {
+class HalfDarkFloor : public testing::TestWithParam<std::tuple<std::string, Halves>> {
   protected:
-    const char* method() const { return std::get<0>(GetParam()); }
+    std::string method() const { return std::get<0>(GetParam()); }
     Halves halves() const { return std::get<1>(GetParam()); }
 };
 INSTANTIATE_TEST_SUITE_P(MethodsThatRefine, HalfDarkFloor,
                          testing::Combine(testing::Values("hsrr", "hwdrs", "hr", "photon-mesh"),
-                                          testing::Values(Halves::reflect, Halves::emit)));
+                                          testing::Values(Halves::reflect, Halves::emit)),
+                         printed_name);
 
 /// The dark half of the floor is under no lamp, or is dark itself. If the mean covered both halves, or the lit half
 /// were dark, the ceiling would receive different light.

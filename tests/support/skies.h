@@ -17,6 +17,7 @@ struct KnownSky {
     std::function<double(const V3d&)> radiance;
     std::function<double(const V3d&)> irradiance;  ///< On an unobstructed plane with this normal.
 };
+inline void PrintTo(const KnownSky& sky, std::ostream* out) { *out << sky.name; }
 
 /// Returns CIE skies of several types, with and without a ground, including a sky with its zenith along y; maps of few
 /// and many texels, some of them turned.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ostream>
+
 #include "interflect/scene.h"
 
 namespace interflect::testing_support {
@@ -10,6 +12,7 @@ Scene textured_furnace(const Rgb& radiosity);
 
 /// Meaning of the two halves of a texture: reflectance 0 and 0.8, or exitance 0 and 100 lm/m^2.
 enum class Halves { reflect, emit };
+inline void PrintTo(Halves halves, std::ostream* out) { *out << (halves == Halves::reflect ? "reflect" : "emit"); }
 
 /// Makes a room of 4 x 2 x 2 m. Its floor, one patch, is dark for x < 2 m, by a texture. A ceiling lamp hangs over the
 /// other half, unless the floor emits.

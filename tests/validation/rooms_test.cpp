@@ -12,6 +12,7 @@
 #include "interflect/load.h"
 #include "interflect/prepare.h"
 #include "interflect/solution.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/scenes.h"
 #include "tests/validation/placement.h"
 
@@ -25,7 +26,8 @@ constexpr double pi = std::numbers::pi;
 constexpr double unshot = 1e-3;
 
 class ClosedRoom : public testing::TestWithParam<double> {};  // rho
-INSTANTIATE_TEST_SUITE_P(Rho, ClosedRoom, testing::Values(0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95));
+INSTANTIATE_TEST_SUITE_P(Rho, ClosedRoom, testing::Values(0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95),
+                         printed_name);
 
 /// All surfaces emit M and reflect rho: E = M / (1 - rho) everywhere.
 TEST_P(ClosedRoom, ThatShinesAllAround) {
