@@ -12,6 +12,7 @@
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/load.h"
 #include "tests/formats/read_faults.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -518,6 +519,7 @@ TEST(Rad, FilesThatIncludeThemselvesOrLeaveTheFolderAreRefused) {
 }
 
 TEST(Rad, FilesThatMultiplyEachOtherAreRefusedInTime) {
+    RELEASE_ONLY();
     const TemporaryFolder folder;
     std::string ten;
     for (int i = 0; i < 10; ++i) ten += "!xform next.rad\n";

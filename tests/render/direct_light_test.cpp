@@ -18,6 +18,7 @@
 #include "interflect/render/gauges/gauge_light.h"
 #include "interflect/render/lights/unoccluded_light.h"
 #include "interflect/solve.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
@@ -78,6 +79,7 @@ INSTANTIATE_TEST_SUITE_P(SamplesAndTarget, BelowAPlate,
 
 TEST_P(BelowAPlate, DirectLightIsUnbiased) {
     const auto [samples, target] = GetParam();
+    RELEASE_ONLY_IF(samples > 2 || target < 1e-3);
     const Scene scene = below_a_plate();
     const RayCaster ray_caster(scene);
     const TracedScene traced(scene, ray_caster);
@@ -99,6 +101,7 @@ TEST_P(BelowAPlate, DirectLightIsUnbiased) {
 
 /// The same for pixels.
 TEST(Hybrid, DirectLightOfPixelsIsUnbiasedBelowAPlate) {
+    RELEASE_ONLY();  // see Hybrid.SunOutsideAddsNoNoise
     Scene scene = below_a_plate();
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 10'000}});

@@ -14,6 +14,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/render/reflections/known_light.h"
 #include "interflect/solve.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
@@ -46,6 +47,7 @@ const View into_corner{"corner", {3.6, 2.7, 1.6}, {0.4, 0.3, 0.5}, {0, 0, 1}, 60
 /// The mean agrees within 0.5%. A solution that is 10% brighter raises the indirect light accordingly, but not the
 /// direct light.
 TEST(Gather, HasTheMeanOfPathTracing) {
+    RELEASE_ONLY();
     const Scene scene = furnished_room();
     const RayCaster ray_caster(scene);
     Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 2'000'000}});

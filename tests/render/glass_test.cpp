@@ -12,6 +12,7 @@
 #include "interflect/measure.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
@@ -67,6 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Method, EveryMethod, testing::ValuesIn([] {
 /// Seen to fail when rays, lines and links pass unfiltered, and when panes filter twice. hr has one element per patch,
 /// because its smaller adjacent elements exchange too much.
 TEST_P(EveryMethod, FillsAFurnaceThroughGlass) {
+    RELEASE_ONLY();
     const Scene scene = divided_furnace();
     const RayCaster ray_caster(scene);
     SolveOptions options{.method = find_method(GetParam()), .limits = {.rays = 1'000'000}};
@@ -85,6 +87,7 @@ TEST_P(EveryMethod, FillsAFurnaceThroughGlass) {
 /// arrival. Did not end, and filled the memory, while walks survived by the reflectance alone: 28 panes that reflect
 /// 10% continued up to 2.8 walks for each one, in addition to those on the walls.
 TEST(Glass, ManyPanesInARowDoNotMultiplyWalks) {
+    RELEASE_ONLY();  // see Glass.FiltersLightByItsColour
     Scene scene = closed_box({2, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(30)}});
     const std::uint32_t glass = add_glass(scene, Rgb(0.9f), Rgb(0.1f));
     for (int pane = 0; pane < 28; ++pane)
@@ -97,6 +100,7 @@ TEST(Glass, ManyPanesInARowDoNotMultiplyWalks) {
 }
 
 TEST(Glass, PicturesOfAFurnaceAreEven) {
+    RELEASE_ONLY();  // see Glass.FiltersLightByItsColour
     const Scene scene = divided_furnace();
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 500'000}});

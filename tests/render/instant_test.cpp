@@ -16,6 +16,7 @@
 #include "interflect/render.h"
 #include "interflect/render/reflections/virtual_lights.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 #include "tests/support/statistics.h"
@@ -98,6 +99,7 @@ class InstantFurnace : public testing::TestWithParam<float> {};
 INSTANTIATE_TEST_SUITE_P(Rho, InstantFurnace, testing::Values(0.1f, 0.5f, 0.9f), testing_support::printed_name);
 
 TEST_P(InstantFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
+    RELEASE_ONLY();  // see Instant.SameBitsForAnyNumberOfThreads
     const Rgb rho = Rgb(1, 0.9f, 0.5f) * GetParam(), exitance(2, 1, 0.5f);
     const Scene box = closed_box(V3f(1, 2, 3), 2, {{"wall", rho, exitance}});
     const RgbD expected = RgbD(exitance) / (RgbD(1, 1, 1) - RgbD(rho)) / pi;
@@ -192,6 +194,7 @@ struct House {
 };
 
 TEST(Instant, AgreesWithPathTracing) {
+    RELEASE_ONLY();  // see Instant.IsUnbiasedWithTextures
     const House house;
     PictureOptions options{.width = 16, .height = 9, .samples = 128, .light_walks = 1024};
     for (const bool mirrors : {true, false}) {
@@ -205,6 +208,7 @@ TEST(Instant, AgreesWithPathTracing) {
 
 /// With few lights, their positions cause most of the error, and all pixels of a batch share it.
 TEST(Instant, StandardErrorIncludesThatOfTheLights) {
+    RELEASE_ONLY();  // see Instant.SameBitsForAnyNumberOfThreads
     const Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.8f), Rgb(1)}});
     const auto seen =
         pictures(Shading::instant, box, corner, {.width = 16, .height = 9, .samples = 64, .light_walks = 64}, 48);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "interflect/base/random.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -63,6 +64,7 @@ Scene many_luminaires() {
 /// Seen to fail with cones that are too narrow (acos of half the share), without the probability of a candidate, and
 /// when a candidate always replaces the previous one.
 TEST(LuminaireChoice, BringsWhatAllLuminairesBring) {
+    RELEASE_ONLY();
     const Scene scene = many_luminaires();
     const LuminaireChoice choice(scene);
     for (std::uint64_t k = 0; k < 12; ++k) {

@@ -11,6 +11,7 @@
 
 #include "interflect/base/random.h"
 #include "interflect/render/lights/unoccluded_light.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -55,6 +56,7 @@ INSTANTIATE_TEST_SUITE_P(
 /// oblique one. The density of a direction is the same when it is found by chance.
 TEST_P(PatchPoints, GiveTheIrradianceOfThePolygon) {
     const auto& [name, corners, x] = GetParam();
+    RELEASE_ONLY_IF(std::string_view(name) != "SquareFromAfar" && std::string_view(name) != "Triangle");
     const Scene scene = scene_of(corners);
     const PatchGeometry patch(scene, scene.patches[0]);
     for (const V3f& n : {V3f(0, 0, 1), V3f(0.6f, 0.5f, 0.3f).normalized()}) {

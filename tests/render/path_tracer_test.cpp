@@ -22,6 +22,7 @@
 #include "interflect/core.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
@@ -102,6 +103,7 @@ class PathFurnace : public testing::TestWithParam<float> {
 INSTANTIATE_TEST_SUITE_P(Rho, PathFurnace, testing::Values(0.1f, 0.5f, 0.9f), testing_support::printed_name);
 
 TEST_P(PathFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
+    RELEASE_ONLY();
     const Pictures seen = pictures();
     EXPECT_GT(seen.p_value(expected()), false_alarm);
     EXPECT_LT(seen.p_value(expected(), 1.02), false_alarm);
@@ -134,6 +136,7 @@ TEST(PathTracer, NoRayLeavesAClosedBox) {
 
 /// Paths of a hundred bounces: a limit on bounces, or roulette without scaling of the survivors, fails here.
 TEST(PathTracer, IsUnbiasedInAnAlmostWhiteBox) {
+    RELEASE_ONLY();  // see PathTracer.SameBitsForAnyNumberOfThreads
     const Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.99f, 0.99f, 0.99f), Rgb(1, 1, 1)}});
     const View view{"corner", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2.8f), V3f(0, 0, 1), 80};
     const Pictures seen(box, view, {.width = 2, .height = 2, .samples = 128}, 16);
@@ -329,6 +332,7 @@ TEST(PathTracer, SameBitsForAnyNumberOfThreads) {
 /// The spread of the pictures matches their reported standard errors. In each run, the mean over the pixels of the
 /// squared deviation from the mean picture, less the squared standard error, has expectation 0.
 TEST(PathTracer, StandardErrorIsHonest) {
+    RELEASE_ONLY();  // see PathTracer.SameBitsForAnyNumberOfThreads
     const Room room;
     const Pictures seen(room.scene, room.view, {.width = 16, .height = 9, .samples = 64}, 48);
     const auto p_value = [&](double factor) {
@@ -354,6 +358,7 @@ TEST(PathTracer, StandardErrorIsHonest) {
 }
 
 TEST(PathTracer, ReachesItsTargetWithoutBias) {
+    RELEASE_ONLY();  // see PathTracer.SameBitsForAnyNumberOfThreads
     const Room room;
     const PictureOptions fixed{.width = 16, .height = 9, .samples = 512};
     PictureOptions adaptive = fixed;

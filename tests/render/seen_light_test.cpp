@@ -12,6 +12,7 @@
 #include "interflect/base/random.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render/gauges/gauge_light.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {
@@ -79,6 +80,7 @@ TEST(SeenLight, IsThatOfARoomAlsoIfTheSunShinesOutside) {
 
 /// Thousands of bright patches get about one test ray each, and many get 0, but all must stay likely.
 TEST(SeenLight, SamplesManySmallPatchesAlike) {
+    RELEASE_ONLY();
     Scene scene = closed_box({4, 4, 3}, 4, {Material{"", Rgb(0.5f)}});
     const auto dim = static_cast<std::uint32_t>(scene.patches.size());
     add_rectangle(scene, {1, 1, 2.9f}, {0, 2, 0}, {2, 0, 0}, 0, 400, 400);

@@ -18,6 +18,7 @@
 #include "interflect/measure.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 #include "tests/support/statistics.h"
@@ -224,6 +225,7 @@ TEST(Sun, HasAPenumbra) {
 
 /// The irradiance three metres below a skylight is the integral over the visible part of the sky.
 TEST(SkyThroughAnOpening, IsTheIntegralOverIt) {
+    RELEASE_ONLY();
     for (const KnownSky& sky : known_skies()) {
         Scene scene = under({sky.luminaire});
         const std::uint32_t black = 0;

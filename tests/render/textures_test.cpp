@@ -13,6 +13,7 @@
 #include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shadings.h"
 #include "tests/support/statistics.h"
@@ -101,6 +102,7 @@ TEST(PathTracedRamp, TexelsAreWhereTheyBelong) {
 /// A lamp with a bright and a dark half, close to the floor, so the half of a sampled point matters: as two lamps
 /// without texture, but for 0.3% by the interpolation between the two texels. Noise 0.05%.
 TEST(PathTracedLamp, IsAsTwoLamps) {
+    RELEASE_ONLY();
     const View view{"ceiling", V3f(3, 1, 0.5f), V3f(3.5f, 1, 2), V3f(1, 0, 0), 40};
     const PictureOptions options{.width = 8, .height = 8, .samples = 256};
     const auto mean_of_runs = [&](const Scene& scene) {
@@ -126,6 +128,7 @@ double block_difference(const Image& a, const Image& b) {
 
 /// A random room. The difference is noise and the error of the mesh; wrong texels would exceed it.
 TEST(TexturedRoom, IsAsThePathTracerSeesIt) {
+    RELEASE_ONLY();
     Scene scene = make_boxes({.boxes = 6, .seed = 3, .texture = true});
     const RayCaster ray_caster(scene);
     const View view = scene.views[0];

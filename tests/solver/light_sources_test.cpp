@@ -20,6 +20,7 @@
 #include "tests/solver/room_with_window.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/skies.h"
 #include "tests/support/statistics.h"
@@ -152,6 +153,7 @@ class LightSources : public testing::TestWithParam<SourceAndMethod> {};
 
 TEST_P(LightSources, LightAnOpenFloor) {
     const auto& [source, method] = GetParam();
+    RELEASE_ONLY_IF(source.name != "point");
     const Scene scene = open_floor(source.luminaire);
     const RayCaster ray_caster(scene);
     std::vector<std::vector<double>> irradiance(scene.patches.size());
@@ -178,6 +180,7 @@ INSTANTIATE_TEST_SUITE_P(All, LightSources, testing::ValuesIn(all_pairs()), prin
 /// must know the distance of the lamp for each: the power of an accepted ray is spread over the whole element. Seen to
 /// fail if the lamp is assumed to face each ray.
 TEST(PointLightNearALargeFace, IsReceivedWhereItFalls) {
+    RELEASE_ONLY();
     Scene scene;
     scene.objects = {""};
     add_rectangle(scene, {-1, -1, 0.5f}, {4, 0, 0}, {0, 3, 0}, add_material(scene, Rgb(0.5f), Rgb(0)));
@@ -209,6 +212,7 @@ TEST(PointLightNearALargeFace, IsReceivedWhereItFalls) {
 /// of the outer sides, which only the sky lights, is exact. Seen to fail if other leaves of a patch do not compensate
 /// for leaves with too many rays.
 TEST(WellDistributedRaysOnAFineMesh, GiveTheSkyItsShare) {
+    RELEASE_ONLY();
     Scene scene = room_with_window(Rgb(1000));
     scene.materials[0].reflectance = Rgb(0.5f);
     SolveOptions options{.method = find_method("hwdrs"), .limits = {.rays = 200'000}};

@@ -16,6 +16,7 @@
 #include "interflect/luminaires/illumination.h"
 #include "interflect/solve.h"
 #include "tests/support/form_factors.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -291,6 +292,7 @@ INSTANTIATE_TEST_SUITE_P(All, Turned,
 
 /// Expects E = I(theta, C) cos(theta) / r^2, averaged over each patch by the midpoint rule.
 TEST_P(Turned, LightAFloorAsTheFileSays) {
+    RELEASE_ONLY();
     const Turn& turn = GetParam();
     Scene scene;
     scene.objects = {""};

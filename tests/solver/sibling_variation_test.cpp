@@ -23,6 +23,7 @@
 #include "interflect/solver/refinement/variance_refinement.h"
 #include "interflect/solver/transport/received.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -264,6 +265,7 @@ TEST(MergeDetails, IsUnbiasedForYoungSiblings) {
 /// difference: the dark ones then vary by 0.2 between trials. The shares depend on the
 /// data, so estimates are biased, here by 1.5% of the bright sibling after 20 contributions; their mean is not.
 TEST(MergeDetails, DoesNotSpreadTheNoiseOfABrightSiblingToDarkOnes) {
+    RELEASE_ONLY();  // see MergeDetails.IsUnbiasedForYoungSiblings
     const auto merged = lone_bright_siblings(
         1e6f, 100, [](const interflect::SolverState& state, auto&&... a) { merge_independent(state, a...); });
     for (std::size_t k = 0; k < 4; ++k) {

@@ -12,6 +12,7 @@
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/light/radiosity.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 #include "tests/support/textured_scenes.h"
@@ -41,6 +42,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, TexturesOfMethod,
 
 /// H is 2 1 3 everywhere. A deviation of 2% would be noticed.
 TEST_P(TexturesOfMethod, FurnaceHasTheIrradianceOfItsRadiosity) {
+    RELEASE_ONLY();  // see TexturesOfMethod.OfOneValueAreAsTheMaterial
     constexpr int runs = 12;
     const Rgb expected(2, 1, 3);
     const Scene scene = textured_furnace(expected);
@@ -99,6 +101,7 @@ INSTANTIATE_TEST_SUITE_P(MethodsThatRefine, HalfDarkFloor,
 /// The dark half of the floor is under no lamp, or is dark itself. If the mean covered both halves, or the lit half
 /// were dark, the ceiling would receive different light.
 TEST_P(HalfDarkFloor, IsAsTwoPatches) {
+    RELEASE_ONLY();
     const Solution textured = solved(half_dark_floor(halves()), method());
     const Solution two = solved(half_dark_floor_of_two_patches(halves()), method());
     EXPECT_NEAR(ceiling_irradiance(textured) / ceiling_irradiance(two), 1, 0.015);
@@ -107,6 +110,7 @@ TEST_P(HalfDarkFloor, IsAsTwoPatches) {
 }
 
 TEST(Textures, MeanReflectanceWouldBeNoticed) {
+    RELEASE_ONLY();
     Scene mean = half_dark_floor(Halves::reflect);
     mean.textures[0].texels.assign(mean.textures[0].texels.size(), Rgb(0.5f));
     const Solution grey = solved(mean, "hsrr"), two = solved(half_dark_floor_of_two_patches(Halves::reflect), "hsrr");

@@ -20,6 +20,7 @@
 #include "interflect/image/visual_adaptation.h"
 #include "interflect/solve.h"
 #include "interflect/solver/refinement/variance_refinement.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 #include "tests/support/textured_scenes.h"
 
@@ -210,6 +211,7 @@ Solution solved(RefinementCriterion criterion, std::uint64_t seed = 1) {
 }
 
 TEST(PerceptualRefinement, NeedsFewerElements) {
+    RELEASE_ONLY();
     const Solution variance = solved(RefinementCriterion::variance), visible = solved(RefinementCriterion::perceptual);
     EXPECT_LT(visible.iterations.back().elements, 0.85 * static_cast<double>(variance.iterations.back().elements));
 }
