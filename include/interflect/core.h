@@ -50,9 +50,9 @@ bool is_finite(const Imath::Vec3<T>& c) {
 /// One fault of an input.
 struct Fault {
     std::string text;  ///< A sentence for the user, with the expected and the found value, without the file.
-    std::string object =
-        {};  ///< Name of the material, light, view, texture or object at fault, or "patch 3"; or empty.
-    /// Option that is wrong or too strict, such as "max_patches" of ReadOptions; or empty.
+    /// Name of the material, light, view, texture or object at fault, or "patch 3"; or empty.
+    std::string object = {};
+    /// Name of an option that is wrong or too strict, such as that of ReadOptions::max_patches; or empty.
     std::string setting = {};
     std::filesystem::path file = {};  ///< Empty if no file applies.
     std::int64_t line = 0;            ///< 1-based; 0 if no line applies.

@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <utility>
 
 #include "interflect/load.h"
 
