@@ -184,7 +184,7 @@ std::uint32_t RadMaterials::material(std::uint32_t modifier) {
     Modifier& m = modifiers_[surface];
     const Type& type = types().at(m.primitive.type);
     if (type.role == Role::nothing) {
-        warn("unsupported-modifier", fmt::format("what has the material {} is left out", m.primitive.type), m);
+        warn("unsupported-modifier", fmt::format("faces of the material {} are left out", m.primitive.type), m);
         return none;
     }
     if (m.material != none) return m.material;

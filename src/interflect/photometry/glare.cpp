@@ -102,7 +102,7 @@ class SourcePlaces {
     }
 
     /// CIE 117 rates a luminaire by the direction of its centre: L = I / A_p, omega = A_p / r^2 and one p. Samples over
-    /// the opening find what hides it.
+    /// the opening find its visible part.
     void add_luminaire(const Luminaire& luminaire, const MeasuredLight& light) {
         constexpr int per_side = 8, count = per_side * per_side;
         if (light.web->opening.is_point()) return;

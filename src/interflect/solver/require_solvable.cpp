@@ -42,7 +42,7 @@ void require_solvable(const Scene& scene, const SolveOptions& o) {
         const auto add = [&](const char* text) {
             faults.push_back({fmt::format("view '{}': {}", v.view.name, text), v.view.name, "views"});
         };
-        if (v.view.extent != 0) add("orthographic, expected none or perspective ones");
+        if (v.view.extent != 0) add("it is orthographic; expected perspective views");
         if (!(v.weight > 0 && std::isfinite(v.weight) && v.aspect > 0 && std::isfinite(v.aspect) && v.pixel_rows > 0))
             add("weight, aspect and pixel_rows: expected finite numbers above 0");
     }
