@@ -8,7 +8,7 @@ LONGEST = 100  # characters, with the folder
 def faults(folder: str, listing: str) -> list[str]:
     """Returns every violation among the tests of a folder as 'name: problem'.
 
-    @param listing  What the program prints with --gtest_list_tests.
+    @param listing  The output of the program with --gtest_list_tests.
     """
     found = []
     suite = ""

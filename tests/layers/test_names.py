@@ -1,5 +1,7 @@
-"""Tests have names as the rules demand, and the checker finds each violation. INTERFLECT_TEST_PROGRAMS contains the test
-programs, separated as in PATH. Programs that are not built yet are left out."""
+"""Tests have names as the rules demand, and the checker finds each violation.
+
+INTERFLECT_TEST_PROGRAMS contains the test programs, separated as in PATH. Programs that are not built yet are left out.
+"""
 
 import os
 import subprocess
@@ -42,10 +44,12 @@ class Checker(unittest.TestCase):
         self.assert_only_fault(f"Solve.\n  {'Is' * 50}\n", "expected at most 100")
 
     def test_bytes(self):
-        self.assert_only_fault("A/B.\n  C/near  # GetParam() = (4-byte object <00-00 00-00>, 1)\n", "solver.A/B.C/near: ")
+        listing = "A/B.\n  C/near  # GetParam() = (4-byte object <00-00 00-00>, 1)\n"
+        self.assert_only_fault(listing, "solver.A/B.C/near: its parameter is printed as bytes")
 
     def test_address(self):
-        self.assert_only_fault('A/B.\n  C/near  # GetParam() = (0x55e367e0e71b pointing to "near", 1)\n', "as an address")
+        listing = 'A/B.\n  C/near  # GetParam() = (0x55e367e0e71b pointing to "near", 1)\n'
+        self.assert_only_fault(listing, "as an address")
 
     def test_index(self):
         self.assert_only_fault("A/B.\n  C/1  # GetParam() = 0.5\n", "ends with an index")
