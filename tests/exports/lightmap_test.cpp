@@ -15,6 +15,7 @@
 #include "interflect/solve.h"
 #include "tests/exports/lightmaps.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/refusals.h"
 #include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 
@@ -112,6 +113,18 @@ INSTANTIATE_TEST_SUITE_P(Sizes, RoomLightmap,
 // A lightmap with texels smaller than the elements matches smooth shading, at borders too. The difference is that of
 // bilinear interpolation between texels: about a tenth of the change over an element. Fails with charts that are
 // shifted by half a texel, mirrored or stretched.
+/// Packing them takes longer than a fast test may.
+TEST(Lightmap, TooFineOnesAreRefusedBeforeTheyArePacked) {
+    Scene scene;
+    add_material(scene, Rgb(0.5f), Rgb(1));
+    for (int i = 0; i < 10'000; ++i)
+        add_rectangle(scene, V3f(0, 0, 0.01f * static_cast<float>(i)), V3f(1, 0, 0), V3f(0, 0.5f, 0), 0);
+    const Solution solution = solve(scene, RayCaster(scene), {.limits = {.rays = 1000}});
+    ExportOptions options = at(1e5f);
+    options.lightmap->max_bytes = 1 << 30;
+    EXPECT_EQ(testing_support::refused_setting([&] { make_lightmap(scene, solution, options); }), "texels_per_metre");
+}
+
 TEST(Lightmap, IsWhatSmoothShadingHas) {
     const Scene scene = turned_floor();
     const Solution solution = solution_of(

@@ -294,12 +294,16 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     lightmap.charts = make_charts(scene, shown_patches(scene, solution), lightmap_options, options.warnings);
     lightmap.chart_of_patch.assign(scene.patches.size(), none);
     lightmap.index_in_chart.assign(scene.patches.size(), none);
+    double image_texels = 0, chart_texels = 0;
+    for (const LightmapChart& chart : lightmap.charts) chart_texels += texel_count(chart, lightmap_options.gutter);
+    const auto require_memory_of_images = [&](double texels) {
+        require_memory(texels, chart_texels, lightmap_options, options.bake.shading, solution.groups.size());
+    };
+    require_memory_of_images(chart_texels);  // the images have more; packing so many would take minutes
     const std::vector<Imath::V2i> sizes =
         pack_charts(lightmap.charts, lightmap_options.gutter, lightmap_options.max_size);
-    double image_texels = 0, chart_texels = 0;
     for (const Imath::V2i& size : sizes) image_texels += static_cast<double>(size.x) * size.y;
-    for (const LightmapChart& chart : lightmap.charts) chart_texels += texel_count(chart, lightmap_options.gutter);
-    require_memory(image_texels, chart_texels, lightmap_options, options.bake.shading, solution.groups.size());
+    require_memory_of_images(image_texels);
     for (const Imath::V2i& size : sizes) lightmap.images.emplace_back(size.x, size.y);
     LightmapTexels texels(lightmap_options);
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {
