@@ -6,7 +6,7 @@
 
 #include "interflect/formats/obj.h"
 #include "interflect/load.h"
-#include "tests/formats/read_faults.h"
+#include "tests/support/refusals.h"
 
 namespace interflect {
 

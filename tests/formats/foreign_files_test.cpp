@@ -11,8 +11,8 @@
 #include "interflect/formats/ies.h"
 #include "interflect/load.h"
 #include "tests/formats/gltf_builder.h"
-#include "tests/formats/read_faults.h"
 #include "tests/support/photometry_files.h"
+#include "tests/support/refusals.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -13,8 +13,8 @@
 #include "interflect/image/image_codecs.h"
 #include "interflect/image/srgb.h"
 #include "interflect/load.h"
-#include "tests/formats/read_faults.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/refusals.h"
 #include "tests/support/scenes.h"
 
 namespace interflect {

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "interflect/geometry/patch_geometry.h"
-#include "tests/formats/read_faults.h"
+#include "tests/support/refusals.h"
 
 namespace interflect {
 

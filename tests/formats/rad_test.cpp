@@ -11,7 +11,7 @@
 #include "interflect/formats/rad_materials.h"
 #include "interflect/geometry/patch_geometry.h"
 #include "interflect/load.h"
-#include "tests/formats/read_faults.h"
+#include "tests/support/refusals.h"
 #include "tests/support/release_only.h"
 #include "tests/support/scenes.h"
 

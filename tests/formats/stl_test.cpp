@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "interflect/geometry/patch_geometry.h"
-#include "tests/formats/read_faults.h"
+#include "tests/support/refusals.h"
 
 namespace interflect {
 

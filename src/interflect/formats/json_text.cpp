@@ -6,6 +6,7 @@
 #include <string>
 
 #include "interflect/core.h"
+#include "interflect/formats/json_events.h"
 
 namespace interflect::detail {
 
@@ -14,22 +15,10 @@ namespace {
 using nlohmann::json;
 
 /// Finds error positions, which some exceptions lack.
-class FaultFinder : public nlohmann::json_sax<json> {
+class FaultFinder : public JsonEvents<json> {
   public:
     std::size_t offset() const { return offset_; }
 
-    bool null() override { return true; }
-    bool boolean(bool) override { return true; }
-    bool number_integer(number_integer_t) override { return true; }
-    bool number_unsigned(number_unsigned_t) override { return true; }
-    bool number_float(number_float_t, const string_t&) override { return true; }
-    bool string(string_t&) override { return true; }
-    bool binary(binary_t&) override { return true; }
-    bool start_object(std::size_t) override { return true; }
-    bool key(string_t&) override { return true; }
-    bool end_object() override { return true; }
-    bool start_array(std::size_t) override { return true; }
-    bool end_array() override { return true; }
     bool parse_error(std::size_t offset, const std::string&, const json::exception&) override {
         offset_ = offset;
         return false;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "interflect/base/escapes.h"
+#include "interflect/formats/json_events.h"
 
 namespace interflect::detail {
 
@@ -22,7 +23,7 @@ void change_values(Json& json, const std::string& name, const Change& change) {
 
 /// Ends a reading at a structure that is too large for Json. A callback of Json::parse() could do the same, but visits
 /// all values before each object of an array.
-class Limits : public nlohmann::json_sax<Json> {
+class Limits : public JsonEvents<Json> {
   public:
     bool are_exceeded() const { return exceeded_; }
     static std::string text() {
@@ -30,19 +31,11 @@ class Limits : public nlohmann::json_sax<Json> {
                            most_members);
     }
 
-    bool null() override { return true; }
-    bool boolean(bool) override { return true; }
-    bool number_integer(number_integer_t) override { return true; }
-    bool number_unsigned(number_unsigned_t) override { return true; }
-    bool number_float(number_float_t, const string_t&) override { return true; }
-    bool string(string_t&) override { return true; }
-    bool binary(binary_t&) override { return true; }
     bool start_object(std::size_t) override { return open(); }
-    bool key(string_t&) override { return !(exceeded_ = ++members_.back() > most_members); }
+    bool key(std::string&) override { return !(exceeded_ = ++members_.back() > most_members); }
     bool end_object() override { return close(); }
     bool start_array(std::size_t) override { return open(); }
     bool end_array() override { return close(); }
-    bool parse_error(std::size_t, const std::string&, const Json::exception&) override { return false; }
 
   private:
     // The description of a solution has 20 levels and 30 members at most.
