@@ -20,7 +20,7 @@ namespace interflect::detail {
 /// It refuses invalid numbers, with which a run would crash or never end.
 class StateArchive {
   public:
-    /// For writing. Values must not change until written.
+    /// For writing, which changes no value. Values must not change until written.
     StateArchive() = default;
     /// For reading.
     explicit StateArchive(std::map<std::string, std::vector<std::byte>> arrays)
@@ -49,8 +49,8 @@ class StateArchive {
             copy(taken(name), bytes, name);
     }
     void unchecked(const std::string& name, bool& value) {
-        auto byte = static_cast<std::uint8_t>(value);
-        byte = by_value(name, std::vector{byte}).at(0);
+        const std::uint8_t byte = by_value(name, std::vector{static_cast<std::uint8_t>(value)}).at(0);
+        if (!reads_) return;  // several threads may write one state
         require_range(byte <= 1, name);
         value = byte == 1;
     }
