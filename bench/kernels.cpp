@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/points.h"
+#include "interflect/base/numbers/points.h"
 #include "interflect/elements/forest.h"
 #include "interflect/generators/maze.h"
 #include "interflect/ray_caster.h"

@@ -1,5 +1,5 @@
 // Errors after a change of views, and of a new run with as many rays, and the share of the rays that reach the error of
-// the new run after the change, with 95% intervals by the jackknife over seeds (docs/results.md, Kept rays):
+// the new run after the change, with 95% intervals by the jackknife over seeds (docs/method/results.md, Kept rays):
 //
 //     build/release/bin/view_change SCENE FROM TO RAYS SEEDS METHOD...
 //

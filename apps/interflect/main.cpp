@@ -4,12 +4,12 @@
 #include <exception>
 #include <string>
 
-#include "apps/interflect/commands.h"
-#include "apps/interflect/crew.h"
-#include "apps/interflect/faults.h"
-#include "apps/interflect/messages.h"
-#include "apps/interflect/signals.h"
-#include "apps/interflect/standard_streams.h"
+#include "apps/interflect/commands/commands.h"
+#include "apps/interflect/console/faults.h"
+#include "apps/interflect/console/messages.h"
+#include "apps/interflect/console/standard_streams.h"
+#include "apps/interflect/processes/crew.h"
+#include "apps/interflect/processes/signals.h"
 #include "interflect/core.h"
 
 namespace {

@@ -1,4 +1,4 @@
-"""An experiment: NAME.toml defines the runs, NAME.py beside it draws the results."""
+"""An experiment: NAME.toml in paper/ or beyond/ defines the runs, NAME.py beside it draws the results."""
 
 import importlib
 import tomllib
@@ -35,8 +35,9 @@ class Experiment:
 
     def __init__(self, name: str, config: Path | None = None, quick: bool = False):
         self.name = name
-        self.module: ModuleType = importlib.import_module(name.replace("-", "_"))
-        self.config = read_config(config or FOLDER / f"{name}.toml", quick)
+        folder = "paper" if name in PAPER else "beyond"
+        self.module: ModuleType = importlib.import_module(f"{folder}.{name.replace('-', '_')}")
+        self.config = read_config(config or FOLDER / folder / f"{name}.toml", quick)
         self.entries: list[Entry] = self.module.entries(self.config)
 
     def prepare(self) -> None:

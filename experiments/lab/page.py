@@ -1,4 +1,4 @@
-"""Writes docs/results.md as a single HTML file with embedded figures."""
+"""Writes docs/method/results.md as a single HTML file with embedded figures."""
 
 import base64
 import re

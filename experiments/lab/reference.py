@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from . import program
-from .picture import luminance, read_exr
+from .analysis.picture import luminance, read_exr
 
 
 class Reference:

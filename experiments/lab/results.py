@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from . import statistics
+from .analysis import statistics
 from .store import COLUMNS
 
 Row = dict[str, str | float]

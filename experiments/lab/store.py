@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from .picture import noise_floor
+from .analysis.picture import noise_floor
 from .program import ROOT, Finished, Program, expanded, read_stats, run
 from .tasks import SHADINGS, Measure, Picture, Reference, Solve, Task, probe
 

@@ -13,11 +13,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from audit_scenes import Scene
+from measured.audit_scenes import Scene
 from lab import program, results
-from lab.baked import Baked, read_baked
-from lab.blocks import Interval
-from lab.picture import read_layer
+from lab.analysis.baked import Baked, read_baked
+from lab.analysis.blocks import Interval
+from lab.analysis.picture import read_layer
 
 from .page import COLUMNS, read_rows
 from .pictures import Picture, Truth, read_picture

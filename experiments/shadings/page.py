@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 from lab import results
-from lab.blocks import Interval
+from lab.analysis.blocks import Interval
 
 from .scenes import KINDS
 

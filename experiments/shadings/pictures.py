@@ -7,10 +7,11 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from audit import widened
-from lab import blocks, program
-from lab.blocks import Interval, Layout
-from lab.picture import read_exr, read_layer
+from measured.audit import widened
+from lab import program
+from lab.analysis import blocks
+from lab.analysis.blocks import Interval, Layout
+from lab.analysis.picture import read_exr, read_layer
 from lab.reference import box_mean
 
 from .runs import Run

@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from audit_scenes import Scene
-from lab import blocks
-from lab.baked import Baked
-from lab.blocks import Interval, Layout
+from measured.audit_scenes import Scene
+from lab.analysis import blocks
+from lab.analysis.baked import Baked
+from lab.analysis.blocks import Interval, Layout
 
 REACH = 4.0  # largest distance from the point that the view looks at [m]
 CELL = 0.45  # side of a block [m]: 9 texels at 20 a metre

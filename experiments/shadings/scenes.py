@@ -6,7 +6,7 @@ import random
 from collections.abc import Callable
 
 import numpy as np
-from audit_scenes import Mgf, Point, Scene
+from measured.audit_scenes import Mgf, Point, Scene
 
 FIRST_SEED = 1  # of the scenes with a name of their own
 

@@ -87,7 +87,7 @@ struct ExportFormat {
                                       const ExportOptions& options);
 };
 
-/// All export formats; docs/export.md describes them.
+/// All export formats; docs/files/export.md describes them.
 extern const std::span<const ExportFormat> export_formats;
 
 /// Export format for a file name's extension, ignoring case. @throws InputError that lists the extensions.

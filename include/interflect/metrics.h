@@ -1,5 +1,5 @@
 /// @file
-/// Differences of pictures: errors of values, perceptual distance, FLIP. docs/metrics.md has the formulas.
+/// Differences of pictures: errors of values, perceptual distance, FLIP. docs/method/metrics.md has the formulas.
 #pragma once
 
 #include <array>

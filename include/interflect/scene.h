@@ -164,7 +164,7 @@ struct Scene {
     /// Unit normal of the smooth surface at every vertex, as the file has it (glTF NORMAL, OBJ vn, PLY nx ny nz, MGF
     /// n); (0, 0, 0) at vertices without one. Empty if no vertex has one. The sign is arbitrary: both sides of a face
     /// share vertices. Rays meet the flat patches; normals decide where shading is smooth and how it varies within a
-    /// patch that bends with its neighbours. Plane faces ignore them (docs/method.md, Curved surfaces).
+    /// patch that bends with its neighbours. Plane faces ignore them (docs/method/method.md, Curved surfaces).
     std::vector<V3f> normals;
     std::vector<Patch> patches;
     std::vector<Contact> contacts;  ///< Shading is discontinuous along these; see cut_at_contacts().

@@ -28,7 +28,7 @@ enum class ImportanceUse {
     full,    ///< V and all its bounces (Eq. 7): visible surfaces and their illumination.
 };
 
-/// Refinement criterion of the mesh (docs/method.md, A run).
+/// Refinement criterion of the mesh (docs/method/method.md, A run).
 enum class RefinementCriterion {
     variance,  ///< Splits elements whose children are expected to differ by more than their noise.
     /// Splits elements whose children are expected to differ visibly, and by more than their noise. Needs views and
@@ -108,7 +108,7 @@ struct ExperimentalOptions {
     /// Rays per iteration, at most max_rays_per_iteration; 0: grows with the number of rays averaged.
     std::int64_t rays_per_iteration = 0;
 
-    /// With RefinementCriterion::variance: reduces differences that are mostly noise (docs/method.md).
+    /// With RefinementCriterion::variance: reduces differences that are mostly noise (docs/method/method.md).
     bool shrinkage = true;
     /// With shrinkage: also between neighbouring patches that face alike. Method hr: links clusters of many patches.
     bool clusters = true;
@@ -130,7 +130,7 @@ struct ExperimentalOptions {
     double beta = 0.1;  ///< Fraction of power rays that ignore importance, so all light is sampled; in [0, 1].
 };
 
-/// Plan of a run. Settings have the same names in the library, on the command line and in files; see docs/design.md.
+/// Plan of a run. Settings have the same names in the library, on the command line and in files; see docs/develop/design.md.
 struct SolveOptions {
     Method method = automatic_method;
     std::vector<WeightedView> views = {};  ///< Views that define importance; without views importance is off.

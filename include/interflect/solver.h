@@ -82,7 +82,7 @@ class Solver {
     std::shared_ptr<const RayCaster> shared_ray_caster() const;
     const SolveOptions& options() const;
 
-    /// Writes the complete state to a solution file (docs/solution-file.md), through a temporary file.
+    /// Writes the complete state to a solution file (docs/files/solution-file.md), through a temporary file.
     /// @throws std::runtime_error if it cannot be written.
     void save(const std::filesystem::path& path) const;
     /// Returns the bytes of such a file without checksums, for another process of the same program.

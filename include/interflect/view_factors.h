@@ -1,5 +1,5 @@
 /// @file
-/// View factors (form factors) between groups of patches, by ray casting: docs/view-factors.md.
+/// View factors (form factors) between groups of patches, by ray casting: docs/method/view-factors.md.
 #pragma once
 
 #include <cstddef>

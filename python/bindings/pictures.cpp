@@ -2,8 +2,8 @@
 
 #include "bindings.h"
 #include "fields.h"
-#include "interflect/image/image_codecs.h"
-#include "interflect/image/srgb.h"
+#include "interflect/image/codecs/image_codecs.h"
+#include "interflect/image/codecs/srgb.h"
 #include "interflect/metrics.h"
 #include "interflect/render.h"
 #include "long_work.h"

@@ -3,7 +3,7 @@
 #include "argument.h"
 #include "bindings.h"
 #include "fields.h"
-#include "interflect/scene/view.h"
+#include "interflect/scene/core/view.h"
 #include "scene_arrays.h"
 
 namespace interflect::python {

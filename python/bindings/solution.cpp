@@ -6,7 +6,7 @@
 
 #include "argument.h"
 #include "bindings.h"
-#include "interflect/base/pending_file.h"
+#include "interflect/base/files/pending_file.h"
 #include "long_work.h"
 #include "settings.h"
 

@@ -7,9 +7,9 @@
 
 #include "bindings.h"
 #include "fields.h"
-#include "interflect/base/machine_memory.h"
+#include "interflect/base/memory/machine_memory.h"
 #include "interflect/checks/memory_need.h"
-#include "interflect/geometry/split.h"
+#include "interflect/geometry/surfaces/split.h"
 #include "interflect/prepare.h"
 #include "interflect/solver.h"
 #include "long_work.h"

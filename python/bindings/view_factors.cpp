@@ -7,7 +7,7 @@
 #include "argument.h"
 #include "bindings.h"
 #include "documented.h"
-#include "interflect/base/pending_file.h"
+#include "interflect/base/files/pending_file.h"
 #include "interflect/view_factors/write_npz.h"
 #include "long_work.h"
 #include "settings.h"

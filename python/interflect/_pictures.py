@@ -114,7 +114,7 @@ def tonemap(image: ArrayLike, *, exposure: float | None = None, curve: str = "sr
     Args:
         image: (height, width, 3): radiance; [cd/m^2] for the last three curves.
         exposure: [stops]; a luminance of 2^-exposure becomes 1. Default: automatic, for a natural impression of a lit room.
-        curve: srgb, reinhard, filmic, agx, ward, tumblin or ferwerda (docs/tone-mapping.md).
+        curve: srgb, reinhard, filmic, agx, ward, tumblin or ferwerda (docs/light/tone-mapping.md).
         display_luminance: White of the display [cd/m^2], for the last three.
 
     Raises:
@@ -159,7 +159,7 @@ def probe(solution: _core.Solution, points: ArrayLike | _core.MeasuringGrid, nor
 def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: bool = False,
            exposure: float | None = None, threads: int = 0, progress: ProgressArgument = None,
            **options: Any) -> list[Path]:
-    """Writes a solved scene for other programs, in the format of the extension of `path` (docs/export.md).
+    """Writes a solved scene for other programs, in the format of the extension of `path` (docs/files/export.md).
 
     Args:
         solution: Result of solve().

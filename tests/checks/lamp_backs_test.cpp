@@ -10,7 +10,7 @@
 #include "interflect/generators/two_rooms.h"
 #include "interflect/prepare.h"
 #include "tests/checks/rooms.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

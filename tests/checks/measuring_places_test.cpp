@@ -1,10 +1,10 @@
 // Measuring points at invalid places.
-#include "interflect/checks/measuring_places.h"
+#include "interflect/checks/faces/measuring_places.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/checks/rooms.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

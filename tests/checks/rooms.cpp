@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect::testing_support {
 

@@ -15,7 +15,7 @@
 #include "interflect/load.h"
 #include "interflect/prepare.h"
 #include "tests/checks/rooms.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "interflect/core.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

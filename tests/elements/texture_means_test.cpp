@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/texture_mapping.h"
-#include "tests/support/scenes.h"
+#include "interflect/geometry/textures/texture_mapping.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -10,8 +10,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
 
-from audit_scenes import Scene
-from lab import baked, blocks
+from measured.audit_scenes import Scene
+from lab.analysis import baked, blocks
 from shadings import page
 from shadings.points import cells_of, draw_points, visible
 

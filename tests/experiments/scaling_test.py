@@ -7,7 +7,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
 
-import scaling
+from measured import scaling
 
 TRUE = scaling.Model(500e-9, 600e-9, 900e-9, 1.5, 60)
 

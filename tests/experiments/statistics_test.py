@@ -10,8 +10,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments"))
 
-import fig5_variants
-from lab import statistics
+from paper import fig5_variants
+from lab.analysis import statistics
 
 
 class StudentT(unittest.TestCase):

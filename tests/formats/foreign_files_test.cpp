@@ -7,13 +7,13 @@
 #include <string>
 
 #include "interflect/core.h"
-#include "interflect/formats/foreign_text.h"
-#include "interflect/formats/ies.h"
+#include "interflect/formats/photometry/ies.h"
+#include "interflect/formats/text/foreign_text.h"
 #include "interflect/load.h"
-#include "tests/formats/gltf_builder.h"
-#include "tests/support/photometry_files.h"
+#include "tests/formats/gltf/builder.h"
 #include "tests/support/refusals.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/photometry_files.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -4,7 +4,7 @@
 
 #include "interflect/core.h"
 #include "interflect/load.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "interflect/core.h"
-#include "interflect/formats/gltf.h"
+#include "interflect/formats/gltf/gltf.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     interflect::ReadOptions options;

@@ -1,4 +1,4 @@
-#include "tests/fuzz/photometric_bytes.h"
+#include "tests/fuzz/input/photometric_bytes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     interflect::read_photometric_bytes(interflect::detail::read_ies_text, data, size);

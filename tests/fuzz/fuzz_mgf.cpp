@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "interflect/formats/mgf.h"
-#include "tests/fuzz/scene_bytes.h"
+#include "interflect/formats/mgf/mgf.h"
+#include "tests/fuzz/input/scene_bytes.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);

@@ -13,11 +13,11 @@
 #include <string>
 #include <utility>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 #include "interflect/generators/boxes.h"
 #include "interflect/generators/maze.h"
 #include "interflect/generators/office.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/ray_caster.h"
 
 namespace interflect {

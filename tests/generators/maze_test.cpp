@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "interflect/core.h"
-#include "interflect/generators/building/floor_plan.h"
-#include "interflect/generators/building/solids.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/generators/building/plan/floor_plan.h"
+#include "interflect/generators/building/walls/solids.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
-#include "interflect/scene/view.h"
+#include "interflect/scene/core/view.h"
 
 namespace interflect {
 

@@ -9,10 +9,10 @@
 #include <numbers>
 #include <vector>
 
-#include "interflect/base/random.h"
-#include "interflect/geometry/patch_geometry.h"
-#include "interflect/geometry/split.h"
-#include "tests/support/scenes.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/geometry/surfaces/split.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/geometry/covered_area.h"
-#include "interflect/geometry/face_overlap.h"
+#include "interflect/geometry/coverage/covered_area.h"
+#include "interflect/geometry/coverage/face_overlap.h"
 
 namespace interflect {
 

@@ -1,4 +1,4 @@
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 
 #include <ImathMatrix.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "interflect/geometry/polygon.h"
+#include "interflect/geometry/polygons/polygon.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <random>
 #include <utility>
 
-#include "interflect/geometry/outline_crossings.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/outline_crossings.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "tests/support/parameter_names.h"
 
 namespace interflect {

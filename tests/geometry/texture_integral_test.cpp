@@ -2,11 +2,11 @@
 //
 // Seen to fail when the trapezoidal rule is the rectangle rule, whole repeats are not counted, or triangles without an
 // area are not widened.
-#include "interflect/geometry/texture_integral.h"
+#include "interflect/geometry/textures/texture_integral.h"
 
 #include <gtest/gtest.h>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 #include "tests/support/parameter_names.h"
 
 namespace interflect {

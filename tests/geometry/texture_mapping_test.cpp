@@ -4,7 +4,7 @@
 // Seen to fail when cuts or crossings of outlines make vertices without coordinates, splits with those of a corner,
 // when either kind is interpolated as the other, when vertices that differ in coordinates alone are merged, and when a
 // seam between images divides a flat surface.
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,12 +12,12 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/geometry/flat_surfaces.h"
-#include "interflect/geometry/polygon.h"
-#include "interflect/geometry/split.h"
-#include "interflect/geometry/vertex_weld.h"
+#include "interflect/geometry/polygons/polygon.h"
+#include "interflect/geometry/search/vertex_weld.h"
+#include "interflect/geometry/surfaces/flat_surfaces.h"
+#include "interflect/geometry/surfaces/split.h"
 #include "interflect/prepare.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

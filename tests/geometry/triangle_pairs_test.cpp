@@ -1,4 +1,4 @@
-#include "interflect/geometry/triangle_pairs.h"
+#include "interflect/geometry/polygons/triangle_pairs.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 
 namespace interflect {
 

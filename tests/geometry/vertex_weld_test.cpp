@@ -1,4 +1,4 @@
-#include "interflect/geometry/vertex_weld.h"
+#include "interflect/geometry/search/vertex_weld.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "interflect/image/false_colour.h"
+#include "interflect/image/plots/false_colour.h"
 
 #include <gtest/gtest.h>
 

@@ -21,9 +21,9 @@
 #include <memory>
 
 #include "interflect/core.h"
-#include "interflect/image/photograph.h"
-#include "interflect/image/srgb.h"
-#include "tests/support/scenes.h"
+#include "interflect/image/codecs/srgb.h"
+#include "interflect/image/files/photograph.h"
+#include "tests/support/scenes/scenes.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION

@@ -1,4 +1,4 @@
-#include "interflect/image/isolines.h"
+#include "interflect/image/plots/isolines.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/image/lettering.h"
+#include "interflect/image/plots/lettering.h"
 
 namespace interflect {
 

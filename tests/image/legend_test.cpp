@@ -1,4 +1,4 @@
-#include "interflect/image/legend.h"
+#include "interflect/image/plots/legend.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "interflect/core.h"
-#include "interflect/image/srgb.h"
+#include "interflect/image/codecs/srgb.h"
 #include "tests/support/parameter_names.h"
 
 namespace interflect {

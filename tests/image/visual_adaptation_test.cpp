@@ -1,4 +1,4 @@
-#include "interflect/image/visual_adaptation.h"
+#include "interflect/image/tone/visual_adaptation.h"
 
 #include <gtest/gtest.h>
 

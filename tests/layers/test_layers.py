@@ -24,7 +24,7 @@ class Checker(unittest.TestCase):
         self.write("base/CMakeLists.txt", "interflect_folder(base SOURCES colour.cpp)")
         self.write("base/colour.h", "#pragma once\n")
         self.write("scene/CMakeLists.txt", "interflect_folder(scene\n  SOURCES scene.cpp\n  USES base\n  LINKS fmt)")
-        self.write("scene/core.h", '#pragma once\n#include "interflect/base/colour.h"\n')
+        self.write("scene/core/core.h", '#pragma once\n#include "interflect/base/colour.h"\n')
 
     def write(self, name, text):
         path = self.root / "src" / "interflect" / name
@@ -41,16 +41,16 @@ class Checker(unittest.TestCase):
         self.assertEqual(faults(self.root), [])
 
     def test_include_of_a_later_layer(self):
-        self.write("base/colour.cpp", '#include "interflect/scene/core.h"\n')
+        self.write("base/colour.cpp", '#include "interflect/scene/core/core.h"\n')
         self.assert_only_fault("base/colour.cpp", "interflect/scene/")
 
     def test_include_of_an_undeclared_layer(self):
         self.write("solver/CMakeLists.txt", "interflect_folder(solver SOURCES solve.cpp USES base)")
-        self.write("solver/solve.cpp", '#include "interflect/scene/core.h"\n')
+        self.write("solver/solve.cpp", '#include "interflect/scene/core/core.h"\n')
         self.assert_only_fault("solver/solve.cpp", "interflect/scene/")
 
     def test_public_header_that_needs_one_that_is_not(self):
-        self.write("../../include/interflect/scene.h", '#pragma once\n#include "interflect/scene/core.h"\n')
+        self.write("../../include/interflect/scene.h", '#pragma once\n#include "interflect/scene/core/core.h"\n')
         self.assert_only_fault("include/interflect/scene.h", "not installed")
 
     def test_use_of_a_later_layer(self):
@@ -97,10 +97,21 @@ class Checker(unittest.TestCase):
         self.write_solver("gadgets/gadget.cpp", "")
         self.assert_only_fault("gadgets", "not one of the folders of solver")
 
-    def test_folder_of_the_solver_with_too_many_files(self):
+    def test_folders_with_too_many_files(self):
         for i in range(13):
             self.write_solver(f"light/light_{i}.cpp", "")
         self.assert_only_fault("solver/light", "13 files")
+
+    def test_folder_of_tests_with_too_many_files(self):
+        for i in range(12):
+            self.write(f"../../tests/solver/case_{i}.cpp", "")
+            self.write(f"../../docs/figures/figure_{i}.svg", "")
+        self.write("../../docs/figures/figure_12.svg", "")
+        self.assertEqual(faults(self.root), [])
+        self.write("../../tests/solver/.hidden", "")
+        self.assertEqual(faults(self.root), [])
+        self.write("../../tests/solver/case_12.cpp", "")
+        self.assert_only_fault("tests/solver", "13 files")
 
     def test_message_with_an_option_of_the_command_line(self):
         self.write("base/colour.cpp", 'throw InputError("too many; \\"x\\" --max-patches raises it");\n')
@@ -111,12 +122,12 @@ class Checker(unittest.TestCase):
         self.assertEqual(faults(self.root), [])
 
     def test_header_without_guard(self):
-        self.write("scene/view.h", "struct View;\n")
-        self.assert_only_fault("scene/view.h", "#pragma once")
+        self.write("scene/core/view.h", "struct View;\n")
+        self.assert_only_fault("scene/core/view.h", "#pragma once")
 
     def test_using_namespace_in_a_header(self):
-        self.write("scene/view.h", "#pragma once\nusing namespace interflect;\n")
-        self.assert_only_fault("scene/view.h", "using namespace")
+        self.write("scene/core/view.h", "#pragma once\nusing namespace interflect;\n")
+        self.assert_only_fault("scene/core/view.h", "using namespace")
 
 
 if __name__ == "__main__":

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "interflect/core.h"
-#include "interflect/image/false_colour.h"
-#include "interflect/image/legend.h"
+#include "interflect/image/plots/false_colour.h"
+#include "interflect/image/plots/legend.h"
 #include "interflect/metrics.h"
 
 namespace interflect {

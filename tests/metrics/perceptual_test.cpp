@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "interflect/core.h"
-#include "interflect/image/visual_adaptation.h"
+#include "interflect/image/tone/visual_adaptation.h"
 #include "interflect/metrics.h"
 
 namespace interflect {

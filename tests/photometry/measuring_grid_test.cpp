@@ -9,7 +9,7 @@
 
 #include "interflect/core.h"
 #include "tests/support/parameter_names.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 namespace {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 namespace {

@@ -10,7 +10,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solve.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {

@@ -4,17 +4,17 @@
 // choice, still pass.) Each part of the resolution was broken once, and a test failed each time: sidedness, surfaces of
 // many patches, tolerances in the plane and off it, inside or not.
 
-#include "interflect/raycast/coincident.h"
+#include "interflect/raycast/embree/coincident.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "interflect/geometry/split.h"
+#include "interflect/geometry/surfaces/split.h"
 #include "interflect/ray_caster.h"
 #include "tests/support/parameter_names.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -8,16 +8,16 @@
 #include <numbers>
 #include <vector>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 #include "interflect/generators/boxes.h"
 #include "interflect/generators/maze.h"
 #include "interflect/generators/office.h"
 #include "interflect/generators/two_rooms.h"
-#include "interflect/geometry/split.h"
+#include "interflect/geometry/surfaces/split.h"
 #include "interflect/load.h"
 #include "interflect/prepare.h"
 #include "interflect/ray_caster.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/geometry/patch_geometry.h"
-#include "interflect/raycast/prepared_rays.h"
-#include "tests/support/scenes.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/raycast/embree/prepared_rays.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

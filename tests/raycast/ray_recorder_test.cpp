@@ -1,4 +1,4 @@
-#include "interflect/raycast/ray_recorder.h"
+#include "interflect/raycast/embree/ray_recorder.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "interflect/base/parallel.h"
-#include "tests/support/scenes.h"
+#include "interflect/base/threads/parallel.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

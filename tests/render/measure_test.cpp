@@ -11,7 +11,7 @@
 
 #include "interflect/core.h"
 #include "interflect/render.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {

@@ -10,7 +10,7 @@
 
 #include "interflect/core.h"
 #include "interflect/render/sphere_quadrature.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

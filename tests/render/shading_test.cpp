@@ -8,7 +8,7 @@
 #include "interflect/measure.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 namespace {

@@ -1,10 +1,11 @@
-// The region with most of a scene. tests/solver/position_test.cpp shows its effect; this file tests the rules.
+// The region with most of a scene. tests/solver/importance/position_test.cpp shows its effect; this file tests the
+// rules.
 
-#include "interflect/scene/core.h"
+#include "interflect/scene/core/core.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

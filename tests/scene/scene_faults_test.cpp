@@ -9,10 +9,10 @@
 
 #include "interflect/core.h"
 #include "interflect/formats/view_files.h"
-#include "interflect/geometry/split.h"
+#include "interflect/geometry/surfaces/split.h"
 #include "interflect/prepare.h"
 #include "interflect/scene.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -9,7 +9,7 @@
 #include <functional>
 #include <limits>
 
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 namespace {

@@ -1,4 +1,4 @@
-#include "interflect/scene/view.h"
+#include "interflect/scene/core/view.h"
 
 #include <ImathBox.h>
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "interflect/core.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -14,8 +14,8 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solve.h"
 #include "interflect/solver.h"
-#include "tests/solver/reference_rooms.h"
-#include "tests/support/scenes.h"
+#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

@@ -17,10 +17,10 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver.h"
 #include "interflect/solver/light/materials.h"
-#include "tests/solver/reference_rooms.h"
-#include "tests/solver/variants.h"
+#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/solver/rooms/variants.h"
 #include "tests/support/parameter_names.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 

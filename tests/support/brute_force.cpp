@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 
 namespace interflect::testing_support {
 

@@ -9,12 +9,12 @@
 
 #include <numbers>
 
-#include "interflect/scene/patch_area.h"
+#include "interflect/scene/faces/patch_area.h"
 #include "interflect/solve.h"
-#include "tests/support/scenes.h"
-#include "tests/support/skies.h"
-#include "tests/validation/closed_forms.h"
-#include "tests/validation/placement.h"
+#include "tests/support/scenes/scenes.h"
+#include "tests/support/scenes/skies.h"
+#include "tests/validation/cases/closed_forms.h"
+#include "tests/validation/cases/placement.h"
 
 namespace interflect {
 

@@ -9,11 +9,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/formats/mgf.h"
+#include "interflect/formats/mgf/mgf.h"
 #include "interflect/load.h"
-#include "tests/support/scenes.h"
-#include "tests/validation/closed_forms.h"
-#include "tests/validation/placement.h"
+#include "tests/support/scenes/scenes.h"
+#include "tests/validation/cases/closed_forms.h"
+#include "tests/validation/cases/placement.h"
 
 namespace interflect {
 namespace {

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/scenes.h"
-#include "tests/validation/closed_forms.h"
-#include "tests/validation/placement.h"
+#include "tests/support/scenes/scenes.h"
+#include "tests/validation/cases/closed_forms.h"
+#include "tests/validation/cases/placement.h"
 
 namespace interflect {
 namespace {

@@ -10,9 +10,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/scene/patch_area.h"
-#include "tests/support/scenes.h"
-#include "tests/validation/placement.h"
+#include "interflect/scene/faces/patch_area.h"
+#include "tests/support/scenes/scenes.h"
+#include "tests/validation/cases/placement.h"
 
 namespace interflect {
 

@@ -13,8 +13,8 @@
 #include "interflect/prepare.h"
 #include "interflect/solution.h"
 #include "tests/support/parameter_names.h"
-#include "tests/support/scenes.h"
-#include "tests/validation/placement.h"
+#include "tests/support/scenes/scenes.h"
+#include "tests/validation/cases/placement.h"
 
 namespace interflect {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "interflect/view_factors.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 namespace {

@@ -2,7 +2,7 @@
 //
 // Seen to fail without the resolution of a count, with the error of one replicate, and if the spread of rays counts.
 
-#include "interflect/view_factors/hit_counts.h"
+#include "interflect/view_factors/rays/hit_counts.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 
 #include "interflect/view_factors.h"
 #include "tests/support/form_factors.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 
 namespace interflect {
 namespace {

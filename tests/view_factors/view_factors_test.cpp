@@ -17,7 +17,7 @@
 #include <numbers>
 
 #include "tests/support/form_factors.h"
-#include "tests/support/scenes.h"
+#include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bpy
 
-from . import exchange, messages, pipeline, result, world
+from . import exchange, pipeline, result, world
 from .lit_materials import glTF2ImportUserExtension  # the importer looks for it here
 
 bl_info = {
@@ -169,11 +169,11 @@ class Bake(bpy.types.Operator):
         done = Bake.running
         scene = bpy.data.scenes.get(self._scene)
         in_folder = str(self.folder) + os.sep
-        of_command = [messages.for_blender(each, in_folder) for each in done.warnings]
+        of_command = [pipeline.for_blender(each, in_folder) for each in done.warnings]
         warnings = list(dict.fromkeys(self._warnings + of_command))
         try:
             if done.error:
-                self.report({"ERROR"}, messages.for_blender(str(done.error), in_folder).removeprefix("error: "))
+                self.report({"ERROR"}, pipeline.for_blender(str(done.error), in_folder).removeprefix("error: "))
                 return {"CANCELLED"}
             if done.is_cancelled:
                 self.report({"INFO"}, "Interflect: cancelled")

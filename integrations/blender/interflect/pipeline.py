@@ -1,4 +1,4 @@
-"""Runs the commands of a bake in order. Independent of Blender."""
+"""Runs the commands of a bake in order, and puts their messages in Blender's terms. Independent of Blender."""
 
 import re
 import subprocess
@@ -9,6 +9,9 @@ from pathlib import Path
 PERCENT = re.compile(rb"^\s*(\d+)%")
 WARNING = re.compile(rb"^warning: (.*(?:\n  .*)*)", re.MULTILINE)  # indented lines belong to it
 KEPT_LINES = 20  # of the command's last output, in error messages
+NUMBER = r"(-?\d[\d.]*(?:e[+-]?\d+)?)"
+PLACE = re.compile(rf"\bat \({NUMBER}, {NUMBER}, {NUMBER}\)")
+WORLD = re.compile(r"'environment-\d+'")  # the command's name for a light without one
 
 
 class BakeError(Exception):
@@ -102,3 +105,16 @@ class Bake:
         if self._process.wait() != 0 and not self.is_cancelled:
             last = b"".join(said.splitlines(keepends=True)[-KEPT_LINES:])
             raise BakeError(last.decode(errors="replace").strip() or f"{stage.name} failed")
+
+
+def for_blender(message: str, folder: str) -> str:
+    """Converts places from the exported file's axes, with y up, to Blender's. Calls the environment the world, and
+    files in the temporary folder by their names only."""
+    message = PLACE.sub(lambda found: f"at ({found[1]}, {_negated(found[3])}, {found[2]})", message)
+    return WORLD.sub("the world", message).replace(folder, "")
+
+
+def _negated(number: str) -> str:
+    if float(number) == 0:
+        return "0"
+    return number[1:] if number.startswith("-") else "-" + number

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "argument.h"
-#include "interflect/geometry/add_face.h"
-#include "interflect/scene/core.h"
+#include "interflect/geometry/polygons/add_face.h"
+#include "interflect/scene/core/core.h"
 
 namespace interflect::python {
 

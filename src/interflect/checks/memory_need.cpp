@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "interflect/core.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 
 namespace interflect::detail {
 

@@ -10,14 +10,14 @@
 #include <utility>
 #include <variant>
 
-#include "interflect/checks/enclosed_lights.h"
-#include "interflect/checks/finder.h"
-#include "interflect/checks/light_places.h"
-#include "interflect/checks/shell.h"
-#include "interflect/checks/up_axis.h"
-#include "interflect/geometry/corner_normals.h"
+#include "interflect/checks/faces/up_axis.h"
+#include "interflect/checks/lights/enclosed_lights.h"
+#include "interflect/checks/lights/light_places.h"
+#include "interflect/checks/search/finder.h"
+#include "interflect/checks/search/shell.h"
+#include "interflect/geometry/surfaces/corner_normals.h"
 #include "interflect/prepare.h"
-#include "interflect/scene/core.h"
+#include "interflect/scene/core/core.h"
 
 namespace interflect {
 

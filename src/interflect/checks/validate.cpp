@@ -6,12 +6,12 @@
 #include <array>
 #include <utility>
 
-#include "interflect/checks/face_surroundings.h"
-#include "interflect/checks/finder.h"
-#include "interflect/checks/lamp_backs.h"
-#include "interflect/checks/open_edges.h"
-#include "interflect/raycast/coincident.h"
-#include "interflect/scene/limits.h"
+#include "interflect/checks/faces/face_surroundings.h"
+#include "interflect/checks/faces/open_edges.h"
+#include "interflect/checks/lights/lamp_backs.h"
+#include "interflect/checks/search/finder.h"
+#include "interflect/raycast/embree/coincident.h"
+#include "interflect/scene/core/limits.h"
 
 namespace interflect {
 

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/crc32.h"
-#include "interflect/base/rank_sums.h"
+#include "interflect/base/files/crc32.h"
+#include "interflect/base/sums/rank_sums.h"
 
 namespace interflect::detail {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 
 namespace interflect::detail {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "interflect/core.h"
-#include "interflect/scene/geometry_fingerprint.h"
+#include "interflect/scene/core/geometry_fingerprint.h"
 
 namespace interflect::detail {
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/stable_array.h"
+#include "interflect/base/memory/stable_array.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/cell.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {

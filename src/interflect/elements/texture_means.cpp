@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 
 namespace interflect::detail {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "interflect/elements/cell.h"
-#include "interflect/geometry/texture_integral.h"
+#include "interflect/geometry/textures/texture_integral.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {

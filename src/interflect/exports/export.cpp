@@ -5,14 +5,14 @@
 #include <array>
 #include <cmath>
 
-#include "interflect/base/pending_file.h"
+#include "interflect/base/files/pending_file.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/exports/files/mesh_files.h"
 #include "interflect/exports/files/write_files.h"
 #include "interflect/exports/gltf/lit_gltf.h"
 #include "interflect/exports/probe_files.h"
-#include "interflect/formats/extension.h"
+#include "interflect/formats/text/extension.h"
 #include "interflect/render/pictures/camera_samples.h"
 
 namespace interflect {

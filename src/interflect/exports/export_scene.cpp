@@ -7,7 +7,7 @@
 #include "interflect/exports/files/exported_parts.h"
 #include "interflect/exports/files/write_files.h"
 #include "interflect/exports/foreign/foreign_scene.h"
-#include "interflect/formats/extension.h"
+#include "interflect/formats/text/extension.h"
 
 namespace interflect {
 

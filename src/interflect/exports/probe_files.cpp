@@ -2,7 +2,7 @@
 
 #include "interflect/exports/files/exported_parts.h"
 #include "interflect/exports/records/json_text.h"
-#include "interflect/image/image_codecs.h"
+#include "interflect/image/codecs/image_codecs.h"
 
 namespace interflect::detail {
 

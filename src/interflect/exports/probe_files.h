@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Exports irradiance probes as JSON (docs/exported-scenes.md).
+/// Exports irradiance probes as JSON (docs/files/exported-scenes.md).
 std::vector<ExportedFile> make_probes_json(const std::filesystem::path& path, const Scene& scene,
                                            const Solution& solution, const ExportOptions& options);
 /// Exports OpenEXR layers of coefficients, one pixel per probe, and JSON.

@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "interflect/base/pending_file.h"
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/pending_file.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/core.h"
 #include "interflect/exports/saved_run.h"
 #include "interflect/solution.h"

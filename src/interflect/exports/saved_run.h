@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/solution.h"
 
 namespace interflect::detail {

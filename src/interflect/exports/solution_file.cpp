@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "interflect/base/input_file.h"
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/input_file.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/exports/hdf5/checksums.h"

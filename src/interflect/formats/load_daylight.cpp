@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "interflect/core.h"
-#include "interflect/formats/texture_files.h"
+#include "interflect/formats/build/texture_files.h"
 #include "interflect/load.h"
-#include "interflect/scene/environment_maps.h"
-#include "interflect/scene/sky_frame.h"
-#include "interflect/scene/web_angles.h"
+#include "interflect/scene/core/web_angles.h"
+#include "interflect/scene/sky/environment_maps.h"
+#include "interflect/scene/sky/sky_frame.h"
 
 namespace interflect {
 

@@ -9,22 +9,22 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/crc32.h"
+#include "interflect/base/files/crc32.h"
 #include "interflect/core.h"
-#include "interflect/formats/checked_options.h"
-#include "interflect/formats/extension.h"
-#include "interflect/formats/gltf.h"
-#include "interflect/formats/mgf.h"
-#include "interflect/formats/number.h"
-#include "interflect/formats/obj.h"
-#include "interflect/formats/ply.h"
-#include "interflect/formats/rad.h"
-#include "interflect/formats/stl.h"
-#include "interflect/formats/text_file.h"
+#include "interflect/formats/gltf/gltf.h"
+#include "interflect/formats/mesh/obj/obj.h"
+#include "interflect/formats/mesh/ply/ply.h"
+#include "interflect/formats/mesh/stl.h"
+#include "interflect/formats/mesh/vs3.h"
+#include "interflect/formats/mgf/mgf.h"
+#include "interflect/formats/rad/rad.h"
+#include "interflect/formats/reading/checked_options.h"
+#include "interflect/formats/text/extension.h"
+#include "interflect/formats/text/number.h"
+#include "interflect/formats/text/text_file.h"
 #include "interflect/formats/view_files.h"
-#include "interflect/formats/vs3.h"
 #include "interflect/generators/maze.h"
-#include "interflect/scene/core.h"
+#include "interflect/scene/core/core.h"
 
 namespace interflect {
 

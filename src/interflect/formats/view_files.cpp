@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "interflect/base/pending_file.h"
+#include "interflect/base/files/pending_file.h"
 #include "interflect/core.h"
-#include "interflect/formats/json_text.h"
-#include "interflect/formats/line_reader.h"
-#include "interflect/formats/number.h"
-#include "interflect/formats/text_file.h"
-#include "interflect/scene/view.h"
+#include "interflect/formats/text/json_text.h"
+#include "interflect/formats/text/line_reader.h"
+#include "interflect/formats/text/number.h"
+#include "interflect/formats/text/text_file.h"
+#include "interflect/scene/core/view.h"
 
 namespace interflect::detail {
 

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "interflect/core.h"
-#include "interflect/generators/building/furnish.h"
-#include "interflect/generators/building/room_views.h"
-#include "interflect/generators/building/shell.h"
+#include "interflect/generators/building/rooms/furnish.h"
+#include "interflect/generators/building/rooms/room_views.h"
+#include "interflect/generators/building/walls/shell.h"
 #include "interflect/generators/patterns.h"
 
 namespace interflect::detail {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/generators/building/floor_space.h"
-#include "interflect/generators/building/furnish.h"
-#include "interflect/generators/building/room_views.h"
-#include "interflect/generators/building/shell.h"
+#include "interflect/generators/building/rooms/floor_space.h"
+#include "interflect/generators/building/rooms/furnish.h"
+#include "interflect/generators/building/rooms/room_views.h"
+#include "interflect/generators/building/walls/shell.h"
 
 namespace interflect::detail {
 

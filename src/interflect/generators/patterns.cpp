@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "interflect/image/srgb.h"
+#include "interflect/image/codecs/srgb.h"
 
 namespace interflect::detail {
 

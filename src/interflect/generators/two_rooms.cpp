@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "interflect/core.h"
-#include "interflect/generators/building/solids.h"
+#include "interflect/generators/building/walls/solids.h"
 
 namespace interflect::detail {
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/base/points.h"
-#include "interflect/geometry/tangent_frame.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/geometry/textures/tangent_frame.h"
 
 namespace interflect::detail {
 

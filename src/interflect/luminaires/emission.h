@@ -10,10 +10,10 @@
 #include <variant>
 #include <vector>
 
-#include "interflect/base/points.h"
+#include "interflect/base/numbers/points.h"
 #include "interflect/core.h"
 #include "interflect/luminaires/opening.h"
-#include "interflect/luminaires/sky_radiance.h"
+#include "interflect/luminaires/skies/sky_radiance.h"
 #include "interflect/luminaires/web_sampler.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"

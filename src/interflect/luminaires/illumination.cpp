@@ -4,7 +4,7 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/geometry/tangent_frame.h"
+#include "interflect/geometry/textures/tangent_frame.h"
 #include "interflect/luminaires/opening.h"
 
 namespace interflect::detail {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/geometry/tangent_frame.h"
+#include "interflect/geometry/textures/tangent_frame.h"
 
 namespace interflect::detail {
 

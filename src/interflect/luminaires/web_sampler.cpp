@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/scene/web_angles.h"
+#include "interflect/scene/core/web_angles.h"
 
 namespace interflect::detail {
 

@@ -1,4 +1,4 @@
-// Formulas and constants of Andersson et al. 2020 (docs/metrics.md).
+// Formulas and constants of Andersson et al. 2020 (docs/method/metrics.md).
 #include <ImathMatrix.h>
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
-#include "interflect/image/false_colour.h"
-#include "interflect/image/legend.h"
+#include "interflect/image/plots/false_colour.h"
+#include "interflect/image/plots/legend.h"
 #include "interflect/metrics.h"
 
 namespace interflect {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/image/visual_adaptation.h"
+#include "interflect/image/tone/visual_adaptation.h"
 #include "interflect/metrics.h"
 
 namespace interflect {

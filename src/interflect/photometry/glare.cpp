@@ -8,9 +8,9 @@
 #include <tuple>
 #include <utility>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/luminaires/illumination.h"
 #include "interflect/luminaires/opening.h"
 #include "interflect/raycast/panes.h"

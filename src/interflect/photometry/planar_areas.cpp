@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "interflect/core.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/measure.h"
 #include "interflect/photometry/nearest_names.h"
 #include "interflect/photometry/planar_outline.h"

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "interflect/geometry/planar_polygon.h"
+#include "interflect/geometry/polygons/planar_polygon.h"
 #include "interflect/measure.h"
 
 namespace interflect::detail {

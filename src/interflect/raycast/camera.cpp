@@ -9,7 +9,7 @@
 
 #include "interflect/core.h"
 #include "interflect/image.h"
-#include "interflect/scene/view.h"
+#include "interflect/scene/core/view.h"
 
 namespace interflect::detail {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "interflect/geometry/patch_geometry.h"
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 
 namespace interflect::detail {
 

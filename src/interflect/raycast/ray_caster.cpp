@@ -11,11 +11,11 @@
 
 #include <fmt/format.h>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
-#include "interflect/raycast/embree.h"
-#include "interflect/scene/geometry_fingerprint.h"
-#include "interflect/scene/planarity.h"
+#include "interflect/raycast/embree/embree.h"
+#include "interflect/scene/core/geometry_fingerprint.h"
+#include "interflect/scene/faces/planarity.h"
 
 namespace interflect {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 
 namespace interflect {
 

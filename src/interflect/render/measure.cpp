@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "interflect/core.h"
-#include "interflect/geometry/tangent_frame.h"
+#include "interflect/geometry/textures/tangent_frame.h"
 #include "interflect/render/pictures/path_picture.h"
 #include "interflect/render/rays/gauge.h"
 

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/base/monitor_section.h"
-#include "interflect/base/parallel.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/monitor_section.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
 #include "interflect/render/paths/group_mean.h"
 #include "interflect/render/sphere_quadrature.h"

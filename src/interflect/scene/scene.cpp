@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "interflect/core.h"
-#include "interflect/scene/environment_maps.h"
-#include "interflect/scene/limits.h"
-#include "interflect/scene/view.h"
+#include "interflect/scene/core/limits.h"
+#include "interflect/scene/core/view.h"
+#include "interflect/scene/sky/environment_maps.h"
 
 namespace interflect {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 #include "interflect/solution.h"

@@ -6,11 +6,11 @@
 #include <bit>
 #include <numeric>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/random.h"
-#include "interflect/base/stop_request.h"
-#include "interflect/view_factors/group_rays.h"
-#include "interflect/view_factors/hit_counts.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
+#include "interflect/base/threads/stop_request.h"
+#include "interflect/view_factors/rays/group_rays.h"
+#include "interflect/view_factors/rays/hit_counts.h"
 
 namespace interflect {
 

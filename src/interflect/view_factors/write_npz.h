@@ -1,6 +1,6 @@
 #pragma once
 
-#include "interflect/base/pending_file.h"
+#include "interflect/base/files/pending_file.h"
 #include "interflect/view_factors.h"
 
 namespace interflect::detail {

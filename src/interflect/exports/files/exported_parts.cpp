@@ -5,12 +5,12 @@
 #include <map>
 #include <set>
 
-#include "interflect/base/escapes.h"
+#include "interflect/base/files/escapes.h"
 #include "interflect/core.h"
-#include "interflect/formats/extension.h"
-#include "interflect/formats/texture_files.h"
+#include "interflect/formats/build/texture_files.h"
+#include "interflect/formats/text/extension.h"
 #include "interflect/image.h"
-#include "interflect/image/image_codecs.h"
+#include "interflect/image/codecs/image_codecs.h"
 
 namespace interflect::detail {
 

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-// Meshes of leaves in world coordinates (docs/exported-scenes.md).
+// Meshes of leaves in world coordinates (docs/files/exported-scenes.md).
 
 std::vector<ExportedFile> make_ply(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);

@@ -1,6 +1,6 @@
 #include "interflect/exports/files/write_files.h"
 
-#include "interflect/base/pending_file.h"
+#include "interflect/base/files/pending_file.h"
 
 namespace interflect::detail {
 

@@ -10,9 +10,9 @@
 #include "interflect/exports/files/mesh_files.h"
 #include "interflect/exports/mesh/opacity.h"
 #include "interflect/exports/vertices/lit_polygons.h"
-#include "interflect/geometry/texture_mapping.h"
-#include "interflect/image/image_codecs.h"
-#include "interflect/image/srgb.h"
+#include "interflect/geometry/textures/texture_mapping.h"
+#include "interflect/image/codecs/image_codecs.h"
+#include "interflect/image/codecs/srgb.h"
 
 namespace interflect::detail {
 

@@ -8,12 +8,12 @@
 #include <map>
 #include <numbers>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/exports/files/exported_parts.h"
 #include "interflect/exports/mesh/opacity.h"
 #include "interflect/exports/vertices/lit_polygons.h"
-#include "interflect/luminaires/skies.h"
-#include "interflect/scene/view.h"
+#include "interflect/luminaires/skies/skies.h"
+#include "interflect/scene/core/view.h"
 
 namespace interflect::detail {
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "interflect/base/escapes.h"
+#include "interflect/base/files/escapes.h"
 #include "interflect/core.h"
-#include "interflect/image/image_codecs.h"
+#include "interflect/image/codecs/image_codecs.h"
 
 namespace interflect::detail {
 

@@ -7,15 +7,15 @@
 #include <numbers>
 #include <tuple>
 
-#include "interflect/base/escapes.h"
+#include "interflect/base/files/escapes.h"
 #include "interflect/exports/gltf/gltf_scene.h"
 #include "interflect/exports/lightmap/lightmap.h"
 #include "interflect/exports/mesh/display_range.h"
 #include "interflect/exports/mesh/element_mesh.h"
 #include "interflect/exports/mesh/welded_vertices.h"
-#include "interflect/formats/extension.h"
-#include "interflect/geometry/texture_mapping.h"
-#include "interflect/image/image_codecs.h"
+#include "interflect/formats/text/extension.h"
+#include "interflect/geometry/textures/texture_mapping.h"
+#include "interflect/image/codecs/image_codecs.h"
 
 namespace interflect::detail {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "interflect/base/escapes.h"
+#include "interflect/base/files/escapes.h"
 #include "interflect/exports/mesh/opacity.h"
 
 namespace interflect::detail {

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/base/escapes.h"
+#include "interflect/base/files/escapes.h"
 #include "interflect/exports/gltf/gltf_scene.h"
 #include "interflect/exports/mesh/display_range.h"
 #include "interflect/exports/mesh/opacity.h"
 #include "interflect/exports/mesh/welded_vertices.h"
 #include "interflect/exports/vertices/vertex_light.h"
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 
 namespace interflect::detail {
 

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Exports binary glTF 2.0 (docs/export.md), y up.
+/// Exports binary glTF 2.0 (docs/files/export.md), y up.
 std::vector<ExportedFile> make_glb(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
 /// Embeds the binary data in JSON.

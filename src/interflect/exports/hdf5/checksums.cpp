@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "interflect/base/crc32.h"
+#include "interflect/base/files/crc32.h"
 
 namespace interflect::detail {
 

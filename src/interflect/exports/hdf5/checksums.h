@@ -15,7 +15,7 @@ struct FileRange {
     std::uint64_t begin = 0, length = 0;
 };
 
-/// Writes CRC-32 checksums into the user block of a finished file (docs/solution-file.md).
+/// Writes CRC-32 checksums into the user block of a finished file (docs/files/solution-file.md).
 /// @param ranges  Disjoint and outside the block.
 /// @throws std::runtime_error if the file cannot be read or written.
 void write_checksums(const std::filesystem::path& path, std::vector<FileRange> ranges);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/measure.h"
 #include "interflect/render.h"
 #include "interflect/render/sharing/light_order.h"

@@ -10,14 +10,14 @@
 #include <numbers>
 #include <utility>
 
-#include "interflect/base/monitor_section.h"
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/monitor_section.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
 #include "interflect/exports/lightmap/baked_light.h"
 #include "interflect/exports/lightmap/lightmap_atlas.h"
 #include "interflect/exports/mesh/shown_patches.h"
-#include "interflect/geometry/box_tree.h"
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/search/box_tree.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/measure.h"
 #include "interflect/render/light_help.h"
 #include "interflect/render/pictures/path_picture.h"

@@ -9,10 +9,10 @@
 
 #include "interflect/exports/lightmap/lightmap_layouts.h"
 #include "interflect/exports/lightmap/unfolding.h"
-#include "interflect/geometry/box_tree.h"
-#include "interflect/geometry/flat_surfaces.h"
-#include "interflect/geometry/patch_geometry.h"
-#include "interflect/geometry/smooth_surfaces.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/geometry/search/box_tree.h"
+#include "interflect/geometry/surfaces/flat_surfaces.h"
+#include "interflect/geometry/surfaces/smooth_surfaces.h"
 
 namespace interflect::detail {
 

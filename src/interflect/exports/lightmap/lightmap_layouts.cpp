@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "interflect/geometry/box_tree.h"
+#include "interflect/geometry/search/box_tree.h"
 
 namespace interflect::detail {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "interflect/exports/mesh/flat_patches.h"
-#include "interflect/geometry/smooth_surfaces.h"
+#include "interflect/geometry/surfaces/smooth_surfaces.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {

@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/render/smooth/vertex_values.h"
 
 namespace interflect::detail {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/box_tree.h"
+#include "interflect/geometry/search/box_tree.h"
 #include "interflect/render/smooth/element_vertices.h"
 #include "interflect/scene.h"
 

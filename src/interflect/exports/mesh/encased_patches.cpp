@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "interflect/base/parallel.h"
-#include "interflect/geometry/bounds.h"
-#include "interflect/scene/core.h"
+#include "interflect/base/threads/parallel.h"
+#include "interflect/geometry/search/bounds.h"
+#include "interflect/scene/core/core.h"
 #include "interflect/solver/sampling/ray_maker.h"
 
 namespace interflect::detail {

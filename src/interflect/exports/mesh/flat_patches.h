@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {

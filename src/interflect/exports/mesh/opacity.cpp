@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "interflect/scene/texel_centre.h"
+#include "interflect/scene/faces/texel_centre.h"
 
 namespace interflect::detail {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "interflect/exports/mesh/encased_patches.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solver/light/patch_light.h"
 

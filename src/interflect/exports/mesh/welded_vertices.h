@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 
 namespace interflect::detail {
 

@@ -4,11 +4,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "interflect/base/crc32.h"
+#include "interflect/base/files/crc32.h"
 #include "interflect/exports/records/luminaire_records.h"
 #include "interflect/exports/records/solve_report.h"
 #include "interflect/exports/records/texture_records.h"
-#include "interflect/scene/environment_maps.h"
+#include "interflect/scene/sky/environment_maps.h"
 
 namespace interflect::detail {
 

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "interflect/base/escapes.h"
-#include "interflect/formats/json_events.h"
+#include "interflect/base/files/escapes.h"
+#include "interflect/formats/text/json_events.h"
 
 namespace interflect::detail {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "interflect/scene/environment_maps.h"
+#include "interflect/scene/sky/environment_maps.h"
 
 namespace interflect::detail {
 

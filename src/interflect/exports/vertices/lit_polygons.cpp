@@ -9,11 +9,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 #include "interflect/exports/mesh/display_range.h"
 #include "interflect/exports/mesh/element_mesh.h"
-#include "interflect/geometry/texture_mapping.h"
-#include "interflect/image/srgb.h"
+#include "interflect/geometry/textures/texture_mapping.h"
+#include "interflect/image/codecs/srgb.h"
 
 namespace interflect::detail {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "interflect/exports/vertices/vertex_light.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/scene.h"
 #include "interflect/solution.h"
 

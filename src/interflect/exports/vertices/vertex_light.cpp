@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/monitor_section.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/monitor_section.h"
 #include "interflect/exports/lightmap/baked_light.h"
 #include "interflect/exports/mesh/shown_patches.h"
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/render/smooth/vertex_values.h"
 
 namespace interflect::detail {

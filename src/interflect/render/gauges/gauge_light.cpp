@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "interflect/base/common_stop.h"
-#include "interflect/base/monitor_section.h"
-#include "interflect/base/shared_ranges.h"
+#include "interflect/base/sums/common_stop.h"
+#include "interflect/base/threads/monitor_section.h"
+#include "interflect/base/threads/shared_ranges.h"
 #include "interflect/render/paths/path_integrator.h"
 #include "interflect/render/pictures/pixel_statistics.h"
 

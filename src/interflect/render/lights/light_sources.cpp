@@ -4,7 +4,7 @@
 #include <numbers>
 #include <optional>
 
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/render/lights/patch_points.h"
 
 namespace interflect::detail {

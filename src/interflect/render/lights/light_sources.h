@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "interflect/geometry/patch_geometry.h"
-#include "interflect/luminaires/skies.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/luminaires/skies/skies.h"
 #include "interflect/render/lights/light_tree.h"
 #include "interflect/render/lights/luminaire_choice.h"
 #include "interflect/render/lights/path_samples.h"

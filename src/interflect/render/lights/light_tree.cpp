@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "interflect/elements/texture_means.h"
-#include "interflect/scene/limits.h"
+#include "interflect/scene/core/limits.h"
 
 namespace interflect::detail {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {

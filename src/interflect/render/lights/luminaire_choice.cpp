@@ -6,7 +6,7 @@
 #include <optional>
 #include <variant>
 
-#include "interflect/scene/web_angles.h"
+#include "interflect/scene/core/web_angles.h"
 
 namespace interflect::detail {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "interflect/core.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 
 namespace interflect::detail {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
-#include "interflect/geometry/tangent_frame.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/geometry/textures/tangent_frame.h"
 
 namespace interflect::detail {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/render/lights/light_sources.h"
 #include "interflect/scene.h"
 

@@ -8,10 +8,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/random.h"
-#include "interflect/base/shared_ranges.h"
-#include "interflect/geometry/tangent_frame.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
+#include "interflect/base/threads/shared_ranges.h"
+#include "interflect/geometry/textures/tangent_frame.h"
 #include "interflect/render/paths/path_integrator.h"
 #include "interflect/render/reflections/known_light.h"
 

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/common_stop.h"
+#include "interflect/base/sums/common_stop.h"
 #include "interflect/core.h"
-#include "interflect/geometry/box_tree.h"
+#include "interflect/geometry/search/box_tree.h"
 #include "interflect/render/paths/group_mean.h"
 #include "interflect/render/paths/surface_points.h"
 #include "interflect/render/rays/path_plan.h"

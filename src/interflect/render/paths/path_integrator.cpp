@@ -5,9 +5,9 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/render/paths/sky_guide.h"
 #include "interflect/render/reflections/known_light.h"
 

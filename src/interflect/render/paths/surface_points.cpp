@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/render/rays/path_rays.h"
 
 namespace interflect::detail {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/stop_request.h"
+#include "interflect/base/threads/stop_request.h"
 #include "interflect/core.h"
 #include "interflect/render/rays/path_plan.h"
 

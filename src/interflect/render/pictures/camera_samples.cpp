@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/texture_mapping.h"
-#include "interflect/luminaires/skies.h"
+#include "interflect/geometry/textures/texture_mapping.h"
+#include "interflect/luminaires/skies/skies.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/smooth/element_vertices.h"

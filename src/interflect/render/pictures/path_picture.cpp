@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "interflect/base/common_stop.h"
-#include "interflect/base/monitor_section.h"
-#include "interflect/base/stop_request.h"
+#include "interflect/base/sums/common_stop.h"
+#include "interflect/base/threads/monitor_section.h"
+#include "interflect/base/threads/stop_request.h"
 #include "interflect/core.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/pictures/pixel_statistics.h"

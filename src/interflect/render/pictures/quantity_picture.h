@@ -5,7 +5,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/image.h"
-#include "interflect/image/false_colour.h"
+#include "interflect/image/plots/false_colour.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/scene.h"

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/common_stop.h"
+#include "interflect/base/sums/common_stop.h"
 #include "interflect/render/prepared/seen_light.h"
 #include "interflect/render/prepared/seen_sources.h"
 

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <vector>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/render/lights/path_samples.h"
 #include "interflect/render/prepared/test_rays.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 #include "interflect/render/prepared/test_rays.h"
 
 namespace interflect::detail {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/render/rays/shadow_rays.h"
 
 namespace interflect::detail {

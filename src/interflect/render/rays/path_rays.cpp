@@ -3,7 +3,7 @@
 #include <span>
 
 #include "interflect/core.h"
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 
 namespace interflect::detail {
 

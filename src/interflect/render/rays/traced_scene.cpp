@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "interflect/geometry/smooth_surfaces.h"
+#include "interflect/geometry/surfaces/smooth_surfaces.h"
 
 namespace interflect::detail {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 
 namespace interflect::detail {
 

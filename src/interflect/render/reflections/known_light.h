@@ -6,7 +6,7 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/render/lights/light_tree.h"
 #include "interflect/scene.h"
 

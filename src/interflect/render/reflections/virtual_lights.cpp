@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
-#include "interflect/geometry/texture_mapping.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
+#include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/render/lights/path_samples.h"
 
 namespace interflect::detail {

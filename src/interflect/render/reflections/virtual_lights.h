@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/luminaires/emission.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/panes.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "interflect/base/shared_ranges.h"
+#include "interflect/base/threads/shared_ranges.h"
 #include "interflect/render/paths/path_integrator.h"
 #include "interflect/render/sharing/broadcast.h"
 

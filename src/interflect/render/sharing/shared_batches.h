@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "interflect/base/stop_request.h"
+#include "interflect/base/threads/stop_request.h"
 #include "interflect/ranks.h"
 #include "interflect/render/rays/path_plan.h"
 #include "interflect/render/rays/sample_batch.h"

@@ -7,7 +7,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {

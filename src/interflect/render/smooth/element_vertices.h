@@ -6,7 +6,7 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/smooth_surfaces.h"
+#include "interflect/geometry/surfaces/smooth_surfaces.h"
 #include "interflect/render/smooth/smooth_normals.h"
 #include "interflect/scene.h"
 

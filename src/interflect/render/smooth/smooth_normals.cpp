@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/geometry/corner_normals.h"
+#include "interflect/geometry/surfaces/corner_normals.h"
 
 namespace interflect::detail {
 

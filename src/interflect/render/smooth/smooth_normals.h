@@ -7,13 +7,13 @@
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/patch_geometry.h"
-#include "interflect/geometry/smooth_surfaces.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/geometry/surfaces/smooth_surfaces.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
 
-/// Shading of curved surfaces by CornerNormals: H(x) = H_solved(x) + G (n(x) - n_mean) (docs/method.md, Curved
+/// Shading of curved surfaces by CornerNormals: H(x) = H_solved(x) + G (n(x) - n_mean) (docs/method/method.md, Curved
 /// surfaces). The correction is clamped to the largest step of irradiance across edges.
 class SmoothNormals {
   public:

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 
 namespace interflect::detail {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/fixed_point.h"
+#include "interflect/base/numbers/fixed_point.h"
 #include "interflect/solver/deposit/contributions.h"
 #include "interflect/solver/sampling/payload.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/stable_array.h"
+#include "interflect/base/memory/stable_array.h"
 
 namespace interflect::detail {
 

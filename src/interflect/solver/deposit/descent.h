@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/fixed_point.h"
+#include "interflect/base/numbers/fixed_point.h"
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solver/deposit/contributions.h"

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/fixed_point.h"
-#include "interflect/base/stable_array.h"
+#include "interflect/base/memory/stable_array.h"
+#include "interflect/base/numbers/fixed_point.h"
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/light/radiosity.h"
 

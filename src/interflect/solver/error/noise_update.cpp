@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/rank_sums.h"
+#include "interflect/base/sums/rank_sums.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/error_weight.h"
 #include "interflect/solver/error/pixel_filter.h"
@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns the mean of y z over siblings (docs/method.md, Errors), less the noise of rays that both have.
+/// Returns the mean of y z over siblings (docs/method/method.md, Errors), less the noise of rays that both have.
 double measured_signal(const SolverState& state, const Estimate& fresh, std::uint32_t first) {
     const ElementForest& forest = *state.forest;
     const std::uint32_t parent = forest.parent(first);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 
 namespace interflect::detail {
 
@@ -20,7 +20,7 @@ struct BoxImportance {
     double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
 };
 
-/// The factors restore exponent 1 between boxes (docs/method.md, Light sources that are not surfaces).
+/// The factors restore exponent 1 between boxes (docs/method/method.md, Light sources that are not surfaces).
 std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
                                                float exponent) {
     std::vector<BoxImportance> boxes(emission.box_count());

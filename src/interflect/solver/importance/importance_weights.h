@@ -34,7 +34,7 @@ struct ImportanceWeights {
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
-/// Smooths importance for sampling (docs/method.md, One step of transport). The paper uses `from_parent` 0 and
+/// Smooths importance for sampling (docs/method/method.md, One step of transport). The paper uses `from_parent` 0 and
 /// `exponent` 1.
 std::vector<float> smoothed_importance(const ElementForest& forest, const Importance& importance, double from_parent,
                                        double exponent);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/random.h"
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/camera.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/panes.h"
@@ -28,7 +28,7 @@ class ViewImportance {
     std::int64_t views() const { return std::ssize(views_); }
     /// Share of the pictures that shows surfaces.
     double surface_share() const { return total_weight_ > 0 ? hit_weight_ / total_weight_ : 0; }
-    /// Computes v = V / A by element [1/m^2] (docs/method.md, Unknowns). Surfaces behind panes add their transmitted
+    /// Computes v = V / A by element [1/m^2] (docs/method/method.md, Unknowns). Surfaces behind panes add their transmitted
     /// share of V.
     /// @param at_patches  Spreads V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/solver/noise/noise_model.h"
 #include "interflect/solver/state/schedule.h"
 #include "interflect/solver/state/solver_state.h"

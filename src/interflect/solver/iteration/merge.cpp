@@ -4,7 +4,7 @@
 #include <array>
 #include <limits>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {

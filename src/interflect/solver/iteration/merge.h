@@ -14,7 +14,7 @@ void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<R
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
            const IterationPlan& plan);
 
-/// Merges independent estimates (docs/method.md, A run); means may be negative.
+/// Merges independent estimates (docs/method/method.md, A run); means may be negative.
 void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                        const IterationPlan& plan);
 

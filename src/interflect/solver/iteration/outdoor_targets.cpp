@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/solver/sampling/payload.h"
 #include "interflect/solver/sampling/ray_maker.h"

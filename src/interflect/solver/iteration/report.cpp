@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "interflect/base/rank_sums.h"
+#include "interflect/base/sums/rank_sums.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/error_estimate.h"
 

@@ -1,6 +1,6 @@
 #include "interflect/solver/light/group_light.h"
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {

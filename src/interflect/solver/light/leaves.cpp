@@ -1,5 +1,5 @@
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/solution.h"
 
 namespace interflect {

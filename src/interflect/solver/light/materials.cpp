@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 
 namespace interflect::detail {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/ranked_bits.h"
+#include "interflect/base/numbers/ranked_bits.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/light/materials.h"

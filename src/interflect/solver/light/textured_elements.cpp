@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Iterations that are passes ('incremental shooting', Neumann et al. 1995; docs/method.md, A run): unbiased estimates
+/// Iterations that are passes ('incremental shooting', Neumann et al. 1995; docs/method/method.md, A run): unbiased estimates
 /// on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/solver/iteration/outdoor_targets.h"
 #include "interflect/solver/state/solver_state.h"
 

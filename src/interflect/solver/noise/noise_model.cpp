@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/noise/estimate.h"
@@ -15,7 +15,7 @@
 namespace interflect::detail {
 
 /// Noise of the mean irradiance: the variance of independent rays, times a factor from differences between iterations
-/// (docs/method.md, Errors).
+/// (docs/method/method.md, Errors).
 class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
-#include "interflect/image/visual_adaptation.h"
+#include "interflect/image/tone/visual_adaptation.h"
 #include "interflect/solver/shrinkage/sibling_variation.h"
 
 namespace interflect::detail {
@@ -17,12 +17,12 @@ namespace {
 constexpr float display_white = 100, display_black = 0.5f;
 /// Logarithmic mean of a picture relative to white, as in automatic_exposure().
 constexpr float mean_over_white = 0.2f;
-/// The observer of FLIP (docs/metrics.md).
+/// The observer of FLIP (docs/method/metrics.md).
 constexpr float pixels_per_degree = 67.02f;
 /// Cycles per degree of the greatest sensitivity.
 constexpr double best_frequency = 8;
 /// JND of a steadily viewed edge relative to cone_threshold(), which is for brief flashes. Chosen by measurement
-/// (docs/results.md).
+/// (docs/method/results.md).
 constexpr float jnd_of_edge = 0.2f;
 
 /// Returns the logarithmic mean of reflected light in the pictures [lm/m^2 or W/m^2]; 0 if they are dark.

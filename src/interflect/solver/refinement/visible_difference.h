@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Just noticeable differences (JND) in tone-mapped pictures on a display (docs/method.md, Visible differences).
+/// Just noticeable differences (JND) in tone-mapped pictures on a display (docs/method/method.md, Visible differences).
 class VisibleDifference {
   public:
     /// `state` needs full importance and must outlive this. O(elements).

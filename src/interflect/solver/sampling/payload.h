@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/sampling/ray_allocation.h"

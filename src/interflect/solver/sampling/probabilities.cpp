@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {

@@ -3,7 +3,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 
 namespace interflect::detail {
 

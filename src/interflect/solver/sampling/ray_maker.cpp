@@ -4,9 +4,9 @@
 #include <cmath>
 #include <span>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/random.h"
-#include "interflect/geometry/tangent_frame.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
+#include "interflect/geometry/textures/tangent_frame.h"
 
 namespace interflect::detail {
 

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/points.h"
+#include "interflect/base/numbers/points.h"
 #include "interflect/elements/cell.h"
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solver/sampling/ray_allocation.h"
 #include "interflect/solver/sampling/ray_plan.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 
 namespace interflect::detail {
 

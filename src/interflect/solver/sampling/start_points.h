@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "interflect/geometry/patch_geometry.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
 
 namespace interflect::detail {
 

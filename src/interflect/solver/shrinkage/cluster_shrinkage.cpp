@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
 
 namespace interflect::detail {

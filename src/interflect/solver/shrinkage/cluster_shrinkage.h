@@ -10,7 +10,7 @@
 
 namespace interflect::detail {
 
-/// Reduces the differences between the parts of each cluster that are mostly noise (docs/method.md, Clusters).
+/// Reduces the differences between the parts of each cluster that are mostly noise (docs/method/method.md, Clusters).
 class ClusterShrinkage {
   public:
     /// @param state, clusters, irradiance  Must outlive this. The irradiance is all light or a part of it, by patch;

@@ -64,7 +64,7 @@ AddedError added_error(const SolverState& state, std::uint32_t first, const Sibl
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }
 
-/// Applies a Wiener filter (docs/method.md, Shrinkage).
+/// Applies a Wiener filter (docs/method/method.md, Shrinkage).
 Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first, const SiblingVariation& variation) {
     const ElementForest& forest = *state.forest;
     Shrinkage s{{1, 1, 1, 1}, state.noise.shares(forest, state.solution.irradiance, first, state.history[first])};

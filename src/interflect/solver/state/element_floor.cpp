@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/geometry/split.h"
+#include "interflect/geometry/surfaces/split.h"
 
 namespace interflect::detail {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/state/solver_state.h"

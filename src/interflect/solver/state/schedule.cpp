@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 
 namespace interflect::detail {
 

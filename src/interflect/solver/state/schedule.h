@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/solve_options.h"
 
 namespace interflect::detail {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "interflect/base/address_space.h"
-#include "interflect/base/parallel.h"
+#include "interflect/base/memory/address_space.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/light/radiosity.h"
 

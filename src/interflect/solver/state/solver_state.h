@@ -8,10 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "interflect/base/common_stop.h"
-#include "interflect/base/rank_sums.h"
-#include "interflect/base/state_archive.h"
-#include "interflect/base/stop_request.h"
+#include "interflect/base/files/state_archive.h"
+#include "interflect/base/sums/rank_sums.h"
+#include "interflect/base/sums/common_stop.h"
+#include "interflect/base/threads/stop_request.h"
 #include "interflect/elements/forest.h"
 #include "interflect/luminaires/emission.h"
 #include "interflect/solution.h"

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/rank_sums.h"
+#include "interflect/base/sums/rank_sums.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {

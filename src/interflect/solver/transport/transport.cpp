@@ -6,11 +6,11 @@
 #include <span>
 #include <utility>
 
-#include "interflect/base/fixed_point.h"
-#include "interflect/base/parallel.h"
-#include "interflect/base/random.h"
-#include "interflect/base/rank_sums.h"
-#include "interflect/base/shared_ranges.h"
+#include "interflect/base/numbers/fixed_point.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/sums/rank_sums.h"
+#include "interflect/base/threads/parallel.h"
+#include "interflect/base/threads/shared_ranges.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/solver/deposit/contributions.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <span>
 
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/random.h"
 #include "interflect/solver/sampling/ray_maker.h"
 
 namespace interflect::detail {

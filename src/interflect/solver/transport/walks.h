@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/points.h"
+#include "interflect/base/numbers/points.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/solver/deposit/contribution_units.h"

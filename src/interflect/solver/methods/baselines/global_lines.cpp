@@ -8,13 +8,13 @@
 #include <numbers>
 #include <vector>
 
-#include "interflect/base/fixed_point.h"
-#include "interflect/base/parallel.h"
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
+#include "interflect/base/numbers/fixed_point.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
-#include "interflect/geometry/tangent_frame.h"
+#include "interflect/geometry/textures/tangent_frame.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/solver/methods/passes.h"
 
@@ -184,7 +184,7 @@ class LineSums {
     std::vector<std::int64_t> squares_, started_, escaped_rays_;
 };
 
-/// Passes with global lines (Sbert 1993, 1997; docs/method.md).
+/// Passes with global lines (Sbert 1993, 1997; docs/method/method.md).
 class GlobalLines final : public Passes {
   public:
     explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/parallel.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/raycast/panes.h"
 #include "interflect/solver/deposit/contribution_units.h"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/noise_update.h"
 #include "interflect/solver/iteration/iteration_method.h"
@@ -146,7 +146,7 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     return !is_last;
 }
 
-/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995; docs/method.md).
+/// Progressive refinement (Cohen et al. 1988; Bekaert and Willems 1994, 1995; docs/method/method.md).
 class ProgressiveRefinement final : public IterationMethod {
   public:
     void prepare(SolverState& state) override {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/noise_update.h"
 #include "interflect/solver/iteration/run_step.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/iteration/iteration_method.h"
 #include "interflect/solver/methods/passes.h"

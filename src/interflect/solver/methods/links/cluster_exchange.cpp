@@ -7,8 +7,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
 
 namespace interflect::detail {
 

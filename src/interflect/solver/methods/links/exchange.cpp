@@ -5,8 +5,8 @@
 #include <numbers>
 #include <vector>
 
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {

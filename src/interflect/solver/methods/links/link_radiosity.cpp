@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/importance/importance_weights.h"
@@ -35,7 +35,7 @@ constexpr std::size_t pairs_per_task = 256;
 /// Rays of a quick link.
 constexpr double rays_of_quick_link = 2 * 4;
 /// Share of the rays that links between all patches may need: 707 patches at 20 million rays. 1,902 patches need 0.7 of
-/// the rays, and then have 1.6 times the error of clusters (docs/results.md).
+/// the rays, and then have 1.6 times the error of clusters (docs/method/results.md).
 constexpr double share_of_pairs = 0.1;
 /// Partial sums of light from clusters. The number of threads must not change their order.
 constexpr std::size_t cluster_sums = 8;

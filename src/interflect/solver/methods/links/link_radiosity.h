@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/iteration/iteration_method.h"
 #include "interflect/solver/methods/links/cluster_exchange.h"

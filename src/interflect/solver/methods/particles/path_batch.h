@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "interflect/base/fixed_point.h"
-#include "interflect/base/parallel.h"
-#include "interflect/base/points.h"
-#include "interflect/base/random.h"
+#include "interflect/base/numbers/fixed_point.h"
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/panes.h"

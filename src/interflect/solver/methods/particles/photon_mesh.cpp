@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/base/parallel.h"
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/noise_update.h"
 #include "interflect/solver/iteration/iteration_method.h"
@@ -33,7 +33,7 @@ constexpr double large_share = 1e-3;
 /// Adaptive subdivision by particles (Heckbert 1990; Tobler, Wilkie, Feda and Purgathofer 1997). Particles as in
 /// RandomWalks, but a reflected one starts where it hit. The leaves of the forest are quarters of the elements of the
 /// paper: an element is divided once its quarters' hits differ, which makes the quarters elements with quarters of
-/// their own (docs/method.md).
+/// their own (docs/method/method.md).
 class PhotonMesh final : public IterationMethod {
   public:
     explicit PhotonMesh(const SolverState& state)

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/noise_update.h"
 #include "interflect/solver/importance/importance_weights.h"

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "interflect/base/state_archive.h"
+#include "interflect/base/files/state_archive.h"
 #include "interflect/solver/iteration/iteration_method.h"
 #include "interflect/solver/methods/particles/path_series.h"
 

@@ -1,0 +1,500 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "apps/interflect/commands/commands.h"
+#include "apps/interflect/console/progress.h"
+#include "apps/interflect/drawing/drawing_progress.h"
+#include "apps/interflect/drawing/drawing_time.h"
+#include "apps/interflect/drawing/run_path_tracer.h"
+#include "apps/interflect/drawing/show.h"
+#include "apps/interflect/drawing/view_check.h"
+#include "apps/interflect/options/cut_options.h"
+#include "apps/interflect/options/false_colour_options.h"
+#include "apps/interflect/options/light_group_options.h"
+#include "apps/interflect/options/refused_options.h"
+#include "apps/interflect/options/shading_options.h"
+#include "apps/interflect/processes/long_work.h"
+#include "apps/interflect/processes/signals.h"
+#include "apps/interflect/processes/threads.h"
+#include "apps/interflect/solving/read_light.h"
+#include "apps/interflect/solving/run_solve.h"
+#include "apps/interflect/solving/stats_file.h"
+#include "apps/interflect/values/distinct_files.h"
+#include "apps/interflect/values/parse.h"
+#include "interflect/base/files/pending_file.h"
+#include "interflect/base/memory/machine_memory.h"
+#include "interflect/core.h"
+#include "interflect/image.h"
+#include "interflect/image/codecs/image_codecs.h"
+#include "interflect/image/files/pending_image.h"
+#include "interflect/image/plots/legend.h"
+#include "interflect/raycast/camera.h"
+#include "interflect/render.h"
+#include "interflect/render/pictures/camera_samples.h"
+#include "interflect/render/pictures/outlines.h"
+#include "interflect/scene/core/view.h"
+#include "interflect/solution.h"
+
+namespace interflect::command {
+
+using namespace detail;
+
+namespace {
+
+struct RenderArguments {
+    SceneOptions scene;
+    MeshOptions mesh;
+    ViewOptions view;
+    CutOptions cut;
+    DimmingOptions dimming;
+    SolverOptions solver;
+    PathTracerArguments path;
+    std::filesystem::path output;
+    Size size;               // of the picture with its legend
+    PictureOptions picture;  // of the view, see complete()
+    Exposure exposure;
+    Tonemap tonemap = Tonemap::srgb;
+    float display_luminance = usual_display_luminance;
+    Shown shown = Shown::light;
+    FalseColourOptions false_colour;
+    int legend_rows = 0;  // at the foot of the picture
+    bool has_default_samples = true;
+
+    bool is_in_false_colours() const { return is_quantity(shown) || false_colour.measured; }
+    /// Height of the view, above the legend [pixels].
+    int rows() const { return size.height - legend_rows; }
+    /// Time left to the command [s]; infinite without --time.
+    double seconds_left() const { return solver.time() - seconds_of_process(); }
+    /// Sets the options of the view that follow from others.
+    void complete() {
+        picture.width = size.width;
+        picture.height = rows();
+        has_default_samples = picture.samples == 0;
+        picture.samples = require_samples(picture.shading, &DefaultSamples::pixel, picture.samples);
+        picture.until = solver.until();
+        picture.seed = solver.seed();
+        if (false_colour.measured == Measured::illuminance) picture.quantity = PictureQuantity::irradiance;
+    }
+};
+
+/// Returns the requested view, the scene's first, or an overview.
+View view_to_draw(const Scene& scene, const RenderArguments& options) {
+    if (options.cut.is_given()) return options.cut.view(scene, options.size.width, options.rows());
+    const std::vector<View> views = options.view.views(scene);
+    if (!views.empty()) return views.front();
+    if (!scene.views.empty()) return scene.views.front();
+    spdlog::warn("{} names no view and none was given: drawing an overview (--eye and --look-at choose another)",
+                 scene.name);
+    return overview(scene);
+}
+
+/// A picture with its metadata.
+struct Picture {
+    Image image;
+    std::string quantity = "radiance [cd/m^2]";
+    std::optional<float> exposure;  // empty if it has no meaning
+    std::int64_t non_finite_pixels = 0;
+    bool is_dark = false;  // no light is visible
+    Rendering traced{};    // source of the layers
+};
+
+bool is_for_people(const RenderArguments& options) { return needs_tone_mapping(require_image_format(options.output)); }
+
+bool is_black(const Image& image) {
+    return std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0); });
+}
+
+/// Returns the exposure [stops]. Operators for absolute luminance choose the brightness, so automatic is 0.
+float exposure_of(const Image& light, const RenderArguments& options) {
+    const bool automatic = options.exposure.relative && !is_absolute(options.tonemap);
+    return options.exposure.stops + (automatic ? automatic_exposure(light) : 0);
+}
+
+/// Uses false colours for display formats only.
+Picture picture_of_numbers(const Image& values, const RenderArguments& options) {
+    Picture picture;
+    picture.quantity = options.false_colour.label();
+    picture.image = is_for_people(options) ? options.false_colour.draw(values, options.legend_rows > 0) : values;
+    return picture;
+}
+
+/// Uses tone mapping for display formats only.
+Picture picture_of_light(const Image& light, const RenderArguments& options) {
+    Picture picture;
+    picture.exposure = exposure_of(light, options);
+    picture.image =
+        is_for_people(options) ? tone_map(light, *picture.exposure, options.tonemap, options.display_luminance) : light;
+    return picture;
+}
+
+/// @param light  Radiance, or irradiance if that is shown.
+Picture picture_of(const Image& light, std::int64_t non_finite_pixels, const RenderArguments& options) {
+    Picture picture = options.false_colour.measured ? picture_of_numbers(luminances(light), options)
+                                                    : picture_of_light(light, options);
+    picture.non_finite_pixels = non_finite_pixels;
+    picture.is_dark = is_black(light);
+    return picture;
+}
+
+/// @param solution  Null for shading without one.
+Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
+                   const RenderArguments& options) {
+    Rendering traced = run_path_tracer(scene, solution, ray_caster, view, options.picture, options.path);
+    Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
+    picture.traced = std::move(traced);
+    return picture;
+}
+
+Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                   const RenderArguments& options) {
+    DrawingProgress progress;
+    const Rendering rendering =
+        interflect::render(solved.scene, solved.solution, ray_caster, view, options.picture, progress.monitor());
+    Picture picture = picture_of(rendering.image, rendering.non_finite_pixels, options);
+    if (options.shown == Shown::mesh)
+        picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,
+                                      options.picture.samples, options.picture.seed, {}, progress.monitor());
+    return picture;
+}
+
+std::string label(const RenderArguments& options) {
+    return options.false_colour.measured ? options.false_colour.label() : label_of(options.shown);
+}
+
+/// Returns the height of the legend [pixels], or 0 if it does not fit.
+int legend_rows(const RenderArguments& options) {
+    const auto [width, height] = options.size;
+    if (!is_for_people(options) || !options.is_in_false_colours()) return 0;
+    if (legend_fits(width, height, label(options))) return legend_height(width);
+    spdlog::warn("{} x {} pixels have no room for a legend: the colours are not explained", width, height);
+    return 0;
+}
+
+/// Uses false colours for display formats only.
+Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                      const RenderArguments& options) {
+    const PictureOptions& picture = options.picture;
+    const CameraSampling sampling{picture.width, picture.height, picture.samples, picture.seed};
+    DrawingProgress progress;
+    QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling, progress.monitor());
+    if (options.legend_rows > 0) drawn.shown = with_legend(drawn.shown, drawn.scale, label(options));
+    Image& image = is_for_people(options) ? drawn.shown : drawn.values;
+    return {std::move(image), label(options), {}, drawn.non_finite_pixels};
+}
+
+void write_picture(PendingFile& output, const Picture& picture, const View& view, const Scene& scene,
+                   std::uint64_t seed, const RenderArguments& options) {
+    const LongWork work(fmt::format("writing {}", options.output.string()));
+    write_image(output, picture.image,
+                {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure.value_or(0)},
+                options.path.layers ? layers_of(picture.traced) : std::vector<ImageLayer>());
+    if (picture.non_finite_pixels > 0) spdlog::warn("{} pixels are not finite", picture.non_finite_pixels);
+    const bool is_exposed = picture.exposure && is_for_people(options);
+    spdlog::info("{}: {} x {}, view '{}', {}{}", options.output.string(), picture.image.width, picture.image.height,
+                 view.name, picture.quantity, is_exposed ? fmt::format(", exposure {:+.2f}", *picture.exposure) : "");
+}
+
+std::array<NamedFile, 3> outputs_of(const RenderArguments& options) {
+    return {
+        {{"--output", options.output}, {"--stats", options.solver.stats}, {"--error-image", options.path.error_image}}};
+}
+
+/// Whether coarser pictures may precede the final one: not within a time limit, in formats for numbers, pipes and
+/// devices.
+bool takes_previews(const RenderArguments& options) {
+    constexpr std::size_t fewest_pixels = 1 << 16;  // smaller pictures take less than a second
+    if (std::isfinite(options.solver.time())) return false;
+    if (!is_for_people(options) || options.shown != Shown::light || options.size.pixels() < fewest_pixels) return false;
+    std::error_code unknown;
+    const auto status = std::filesystem::status(options.output, unknown);
+    return options.output != "-" && (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status));
+}
+
+/// Writes a picture of the light so far, with few samples, which a better one replaces.
+void write_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                   const RenderArguments& options) {
+    constexpr int preview_samples = 4;
+    PictureOptions few = options.picture;
+    few.samples = std::min(few.samples, preview_samples);
+    few.shading = Shading::smooth;
+    const Rendering rendering = interflect::render(scene, solution, ray_caster, view, few, {{}, &stop_flag()});
+    if (rendering.interrupted) return;
+    const Picture picture = picture_of(rendering.image, rendering.non_finite_pixels, options);
+    PendingFile output(options.output);
+    write_image(
+        output, picture.image,
+        {view, picture.quantity, scene.name, INTERFLECT_VERSION, solution.options.seed, picture.exposure.value_or(0)});
+    spdlog::info("{}: picture so far; a better one will replace it", options.output.string());
+}
+
+/// Predicts the time of drawing. Changes to smooth shading with few samples if the time is too short.
+DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                         RenderArguments& options) {
+    constexpr int few_samples = 4;
+    if (traces_paths(options.picture.shading)) {
+        const DrawingTime paths =
+            predict_time_of_paths(scene, solution, ray_caster, view, options.picture, options.path.denoise);
+        const double left = options.seconds_left();
+        if (paths.total() <= largest_drawing_share * left) return paths;
+        const std::string needed = fmt::format("per-pixel shading takes about {}, but --time leaves {}",
+                                               duration(paths.total()), duration(std::max(0.0, left)));
+        if (options.path.needs_paths()) {
+            spdlog::warn("{}: the picture will be late", needed);
+            return paths;
+        }
+        spdlog::warn("{}: the light is drawn as by --shading smooth; a smaller --size takes less time", needed);
+        options.picture.shading = Shading::smooth;
+        options.picture.samples = std::min(options.picture.samples, few_samples);
+    }
+    return predict_time_of_elements(scene, solution, ray_caster, view, options.picture);
+}
+
+/// Draws smooth shading instead of paths if a signal leaves pixels without light.
+Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                      RenderArguments& options) {
+    if (traces_paths(options.picture.shading)) {
+        // A signal that ended the solver would end gathering before its first ray.
+        if (options.path.needs_paths() || !is_stop_requested()) {
+            Picture picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options);
+            if (options.path.needs_paths() || has_every_pixel(picture.traced)) return picture;
+        }
+        spdlog::warn("stopped before each pixel had enough light: the picture is drawn as by --shading smooth");
+        options.picture.shading = Shading::smooth;
+        options.picture.samples =
+            std::min(options.picture.samples, require_samples(Shading::smooth, &DefaultSamples::pixel));
+    }
+    return is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
+                                      : draw_light(solved, ray_caster, view, options);
+}
+
+/// Draws the light of a solution; solves a scene first.
+void run_solution(RenderArguments& options, PendingFile& output) {
+    const bool solved_before = is_solution_file(options.scene.path);
+    SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
+    require_no_scene_files(solved.scene, outputs_of(options));
+    const View view = view_to_draw(solved.scene, options);
+    Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses views without a picture
+    const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
+    // A plan shows the whole scene equally: importance has no benefit.
+    const std::vector<View> important = options.cut.is_given() ? std::vector<View>() : std::vector{view};
+    SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
+    if (!solved_before)
+        solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
+    StatsFile stats(options.solver.threads, options.solver.stats);
+    const RayCaster ray_caster = make_ray_caster(solved.scene);
+    warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
+
+    // --time limits the whole command.
+    constexpr double shortest_time = 1e-3;  // [s]
+    const bool is_limited = !solved_before && std::isfinite(options.solver.time());
+    double seconds_to_preview = 1;
+    if (is_limited) {
+        const double left = std::max(shortest_time, options.seconds_left());
+        seconds_to_preview = std::min(seconds_to_preview, left / 10);
+        solve_options.limits.time = left / 3;  // until the time of drawing is known
+        if (options.has_default_samples && traces_paths(options.picture.shading))
+            options.picture.samples = options.picture.max_samples;  // until the time is over
+    }
+
+    std::optional<DrawingTime> planned;
+    const auto plan_or_preview = [&](const Solution& so_far) -> std::optional<Limits> {
+        if (takes_previews(options)) write_preview(solved.scene, so_far, ray_caster, view, options);
+        if (!is_limited) return {};
+        planned = plan_drawing(solved.scene, so_far, ray_caster, view, options);
+        const double left = options.seconds_left(),
+                     spent = so_far.iterations.empty() ? 0 : so_far.iterations.back().seconds;
+        Limits limits = solve_options.limits;
+        limits.time =
+            spent + std::max(shortest_time, left - reserved_for(*planned, traces_paths(options.picture.shading), left));
+        return limits;
+    };
+    if (!solved_before)
+        solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory, {},
+                                    {.after = seconds_to_preview, .use = plan_or_preview});
+    if (traces_paths(options.picture.shading) && !planned && !is_stop_requested()) plan_or_preview(solved.solution);
+
+    if (is_limited && planned) {
+        PictureOptions& picture = options.picture;
+        picture.time = std::max(shortest_time, options.seconds_left() - planned->finishing);
+        if (options.has_default_samples && picture.shading == Shading::hybrid)
+            picture.samples = planned->samples_within(picture.time, picture.max_samples);
+    }
+    const Picture picture = draw_solution(solved, ray_caster, view, options);
+    if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);
+    write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
+    if (!solved_before) stats.write(solved.scene, solved.solution);
+}
+
+/// Draws the light by paths without a solution; uses only the scene of a solution file.
+void run_paths(const RenderArguments& options, PendingFile& output) {
+    Scene scene = read_scene_or_solution(options.scene, options.dimming).scene;
+    require_no_scene_files(scene, outputs_of(options));
+    if (!is_solution_file(options.scene.path)) scene = options.mesh.cut(std::move(scene), options.scene.read);
+    const View view = view_to_draw(scene, options);
+    const RayCaster ray_caster = make_ray_caster(scene);
+    const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
+    warn_of_camera_outside(scene, ray_caster, view, aspect);
+    const Picture picture = draw_paths(scene, nullptr, ray_caster, view, options);
+    if (picture.is_dark) warn_of_darkness(scene, ray_caster, view, aspect);
+    write_picture(output, picture, view, scene, options.solver.seed(), options);
+}
+
+/// @throws std::runtime_error if a picture of elements does not fit into memory.
+void require_memory_for_elements(Size size) {
+    constexpr std::size_t bytes_per_pixel = 64;  // measured: 56 for light, picture and false colours
+    require_free_memory(size.pixels() * bytes_per_pixel,
+                        fmt::format("a picture of {} x {} pixels", size.width, size.height),
+                        "a smaller --size needs less");
+}
+
+/// Warns about options without effect. @throws UsageError for a display luminance that no operator uses.
+void check_tone_options(const RenderArguments& options, const CLI::App& command) {
+    if (command.get_option("--display-luminance")->count() > 0 && !is_absolute(options.tonemap))
+        throw UsageError("--display-luminance has no effect: it is for --tonemap ward, tumblin and ferwerda");
+    for (const char* name : {"--exposure", "--tonemap"}) {
+        if (command.get_option(name)->count() == 0) continue;
+        if (options.is_in_false_colours())
+            spdlog::warn("{} has no effect: numbers are drawn in false colours", name);
+        else if (!is_for_people(options))
+            spdlog::warn("{} does not change linear values, which {} holds: it is for .png and .jpg", name,
+                         options.output.string());
+    }
+}
+
+void check_false_colours(const RenderArguments& options) {
+    options.false_colour.check();
+    if (options.false_colour.measured && options.shown != Shown::light)
+        throw UsageError("--false-colour measures the light: expected no --show beside it");
+    const bool is_drawn =
+        options.false_colour.scale || options.false_colour.logarithmic || options.false_colour.isolines;
+    if (is_drawn && !is_for_people(options))
+        spdlog::warn("{} holds the numbers themselves: --scale, --logarithmic and --isolines are for .png and .jpg",
+                     options.output.string());
+}
+
+/// Refuses all invalid options before the first ray.
+void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
+    const ThreadLimit threads(options.solver.threads);
+    check_option("--output", [&] { return require_image_format(options.output); });
+    Shading& shading = options.picture.shading;
+    const bool uses_solution = needs_solution(shading);
+    if (options.shown != Shown::light && uses_solution && traces_paths(shading))
+        shading = Shading::smooth;  // of elements
+    if (!uses_solution)
+        refuse_solver_options(command);
+    else if (!traces_paths(shading))
+        refuse_path_options(command);
+    if (shading != Shading::instant && command.get_option("--light-walks")->count() > 0)
+        throw UsageError("--light-walks", "only --shading instant takes it");
+    if (options.path.layers && require_image_format(options.output) != ImageFormat::exr)
+        throw UsageError("--layers", "layers need a picture in OpenEXR: expected an --output that ends in .exr");
+    if (require_image_format(options.output) == ImageFormat::png &&
+        codecs::png_bytes(options.size.width, options.size.height) > codecs::max_png_bytes)
+        throw UsageError("--size",
+                         fmt::format("{} x {} pixels are too many for a PNG: expected fewer, or another format",
+                                     options.size.width, options.size.height));
+    if (options.shown == Shown::mesh && !is_for_people(options))
+        throw UsageError("--show", fmt::format("mesh is drawn to be looked at: expected an --output that ends in .png "
+                                               "or .jpg, found '{}'",
+                                               options.output.string()));
+    options.scene.check(command, traces_paths(shading));
+    options.view.check();
+    if (options.view.count() > 1) throw UsageError("--view", "a picture has one view, but several were given");
+    options.dimming.require_solution(options.scene.path);
+    if (uses_solution && command.get_option("--denoise")->count() == 0) options.path.denoise = is_for_people(options);
+    check_tone_options(options, command);
+    check_false_colours(options);
+    options.cut.check();
+    options.path.check();
+    options.legend_rows = legend_rows(options);
+    options.complete();
+    if (traces_paths(shading)) options.path.check_samples(command, options.picture.samples);
+    require_distinct_files(input_files(options.scene, options.view), outputs_of(options));
+    require_text_name({"--stats", options.solver.stats});
+    if (traces_paths(shading))
+        require_memory_for_paths(options.size);
+    else
+        require_memory_for_elements(options.size);
+    PendingFile output(options.output);
+    if (uses_solution)
+        run_solution(options, output);
+    else
+        run_paths(options, output);
+    if (is_stop_requested()) exit_code = interrupted;
+}
+
+void add_tone_options(CLI::App& command, RenderArguments& options) {
+    add_parsed(command, "--exposure", options.exposure, parse_exposure,
+               "Brightness of .png and .jpg: 1 more is twice as bright; auto+1 is twice as bright as by itself. For "
+               "ward, tumblin and ferwerda auto is 0: they choose the brightness")
+        ->type_name("STOPS|auto[+-STOPS]")
+        ->default_str("auto");
+    add_choice<Tonemap>(command, "--tonemap", options.tonemap,
+                        {{"srgb", Tonemap::srgb},
+                         {"reinhard", Tonemap::reinhard},
+                         {"filmic", Tonemap::filmic},
+                         {"agx", Tonemap::agx},
+                         {"ward", Tonemap::ward},
+                         {"tumblin", Tonemap::tumblin},
+                         {"ferwerda", Tonemap::ferwerda}},
+                        "Tone mapping of .png and .jpg. srgb: true ratios, clipped; reinhard, filmic, agx: curves with "
+                        "soft highlights; ward, tumblin, ferwerda: as bright as the scene looks, from cd/m^2")
+        ->default_str("srgb");
+    command
+        .add_option("--display-luminance", options.display_luminance,
+                    "Of the white of the display, for ward, tumblin and ferwerda [cd/m^2]")
+        ->check(number_between(1, 10000))
+        ->type_name("CD/M2")
+        ->default_str("100");
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, int& exit_code) {
+    const auto options = std::make_shared<RenderArguments>();
+    CLI::App& command =
+        *app.add_subcommand("render", "Draw a view of a solution, or of a scene after solving it or by path tracing");
+    options->scene.add_to(command, std::string(scene_formats) + ", solved first, or solution file (.h5)");
+    command.add_option("-o,--output", options->output, "Picture to write: .png .jpg .exr .hdr")
+        ->required()
+        ->type_name("FILE");
+    options->view.add_to(command);
+    options->cut.add_to(command, {"--view", "--view-file", "--eye"});
+    add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
+        ->type_name("WxH")
+        ->default_str("1280x720");
+    command
+        .add_option("--samples", options->picture.samples,
+                    fmt::format("Camera rays a pixel (default: {})", text_of_default_samples(&DefaultSamples::pixel)))
+        ->check(CLI::Range(1, 65536));
+    add_shading(command, options->picture.shading, &DefaultSamples::pixel, "pixel");
+    command
+        .add_option("--light-walks", options->picture.light_walks,
+                    "Random walks from the light sources that leave virtual lights, for each batch of samples "
+                    "(--shading instant)")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1 << 18))
+        ->group(path_group);
+    options->path.add_to(command, options->picture);
+    add_tone_options(command, *options);
+    add_show(command, options->shown);
+    options->false_colour.add_to(command);
+    options->dimming.add_to(command);
+    options->solver.add_to(command);
+    command.get_option("--rays")->description(
+        "Most rays to trace in all, such as 20M (default 20M, unless --until is given)");
+    command.get_option("--time")->description(
+        "Most seconds of the whole command, divided between solving and drawing; too short for --shading hybrid: "
+        "smooth");
+    options->mesh.add_to(command);
+    command.callback([options, &command, &exit_code] { run(*options, command, exit_code); });
+}
+
+}  // namespace interflect::command

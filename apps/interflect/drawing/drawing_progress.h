@@ -1,0 +1,29 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "apps/interflect/console/progress.h"
+#include "interflect/render/pictures/camera_samples.h"
+
+namespace interflect::command {
+
+/// Progress bar of a picture, shown after one second. Meanwhile a signal ends the process, since half a picture is
+/// useless.
+class DrawingProgress {
+  public:
+    DrawingProgress();
+    ~DrawingProgress();
+    DrawingProgress(const DrawingProgress&) = delete;
+    DrawingProgress& operator=(const DrawingProgress&) = delete;
+    /// Serves one drawing at a time; refers to this.
+    Monitor monitor();
+
+  private:
+    void show(const Progress& progress);
+
+    std::chrono::steady_clock::time_point start_;
+    std::optional<ProgressBar> bar_;
+};
+
+}  // namespace interflect::command

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <vector>
+
+#include "apps/interflect/values/parse.h"
+#include "interflect/image.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
+
+namespace interflect::command {
+
+inline constexpr const char* path_group = "Gathering and path tracing";
+
+/// Options of `render` for shading by paths.
+struct PathTracerArguments {
+    std::filesystem::path error_image;  ///< Empty: no image.
+    bool denoise = false;
+    bool layers = false;
+
+    /// @param picture  Receives the options of the library.
+    void add_to(CLI::App& app, PictureOptions& picture);
+    /// @throws UsageError for an error image in an 8-bit format.
+    void check() const;
+    /// @throws UsageError for fewer than two --samples, whose variance gives the error, and for --max-samples below
+    /// that or without --until.
+    static void check_samples(const CLI::App& app, int samples);
+    bool needs_paths() const { return layers || !error_image.empty(); }
+};
+
+/// Whether each pixel has two batches of paths.
+bool has_every_pixel(const Rendering& traced);
+
+/// Returns the layers of an OpenEXR file; refers to `traced`.
+std::vector<ImageLayer> layers_of(const Rendering& traced);
+
+/// @throws std::runtime_error if a gathered or path-traced picture does not fit into memory.
+void require_memory_for_paths(Size size);
+
+/// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
+/// with a partial result, which is neither filtered nor reported if smooth shading can replace it.
+/// @param solution  Null for shading without one.
+Rendering run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
+                          const PictureOptions& options, const PathTracerArguments& arguments);
+
+}  // namespace interflect::command

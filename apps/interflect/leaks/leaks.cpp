@@ -1,0 +1,245 @@
+#include "apps/interflect/leaks/leaks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "interflect/base/numbers/points.h"
+#include "interflect/base/numbers/random.h"
+#include "interflect/elements/forest.h"
+#include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/luminaires/emission.h"
+#include "interflect/render/lights/path_samples.h"
+#include "interflect/scene/core/core.h"
+#include "interflect/solver/light/materials.h"
+#include "interflect/solver/sampling/ray_maker.h"
+
+namespace interflect::command {
+
+using namespace detail;
+
+namespace {
+
+constexpr std::int64_t rays_traced = 1 << 16;
+constexpr std::uint64_t leak_seed = 1;
+constexpr float min_leak = 1e-3f, max_leak = 0.05f;
+/// Distance from an escaping ray to its parallels, relative to the scene's diagonal.
+constexpr float distance_beside = 0.02f;
+constexpr std::size_t rays_beside = 8;
+
+/// Leaves sampled systematically in proportion to their power.
+struct Sources {
+    std::vector<std::uint32_t> leaves;
+    double power = 0;  ///< Sum of channels and leaves.
+
+    double power_of_each() const { return power / static_cast<double>(leaves.size()); }
+};
+
+Sources sources(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
+    const ElementForest& forest = *solution.forest;
+    Materials materials(scene, ray_caster);
+    materials.grow(forest);
+    const std::vector<Rgb> b = radiosity(materials, forest, solution.irradiance);
+    const std::vector<std::uint32_t> leaves = forest.leaves();
+    std::vector<double> cumulative;
+    cumulative.reserve(leaves.size());
+    Sources result;
+    for (const std::uint32_t leaf : leaves) {
+        const float sum = channel_sum(b[leaf]);
+        if (std::isfinite(sum)) result.power += static_cast<double>(sum * forest.area(leaf));
+        cumulative.push_back(result.power);
+    }
+    std::size_t i = 0;
+    for (std::int64_t k = 0; result.power > 0 && k < rays_traced; ++k) {
+        const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(rays_traced) * result.power;
+        while (cumulative[i] < at) ++i;
+        result.leaves.push_back(leaves[i]);
+    }
+    return result;
+}
+
+Ray ray_from(std::uint32_t leaf, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t sample,
+             PointBlock& points) {
+    const std::uint32_t patch = forest.patch(leaf);
+    Ray ray;
+    Parameters origin;
+    shoot_rays(forest.geometry(patch), forest.cell(leaf), ray_caster.ray_offset(patch), PointSet::random, leak_seed,
+               sample, points, {&ray, 1}, {&origin, 1});
+    return ray;
+}
+
+/// Returns whether most parallels of a ray hit something.
+bool is_through_a_gap(const RayCaster& ray_caster, const Ray& ray, float distance) {
+    const V3f& d = ray.direction;
+    const V3f across = (std::abs(d.x) < 0.5f ? V3f(1, 0, 0) : V3f(0, 1, 0)).cross(d).normalized(),
+              other = d.cross(across);
+    std::array<Ray, rays_beside> beside;
+    for (std::size_t i = 0; i < rays_beside; ++i) {
+        const float angle = 2 * std::numbers::pi_v<float> * (static_cast<float>(i) + 0.5f) / rays_beside;
+        beside[i] = {ray.origin + distance * (std::cos(angle) * across + std::sin(angle) * other), d};
+    }
+    std::array<Hit, rays_beside> hits;
+    ray_caster.trace(beside, hits);
+    return 2 * std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.patch != none; }) >
+           static_cast<std::ptrdiff_t>(rays_beside);
+}
+
+struct LightByFace {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> power;  // by object and material
+    double sum = 0, reflected = 0;
+
+    /// @param received  How often the light is received, including the first time.
+    void add(const Patch& face, double arriving, double received) {
+        power[{face.object, face.material}] += arriving * received;
+        sum += arriving * received;
+        if (received > 1) reflected += arriving * (received - 1);
+    }
+    std::pair<std::uint32_t, std::uint32_t> object_and_material() const {
+        return std::max_element(power.begin(), power.end(),
+                                [](const auto& a, const auto& b) { return a.second < b.second; })
+            ->first;
+    }
+};
+
+/// Compares the hits of light rays and of their reverses.
+class WaysBack {
+  public:
+    WaysBack(const Scene& scene, const RayCaster& ray_caster)
+        : scene_(scene), ray_caster_(ray_caster), materials_(scene, ray_caster) {}
+
+    /// @param source  The patch that the ray leaves, or `none` for a luminaire.
+    void add(const Ray& ray, std::uint32_t source, double power) {
+        Hit hit = trace(ray);
+        if (hit.patch == none) return;
+        received_ += power;
+        V3f place = ray.origin + hit.distance * ray.direction;
+        if (const std::uint32_t face = face_between(ray.origin, source, place, hit.patch); face != none) {
+            extra_.add(scene_.patches[face], power, spread(place, hit.patch));
+            return;
+        }
+        // Faces behind a one-sided one may see the source through its back.
+        const std::uint32_t stops = hit.patch;
+        while (scene_.patches[hit.patch].other_side == none) {
+            const Ray behind{place - ray_caster_.ray_offset(hit.patch) * normal(hit.patch), ray.direction};
+            hit = trace(behind);
+            if (hit.patch == none) return;
+            place = behind.origin + hit.distance * ray.direction;
+            if (face_between(ray.origin, source, place, hit.patch) != none) return;
+            missing_.add(scene_.patches[stops], power, spread(place, hit.patch));
+        }
+    }
+    OneWayLight result() const {
+        const LightByFace& most = extra_.sum > missing_.sum ? extra_ : missing_;
+        if (!(most.sum > 0)) return {};
+        const auto [object, material] = most.object_and_material();
+        return {(extra_.sum - missing_.sum) / received_, (extra_.reflected - missing_.reflected) / received_, object,
+                material};
+    }
+
+  private:
+    Hit trace(const Ray& ray) const {
+        Hit hit;
+        ray_caster_.trace({&ray, 1}, {&hit, 1});
+        return hit;
+    }
+    V3f normal(std::uint32_t patch) const { return PatchGeometry(scene_, scene_.patches[patch]).normal(); }
+
+    /// Returns the patch that hides the start of a light ray from `place`, or `none`.
+    std::uint32_t face_between(const V3f& start, std::uint32_t source, const V3f& place, std::uint32_t patch) const {
+        constexpr float rounding = 1e-4f, offsets = 8;
+        const float offset = ray_caster_.ray_offset(patch), distance = (start - place).length();
+        if (!(distance > 0)) return none;  // in a corner
+        const Hit back = trace({place + offset * normal(patch), (start - place) / distance});
+        const bool is_seen =
+            back.patch == none || back.patch == source || back.distance >= distance * (1 - rounding) - offsets * offset;
+        return is_seen ? none : back.patch;
+    }
+
+    /// Samples how often light is received from `place` on, by a random walk. It ends at one-way lines of sight, so
+    /// light inside closed solids counts 0.
+    double spread(V3f place, std::uint32_t patch) {
+        constexpr float longest_walk = 1000;
+        float sum = 0;
+        while (sum < longest_walk) {
+            const std::array<std::uint32_t, 4> words = random_words(leak_seed, walk_steps_++);
+            const Ray ray{place + ray_caster_.ray_offset(patch) * normal(patch),
+                          cosine_direction(normal(patch), unit_float(words[0]), unit_float(words[1]))};
+            const Hit hit = trace(ray);
+            const V3f next = ray.origin + hit.distance * ray.direction;
+            if (hit.patch != none && face_between(ray.origin, patch, next, hit.patch) != none) break;
+            ++sum;
+            if (hit.patch == none || unit_float(words[2]) >= materials_.mean_reflectance(patch)) break;
+            place = next;
+            patch = hit.patch;
+        }
+        return static_cast<double>(sum);
+    }
+
+    const Scene& scene_;
+    const RayCaster& ray_caster_;
+    Materials materials_;
+    double received_ = 0;
+    LightByFace extra_, missing_;
+    std::uint64_t walk_steps_ = 0;
+};
+
+void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solution& solution, WaysBack& ways) {
+    PointBlock points;
+    std::uint64_t sample = 0;
+    const Sources from = sources(scene, ray_caster, solution);
+    for (const std::uint32_t leaf : from.leaves)
+        ways.add(ray_from(leaf, *solution.forest, ray_caster, sample++, points), solution.forest->patch(leaf),
+                 from.power_of_each());
+}
+
+/// Traces rays of each part in proportion to its power, rounded up.
+void add_luminaires(const Scene& scene, WaysBack& ways) {
+    const Emission emission(scene);
+    const double total = channel_sum(emission.total_power());
+    PointBlock points;
+    std::vector<Ray> rays;
+    for (std::size_t part = 0; part < emission.part_count() && total > 0; ++part) {
+        const double power = channel_sum(emission.power(part));
+        rays.resize(static_cast<std::size_t>(std::ceil(rays_traced * (power / total))));
+        emission.shoot(part, PointSet::random, leak_seed, 0, points, rays);
+        for (const Ray& ray : rays) ways.add(ray, none, power / static_cast<double>(rays.size()));
+    }
+}
+
+}  // namespace
+
+OneWayLight find_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
+    const bool has_one_sided_faces = std::any_of(scene.patches.begin(), scene.patches.end(),
+                                                 [](const Patch& patch) { return patch.other_side == none; });
+    if (!has_one_sided_faces) return {};
+    WaysBack ways(scene, ray_caster);
+    add_surfaces(scene, ray_caster, solution, ways);
+    add_luminaires(scene, ways);
+    return ways.result();
+}
+
+Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
+    const float distance = distance_beside * core_bounds(scene).size().length();
+    Escapes escapes;
+    PointBlock points;
+    for (const std::uint32_t leaf : sources(scene, ray_caster, solution).leaves) {
+        const auto sample = static_cast<std::uint64_t>(escapes.rays++);
+        const Ray ray = ray_from(leaf, *solution.forest, ray_caster, sample, points);
+        Hit hit;
+        ray_caster.trace({&ray, 1}, {&hit, 1});
+        if (hit.patch != none) continue;
+        ++escapes.escaped;
+        escapes.through_gaps += is_through_a_gap(ray_caster, ray, distance);
+    }
+    return escapes;
+}
+
+bool leaks(const Escapes& escapes) {
+    return escapes.share() > min_leak && escapes.share() < max_leak && 2 * escapes.through_gaps > escapes.escaped;
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,496 @@
+#include "apps/interflect/options/shared_options.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "apps/interflect/options/refused_options.h"
+#include "apps/interflect/processes/long_work.h"
+#include "interflect/base/memory/machine_memory.h"
+#include "interflect/core.h"
+#include "interflect/formats/text/extension.h"
+#include "interflect/formats/view_files.h"
+#include "interflect/geometry/surfaces/split.h"
+#include "interflect/prepare.h"
+#include "interflect/raycast/camera.h"
+#include "interflect/scene/core/view.h"
+
+namespace interflect::command {
+
+using namespace detail;
+
+namespace {
+
+bool is_patch_limit(const InputError& e) { return e.fault().setting == "max_patches"; }
+
+/// Memory while a scene is read, cut and prepared for ray tracing [bytes]. Measured: up to 290, for a sphere with 200
+/// divisions and for glTF instances of one triangle.
+constexpr std::size_t bytes_per_patch = 300;
+
+/// @param present  Patches already in memory.
+std::uint64_t patches_in_memory(std::size_t present = 0) { return present + free_memory() / bytes_per_patch; }
+
+}  // namespace
+
+void SceneOptions::add_to(CLI::App& app, const std::string& what) {
+    app.add_option("SCENE", path, what)->required()->type_name("FILE");
+    app.add_option("MORE", read.further_files,
+                   "More files of a Radiance scene (.rad, .mat), which see the modifiers of earlier ones as in oconv")
+        ->type_name("FILE");
+    app.add_option("--curve-divisions", read.curve_divisions, "Flat pieces per quarter circle of curved surfaces")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000));
+    add_parsed(app, "--unit", read.unit, parse_unit,
+               "Unit of the lengths in the file: m, cm, mm, km, in, ft, or so many metres")
+        ->type_name("UNIT")
+        ->default_str("m");
+    add_choice<Axis>(app, "--up-axis", read.up_axis,
+                     {{"x", Axis::x},
+                      {"-x", Axis::minus_x},
+                      {"y", Axis::y},
+                      {"-y", Axis::minus_y},
+                      {"z", Axis::z},
+                      {"-z", Axis::minus_z}},
+                     "What is up in the file: the scene is turned so that this becomes z")
+        ->default_str("z");
+    app.add_flag("--outside-files", read.outside_files,
+                 "Read files that the scene names outside of its own folder, too");
+    add_parsed(app, "--max-patches", read.max_patches, parse_count,
+               "Refuse a scene of more patches (files can ask for any number)")
+        ->type_name("COUNT")
+        ->default_str("50M");
+    const auto place = [this](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) try {
+                luminaires.push_back(parse_luminaire(text));
+            } catch (const std::invalid_argument& e) {
+                throw CLI::ValidationError("--luminaire", e.what());
+            }
+    };
+    app.add_option_function<std::vector<std::string>>(
+           "--luminaire", place,
+           "Place measured light (.ies, .ldt) at X,Y,Z [m], aimed at the "
+           "point AX,AY,AZ (default: straight down, -z), and "
+           "turned about its axis; lumens: of its lamps; mount=top: by the top of its "
+           "opening, not by the middle (may be repeated)")
+        ->type_name("FILE@X,Y,Z[,AX,AY,AZ][,turn=DEGREES][,lumens=LM][,maintenance=FACTOR][,mount=top]")
+        ->allow_extra_args(false);
+    add_daylight_to(app);
+}
+
+void SceneOptions::add_daylight_to(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { return option->group(daylight_group); };
+    const auto set_sky = [this](const std::string& text) {
+        try {
+            const Sky sky = parse_sky(text);
+            daylight.cie_sky = sky.cie, daylight.perez_sky = sky.perez;
+        } catch (const std::invalid_argument& e) {
+            throw CLI::ValidationError("--sky", e.what());
+        }
+    };
+    CLI::Option* sky = group(
+        app.add_option_function<std::string>(
+               "--sky", set_sky,
+               "Add a sky: overcast, uniform, intermediate or clear, another type of the CIE (cie-1 to cie-16), or "
+               "Perez's, from direct normal and diffuse horizontal irradiance [W/m2]; LUX: horizontal illuminance of "
+               "the sky alone (default: usual for that sky and sun)")
+            ->type_name("MODEL[:LUX]|perez:DIRECT,DIFFUSE"));
+    group(add_parsed(app, "--sun", daylight.sun, parse_sun,
+                     "Add the sun: azimuth from north (y) over east (x) and altitude [degrees]; LUX: illuminance of a "
+                     "surface that faces it (default: usual for the sky)")
+              ->type_name("AZIMUTH,ALTITUDE[,LUX]"));
+    group(app.add_option("--ground", daylight.ground_reflectance,
+                         "Reflectance of the ground below the horizon, which sky and sun light")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1))
+              ->needs(sky));
+    group(add_parsed(app, "--environment", daylight.environment, parse_environment,
+                     "Surround the scene with an image (.exr, .hdr) of longitudes and latitudes; ROTATION: azimuth in "
+                     "its middle [degrees], SCALE: factor of its radiance")
+              ->type_name("FILE[,ROTATION[,SCALE]]"));
+    group(add_parsed(app, "--zenith", zenith_, parse_vector, "What is up for these")->type_name("X,Y,Z"))
+        ->default_str("0,0,1");
+}
+
+void SceneOptions::check(const CLI::App& command, bool traces_paths) const {
+    refuse_scene_options(command, path, traces_paths);
+    constexpr std::array<std::string_view, 5> of_files = {"MORE", "--curve-divisions", "--unit", "--up-axis",
+                                                          "--outside-files"};
+    if (path.string().starts_with("maze:"))
+        refuse_options(command, of_files, "it has no effect on a maze, which is made in metres, with z up");
+    for (const std::filesystem::path& file : read.further_files)
+        for (const std::filesystem::path& part : {path, file})
+            if (const std::string extension = lower_case_extension(part); extension != ".rad" && extension != ".mat")
+                throw UsageError("MORE", fmt::format("several files are one scene only if all are Radiance's (.rad, "
+                                                     ".mat), not '{}' and '{}'",
+                                                     path.string(), file.string()));
+    check_daylight(command);
+}
+
+Daylight SceneOptions::placed_daylight() const {
+    Daylight placed = daylight;
+    placed.zenith = V3f(zenith_);
+    return placed;
+}
+
+/// Adds one part after the other to an empty scene, so that errors name their option.
+void SceneOptions::check_daylight(const CLI::App& command) const {
+    constexpr std::array<std::string_view, 1> zenith = {"--zenith"};
+    if (!daylight.sun && !daylight.cie_sky && !daylight.perez_sky && !daylight.environment)
+        refuse_options(command, zenith, "it has no effect without --sky, --sun or --environment");
+    const Daylight all = placed_daylight();
+    const auto check = [](const char* option, const Daylight& part) {
+        check_option(option, [&] {
+            Scene empty;
+            add_daylight(empty, part);
+        });
+    };
+    Daylight part;
+    part.zenith = all.zenith;
+    check("--zenith", part);
+    part.sun = all.sun;
+    check("--sun", part);
+    part.cie_sky = all.cie_sky;
+    part.perez_sky = all.perez_sky;
+    part.ground_reflectance = all.ground_reflectance;
+    check("--sky", part);
+}
+
+Scene SceneOptions::load(bool needs_light) const {
+    ReadOptions limited = read;
+    limited.max_patches = std::min(read.max_patches, patches_in_memory());
+    try {
+        Scene scene = [&] {
+            const LongWork work(fmt::format("reading {}", path.string()));
+            return load_scene(path, limited, luminaires, placed_daylight());
+        }();
+        log_warnings(scene.warnings, needs_light ? "" : "no-light");
+        return scene;
+    } catch (const InputError& e) {
+        if (is_patch_limit(e) && limited.max_patches < read.max_patches)
+            throw std::runtime_error(
+                fmt::format("{}: there is memory for no more, the limits of this process (its machine, ulimit -v, "
+                            "control groups) leave {} MiB; a scene of fewer copies, fewer --curve-divisions need less",
+                            e.what(), usable_memory() >> 20));
+        throw;
+    }
+}
+
+void log_warnings(const Warnings& warnings, std::string_view omitted) {
+    for (const Warnings::Entry& w : warnings.entries()) {
+        if (w.kind == omitted) continue;
+        const std::string times = w.count > 1 ? fmt::format(" ({} times)", w.count) : "";
+        spdlog::warn("{}{}{}", w.where.empty() ? "" : w.where + ": ", w.message, times);
+    }
+}
+
+void MeshOptions::add_to(CLI::App& app) {
+    add_parsed(app, "--mesh-size", size, parse_mesh_size,
+               "Divide patches to this longest edge [m] before solving; auto: by the scene's size for methods that do "
+               "not refine; none: as in the file")
+        ->type_name("METRES|auto|none")
+        ->default_str("auto")
+        ->group(solver_group);
+    app.add_flag("--contact-cuts,!--no-contact-cuts", contact_cuts,
+                 "Cut faces where others stand on them, pass through or cover them, so that no light leaks there "
+                 "(default), or leave them as in the file")
+        ->group(solver_group);
+}
+
+Scene MeshOptions::cut(Scene scene, const ReadOptions& read) const {
+    if (!contact_cuts) return scene;
+    const Warnings earlier = std::exchange(scene.warnings, {});
+    const std::size_t faces = scene.patches.size();
+    {
+        const LongWork work("cutting faces where others meet them");
+        scene = cut_at_contacts(scene, {.min_extent = static_cast<float>(2 * default_element_size(scene)),
+                                        .max_patches = std::min(read.max_patches, patches_in_memory(faces))});
+    }
+    log_warnings(scene.warnings);
+    if (scene.patches.size() > faces)
+        spdlog::info("faces are cut where others meet them: {} patches, before {}", scene.patches.size(), faces);
+    scene.warnings = earlier;
+    return scene;
+}
+
+Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) const {
+    scene = cut(std::move(scene), read);
+    if (size == whole_patches || (size == automatic_mesh_size && refines)) return scene;
+    const float edge = size == automatic_mesh_size ? default_mesh_size(scene) : size;
+    const std::uint64_t most = std::min(read.max_patches, patches_in_memory(scene.patches.size()));
+    try {
+        return split_patches(scene, edge, most);
+    } catch (const InputError& e) {
+        if (!is_patch_limit(e)) throw;
+        if (most < read.max_patches)
+            throw std::runtime_error(
+                fmt::format("{}: there is memory for no more, use a larger --mesh-size", e.what()));
+        throw InputError(fmt::format("{}; use a larger --mesh-size or raise --max-patches", e.what()));
+    }
+}
+
+void ViewOptions::add_to(CLI::App& app) {
+    add_without_up(app);
+    add_parsed(app, "--up", up, parse_vector, "What is up in the picture, of --eye")
+        ->type_name("X,Y,Z")
+        ->needs("--eye")
+        ->default_str("0,0,1")
+        ->group(view_group);
+}
+
+void ViewOptions::add_without_up(CLI::App& app) {
+    const auto group = [](CLI::Option* option) {
+        option->group(view_group);
+        return option;
+    };
+    group(app.add_option("--view", names, "Name of a view that the scene has (may be repeated)")->type_name("NAME"));
+    group(app.add_option("--view-file", files, "Radiance view file, .vf (may be repeated)")->type_name("FILE"));
+    const auto vector_option = [&](const std::string& name, auto& v, const std::string& help) {
+        return group(add_parsed(app, name, v, parse_vector, help)->type_name("X,Y,Z"));
+    };
+    CLI::Option* eye_option = vector_option("--eye", eye, "Where the eye is [m]");
+    CLI::Option* look_at_option = vector_option("--look-at", look_at, "A point in the middle of the picture [m]");
+    eye_option->needs(look_at_option);
+    look_at_option->needs(eye_option);
+    group(app.add_option("--fov", fov, "Vertical field of view of --eye [degrees]")
+              ->needs(eye_option)
+              ->capture_default_str()
+              ->check(number_between(0.001, 179)));
+}
+
+void ViewOptions::check() const {
+    if (!(up.length() > 0)) throw UsageError("--up", "0,0,0 is no direction");
+    if (eye) check_option("--eye", [&] { Camera(view_of_eye(), 1, 1, *eye); });
+}
+
+std::vector<View> ViewOptions::views(const Scene& scene) const {
+    std::vector<View> views;
+    if (!names.empty() && scene.views.empty())
+        throw InputError(scene.name, 0,
+                         fmt::format("there is no view '{}'; it names none, give --eye and --look-at", names.front()));
+    for (const std::string& name : names) views.push_back(find_view(scene, name));
+    for (const auto& file : files) views.push_back(read_radiance_view(file));
+    if (eye) views.push_back(view_of_eye());
+    for (const View& view : views) Camera(view, 1, 1, scene.origin);  // refuses views without a picture
+    return views;
+}
+
+std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view) {
+    std::vector<NamedFile> files = {{"the scene", scene.path}, {"the scene's views", view_list_path(scene.path)}};
+    for (const std::filesystem::path& file : scene.read.further_files) {
+        files.push_back({"a file of the scene", file});
+        files.push_back({"the scene's views", view_list_path(file)});
+    }
+    for (const std::filesystem::path& file : view.files) files.push_back({"--view-file", file});
+    for (const PlacedLuminaire& placed : scene.luminaires) files.push_back({"--luminaire", placed.file});
+    if (scene.daylight.environment) files.push_back({"--environment", scene.daylight.environment->file});
+    return files;
+}
+
+void add_threads(CLI::App& app, int& threads) {
+    app.add_option("--threads", threads, "Threads to use; 0: as many as the machine has. Results do not depend on it")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 4096));
+}
+
+void add_method(CLI::App& app, std::optional<Method>& method) {
+    std::vector<std::pair<std::string, Method>> choices;
+    choices.reserve(methods.size());
+    for (const Method& m : methods) choices.emplace_back(m.name, m);
+    add_choice<Method>(
+        app, "--method", method, choices,
+        "How to solve; docs/method/method.md tells them apart (default: ihsrr with a view, hsrr without)")
+        ->group(solver_group);
+}
+
+void LimitOptions::add_to(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(limits_group); };
+    group(add_parsed(app, "--rays", rays, parse_count,
+                     "Most rays to trace in all, such as 20M (default 20M, unless --time or --until is given)")
+              ->type_name("COUNT"));
+    group(
+        app.add_option("--time", time,
+                       "Most seconds to solve, besides reading, cutting and writing; in render: for the whole command")
+            ->type_name("SECONDS")
+            ->check(number_between(1e-3, 1e9)));
+    group(add_parsed(app, "--until", until, parse_share,
+                     "Stop at this estimated relative error, such as 2%; with a view: of what it shows")
+              ->type_name("SHARE"));
+}
+
+Limits LimitOptions::resolved() const {
+    const Limits unlimited;
+    return {rays.value_or(unlimited.rays), time.value_or(unlimited.time), until.value_or(unlimited.until)};
+}
+
+void SolverOptions::add_to(CLI::App& app) {
+    add_method(app, method_);
+    add_parsed(app, "--seed", solve_.seed, parse_seed, "Same seed, same bits")
+        ->type_name("NUMBER")
+        ->default_str("1")
+        ->group(solver_group);
+    app.add_flag("--keep-direct", solve_.keep_direct,
+                 "Keep the light that comes straight from sources apart, in the solution file")
+        ->group(solver_group);
+    app.add_option("--stats", stats, "Write what each iteration did to this file, as JSON lines")
+        ->type_name("FILE")
+        ->group(solver_group);
+    limits_.add_to(app);
+    add_refinement(app);
+    add_importance(app);
+    add_schedule(app);
+    add_paper_refinement(app);
+    add_paper_importance(app);
+    add_threads(app, threads);
+}
+
+void SolverOptions::add_refinement(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(refinement_group); };
+    RefinementOptions& refinement = solve_.refinement;
+    group(add_choice<RefinementCriterion>(
+              app, "--refinement-criterion", refinement.criterion,
+              {{"variance", RefinementCriterion::variance},
+               {"perceptual", RefinementCriterion::perceptual},
+               {"power", RefinementCriterion::power}},
+              "Elements are split by the differences that rays measure, by visible differences only, or pairs by power "
+              "(Eq. 14, 15)")
+              ->default_str("variance"));
+    group(
+        app.add_option("--min-area", refinement.min_area,
+                       "No element smaller than this [m2]; 0: what a pixel shows of what is seen, else (5 mm)2 or less")
+            ->type_name("AREA")
+            ->capture_default_str()
+            ->check(number_between(0, 1e9)));
+    group(add_parsed(app, "--max-elements", refinement.max_elements, parse_element_count, "Refinement ends there")
+              ->type_name("COUNT")
+              ->default_str("67M"));
+    group(add_parsed(app, "--memory", memory, parse_memory,
+                     "Refinement ends before the process takes more than this (k, M, G: powers of 1024)")
+              ->type_name("BYTES")
+              ->default_str("9/10 of the machine's"));
+}
+
+void SolverOptions::add_importance(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(importance_group); };
+    group(add_choice<ImportanceUse>(
+        app, "--importance", importance_,
+        {{"off", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}},
+        "What a view steers by: nothing, what it shows, or that and all that lights it (default: the method's)"));
+    ImportanceOptions& importance = solve_.importance;
+    group(app.add_option("--camera-rays", importance.camera_rays,
+                         "Rays that find what a view shows at first, per view; more follow as rays are averaged")
+              ->capture_default_str()
+              ->check(CLI::Range(1, max_camera_rays)));
+    group(app.add_option(
+                 "--importance-smoothing", importance.smoothing,
+                 "How much of its parent's importance drives an element's rays and refinement; 0: as in the paper")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+    group(app.add_option("--importance-exponent", importance.exponent,
+                         "Rays start by power times importance to this power; 1: as in the paper")
+              ->type_name("EXPONENT")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+}
+
+void SolverOptions::add_schedule(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(experimental_group); };
+    ExperimentalOptions& o = solve_.experimental;
+    // Takes effect while the command line is parsed, before the options that replace its settings.
+    group(app.add_option_function<std::string>(
+                 "--preset",
+                 [this](const std::string&) {
+                     use_published_algorithm(solve_);
+                     solve_.experimental.rays_per_iteration = 0;  // depends on --rays
+                     is_published_ = true;
+                 },
+                 "paper: the algorithm as published in 2000, in 10 iterations that warm up and 100 that are averaged; "
+                 "other options replace its settings")
+              ->type_name("paper")
+              ->check(CLI::IsMember({"paper"}))
+              ->trigger_on_parse());
+    group(add_choice<PointSet>(app, "--points", o.points, {{"sobol", PointSet::sobol}, {"random", PointSet::random}},
+                               "Sample points: scrambled Sobol' or pseudo-random")
+              ->default_str("sobol"));
+    group(app.add_flag("--one-bounce", o.one_bounce,
+                       "Each iteration takes the mean one bounce further, instead of following light to its end"));
+    group(app.add_option("--warm-up", o.warm_up, "Iterations that are not averaged, after the first estimate")
+              ->capture_default_str()
+              ->check(CLI::Range(0, 1'000'000)));
+    group(app.add_option("--iterations", o.iterations, "Averaged iterations; 0: as many as the limits allow")
+              ->capture_default_str()
+              ->check(CLI::Range(0, 1'000'000'000)));
+    group(add_parsed(app, "--rays-per-iteration", o.rays_per_iteration, parse_iteration_size,
+                     "Rays of each iteration; default: small at first, then growing")
+              ->type_name("COUNT"));
+}
+
+void SolverOptions::add_paper_refinement(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(experimental_group); };
+    ExperimentalOptions& o = solve_.experimental;
+    group(app.add_flag("--shrinkage,!--no-shrinkage", o.shrinkage,
+                       "Reduce differences of neighbouring elements that are mostly noise "
+                       "(with --refinement-criterion variance)"));
+    group(app.add_flag("--clusters,!--no-clusters", o.clusters,
+                       "Also between faces that are near each other and face alike: for scenes of many small faces. "
+                       "Method hr: link clusters of faces where they are many"));
+    group(app.add_option("--epsilon", o.epsilon,
+                         "Power that may pass between two elements undivided, relative to what is seen (or emitted), "
+                         "once 20M rays are averaged")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(1e-15, 1e15)));
+    group(
+        app.add_option("--epsilon-decay", o.epsilon_decay,
+                       "That power falls as rays^-EXPONENT: the mesh gets finer as the noise falls; 0: as in the paper")
+            ->type_name("EXPONENT")
+            ->capture_default_str()
+            ->check(number_between(0, 1)));
+    group(app.add_option("--inherited-weight", o.inherited_weight,
+                         "How much its parent's past counts for a new element; 1: as in the paper")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+    group(app.add_flag("--defer-refinement", o.defer_refinement,
+                       "No refinement during the warm-up ('dr'); there is one with --warm-up"));
+}
+
+void SolverOptions::add_paper_importance(CLI::App& app) {
+    const auto group = [](CLI::Option* option) { option->group(experimental_group); };
+    ExperimentalOptions& o = solve_.experimental;
+    group(app.add_flag("--separate-iterations", o.separate_iterations,
+                       "Importance and power in steps of their own ('si'), instead of in one ('ci')"));
+    group(app.add_flag("--importance-at-patches", o.importance_at_patches,
+                       "Keep importance by patches, instead of by elements ('hi')"));
+    group(app.add_flag("--total-importance", o.total_importance,
+                       "Rays start by total importance (Eq. 9), instead of indirect (Eq. 10)"));
+    group(app.add_option("--alpha", o.alpha, "Share of the rays for importance")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+    group(app.add_option("--beta", o.beta, "Share of the other rays that start by power alone")
+              ->type_name("SHARE")
+              ->capture_default_str()
+              ->check(number_between(0, 1)));
+}
+
+SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect, int pixel_rows) const {
+    SolveOptions options = solve_;
+    options.method = method_.value_or(default_method(!views.empty()));
+    options.method.importance = importance_.value_or(options.method.importance);
+    for (const View& view : views) options.views.push_back({view, 1, aspect, pixel_rows});
+    if (limits_.any()) options.limits = limits_.resolved();
+    if (is_published_ && options.experimental.rays_per_iteration == 0) {
+        SolveOptions published = options;
+        use_published_algorithm(published);
+        options.experimental.rays_per_iteration = published.experimental.rays_per_iteration;
+    }
+    return options;
+}
+
+}  // namespace interflect::command

@@ -1,0 +1,71 @@
+#include "apps/interflect/processes/signals.h"
+
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include "interflect/base/files/pending_file.h"
+
+namespace interflect::command {
+
+using namespace detail;
+
+namespace {
+
+constexpr std::array stop_signals = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
+std::atomic<bool> first_only_stops{false}, stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // required in signal handlers
+
+void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }
+
+/// Ends the process as without a handler.
+void end_process(int signal) {
+    remove_temporary_files();
+    if (::isatty(STDERR_FILENO) == 1) say("\n");  // below a progress bar
+    say("ended by a signal, without a result\n");
+    std::signal(signal, SIG_DFL);
+    ::raise(signal);  // delivered when the handler returns
+}
+
+extern "C" void handle_stop_signal(int signal) {
+    if (!first_only_stops || stop_requested.exchange(true)) return end_process(signal);
+    const int errno_before = errno;
+    if (::isatty(STDERR_FILENO) == 1) say("\n");  // below a progress bar
+    say("stopping, keeping what is usable; once more ends at once, keeping nothing\n");
+    errno = errno_before;
+}
+
+bool is_ignored(int signal) {
+    struct sigaction action {};
+    return ::sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+}  // namespace
+
+void handle_signals() {
+    struct sigaction action {};
+    action.sa_handler = handle_stop_signal;
+    action.sa_flags = SA_RESTART;
+    for (const int signal : stop_signals) ::sigaddset(&action.sa_mask, signal);
+    for (const int signal : stop_signals)
+        if (signal != SIGHUP || !is_ignored(signal)) ::sigaction(signal, &action, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void stop_on_signal() { first_only_stops = true; }
+
+void ignore_stop_signals() {
+    for (const int signal : stop_signals) std::signal(signal, SIG_IGN);
+}
+
+void end_on_signal() { first_only_stops = false; }
+
+const std::atomic<bool>& stop_flag() { return stop_requested; }
+
+bool is_stop_requested() { return stop_requested; }
+
+}  // namespace interflect::command

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interflect/formats/gltf/data/asset.h"
+
+namespace interflect::detail {
+
+class GltfBuffers {
+  public:
+    struct View {
+        std::string_view bytes;
+        std::size_t stride = 0;  ///< 0: packed.
+    };
+
+    /// @param parts  Must outlive this.
+    GltfBuffers(GltfAsset& asset, const GltfParts& parts);
+
+    std::size_t view_count() const { return views_.size(); }
+    View view(std::uint32_t index);
+
+  private:
+    std::string_view buffer(std::uint32_t index);
+    std::string_view range(const GltfValue& owner);
+    const std::string& decompressed(std::uint32_t index);
+
+    GltfAsset& asset_;
+    const GltfParts& parts_;
+    std::vector<GltfValue> buffers_, views_;
+    std::map<std::uint32_t, std::string> read_, decompressed_;
+};
+
+}  // namespace interflect::detail

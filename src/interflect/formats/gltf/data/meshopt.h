@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "interflect/formats/gltf/data/asset.h"
+
+namespace interflect::detail {
+
+/// Calls take_bytes() first. @throws GltfFault for invalid data.
+std::string decode_meshopt(const GltfValue& extension, std::string_view compressed, GltfAsset& asset);
+
+}  // namespace interflect::detail

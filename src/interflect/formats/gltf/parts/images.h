@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "interflect/formats/gltf/data/buffers.h"
+#include "interflect/image/codecs/stored_image.h"
+
+namespace interflect::detail {
+
+/// Opaque fraction of a surface.
+struct GltfCoverage {
+    std::uint32_t image = none;
+    float factor = 1;
+    float cutoff = 0;
+
+    float at(float alpha) const { return cutoff > 0 ? (factor * alpha >= cutoff ? 1.0f : 0.0f) : factor * alpha; }
+};
+
+struct GltfTexels {
+    std::uint32_t colour = none;    ///< sRGB; white if absent.
+    std::uint32_t metallic = none;  ///< Image with metallic in blue.
+    float metallic_factor = 0;      ///< Scales by 1 - metallic_factor * metallic.
+    Rgb factor{1, 1, 1};            ///< Scales colours before clamping to 1.
+    GltfCoverage coverage{};        ///< Blends the colour with `open`.
+    Rgb open{0, 0, 0};
+
+    auto key() const {
+        return std::tuple(colour, metallic, metallic_factor, factor.x, factor.y, factor.z, coverage.image,
+                          coverage.factor, coverage.cutoff, open.x, open.y, open.z);
+    }
+};
+
+struct GltfImageMeans {
+    Rgb colour{1, 1, 1};  ///< Linear.
+    Rgb stored{1, 1, 1};  ///< Not decoded.
+    float alpha = 1;
+    float min_alpha = 1;
+};
+
+/// PNG and JPEG images.
+class GltfImages {
+  public:
+    GltfImages(GltfAsset& asset, GltfBuffers& buffers);
+
+    std::uint32_t image_of_texture(std::uint32_t texture);
+    std::size_t texture_count() const { return textures_.size(); }
+    bool repeats(std::uint32_t texture) const;
+
+    /// Returns an index into Model::textures; whether a texel was clamped.
+    std::pair<std::uint32_t, bool> texture(const GltfTexels& texels);
+    /// After all textures of a material, to keep sizes equal.
+    void limit_textures();
+    const GltfImageMeans& means(std::uint32_t image);
+
+  private:
+    StoredImage decode(std::uint32_t image);
+    std::string bytes_of(std::uint32_t image);
+    Texture make_texture(const GltfTexels& texels, bool& is_reduced);
+
+    GltfAsset& asset_;
+    GltfBuffers& buffers_;
+    std::vector<GltfValue> images_, textures_, samplers_;
+    std::vector<std::uint32_t> first_alike_;
+    std::map<decltype(GltfTexels().key()), std::pair<std::uint32_t, bool>> index_;
+    std::map<std::uint32_t, GltfImageMeans> means_;
+    std::uint64_t texels_ = 0, decoded_ = 0;
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,271 @@
+#include "interflect/formats/mesh/obj/materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <stdexcept>
+
+#include "interflect/core.h"
+#include "interflect/formats/build/material_limits.h"
+#include "interflect/formats/build/texture_files.h"
+#include "interflect/formats/build/texture_limit.h"
+#include "interflect/formats/reading/read_fault.h"
+#include "interflect/formats/text/extension.h"
+#include "interflect/formats/text/line_reader.h"
+#include "interflect/formats/text/number.h"
+#include "interflect/formats/text/text_file.h"
+#include "interflect/scene/core/limits.h"
+#include "interflect/scene/faces/texel_centre.h"
+
+namespace interflect::detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+float mtl_number(std::string_view word) {
+    const auto value = parse_number(word);
+    if (!value) throw std::invalid_argument(fmt::format("expected a finite number, not '{}'", word));
+    return static_cast<float>(*value);
+}
+
+Rgb mtl_colour(std::span<const std::string_view> words) {
+    if (words.size() != 2 && words.size() != 4)
+        throw std::invalid_argument(
+            fmt::format("{} needs one number or three, as spectra and XYZ are not read", words[0]));
+    Rgb result;
+    for (int c = 0; c < 3; ++c) result[c] = mtl_number(words[words.size() == 2 ? 1 : 1 + c]);
+    if (std::min({result.x, result.y, result.z}) < 0)
+        throw std::invalid_argument(fmt::format("{} is negative", words[0]));
+    return result;
+}
+
+constexpr std::string_view map_of_colours = "map_Kd";
+
+bool has_transparency(const StoredImage& image) {
+    for (std::size_t i = 0; i < image.pixel_count(); ++i)
+        if (image.value(i, 3) < 1) return true;
+    return false;
+}
+
+std::size_t max_arguments(std::string_view option) {
+    if (option == "-mm") return 2;
+    return option == "-o" || option == "-s" || option == "-t" ? 3 : 1;
+}
+
+}  // namespace
+
+ObjMaterials::ObjMaterials(Model& model, const ReadOptions& options) : model_(model), options_(options) {
+    model_.materials.push_back(default_material());
+}
+
+void ObjMaterials::read(const fs::path& path, const Location& where) {
+    if (!read_.insert(path.string()).second) return;
+    if (options_.max_include_depth < 1)
+        throw std::invalid_argument("no other file may be read (max_include_depth is 0)");
+    require_within(path, model_.file.parent_path(), options_, fmt::format("'{}'", path.string()));
+    std::error_code ignored;
+    if (!fs::exists(path, ignored)) {
+        warn("missing-file", fmt::format("there is no material library '{}'", path.filename().string()), where);
+        return;
+    }
+    read_text(read_text_file(path), path);
+}
+
+void ObjMaterials::read_text(std::string_view text, const fs::path& path) {
+    libraries_.push_back(path);
+    model_.files.push_back(path.string());
+    Definition* current = nullptr;
+    for (LineReader lines(text); lines.next();) {
+        const auto words = lines.words();
+        const Location here{&libraries_.back(), lines.line(), {}, true};
+        if (words[0] == "newmtl") {
+            std::string name(lines.rest());
+            if (name.size() > options_.max_name_length) throw here.error("the name of this material is too long");
+            current = &(definitions_[std::move(name)] = Definition());
+            current->where = here;
+        } else if (current && !words[0].starts_with('#')) {
+            try {
+                read_line(words, *current, here);
+            } catch (const std::invalid_argument& fault) {
+                throw here.error(fault);
+            }
+        }
+    }
+}
+
+void ObjMaterials::read_line(std::span<const std::string_view> words, Definition& definition, const Location& where) {
+    const std::string_view key = words[0];
+    if (key == "Kd") definition.diffuse = mtl_colour(words);
+    if (key == "Ke") definition.emitted = mtl_colour(words);
+    if (key == "Ks") definition.specular = mtl_colour(words);
+    if (key == map_of_colours && words.size() > 1) definition.texture = texture_path(words.subspan(1), where);
+    if (key == "map_d" && words.size() > 1) definition.mask = texture_path(words.subspan(1), where);
+    if ((key == "d" || key == "Tr") && words.size() > 1) {
+        const float value = mtl_number(words.back());
+        if (!(value >= 0 && value <= 1))
+            throw std::invalid_argument(fmt::format("{} is {}; expected 0 to 1", key, value));
+        if (key == "d" || !definition.has_dissolve) definition.opacity = key == "d" ? value : 1 - value;
+        definition.has_dissolve |= key == "d";
+    }
+}
+
+/// File names may contain spaces.
+fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, const Location& where) {
+    while (words.size() > 1 && words[0].starts_with('-')) {
+        warn("texture-option", "option of a texture map is ignored", where);
+        std::size_t taken = 1;
+        const std::size_t most = std::min(1 + max_arguments(words[0]), words.size() - 1);
+        // A single argument may be any word; several are optional numbers.
+        while (taken < most && (most == 2 || parse_number(words[taken]))) ++taken;
+        words = words.subspan(taken);
+    }
+    std::string name = fmt::format("{}", fmt::join(words, " "));
+    std::replace(name.begin(), name.end(), '\\', '/');
+    fs::path path = where.file->parent_path() / name;
+    try {
+        require_within(path, model_.file.parent_path(), options_, fmt::format("the texture '{}'", name));
+    } catch (const ReadFault& fault) {
+        throw InputError(
+            Fault{.text = fault.what(), .setting = fault.setting, .file = *where.file, .line = where.line});
+    }
+    return path;
+}
+
+std::uint32_t ObjMaterials::find(const std::string& name, const Location& where) {
+    const auto entry = definitions_.find(name);
+    if (entry == definitions_.end()) {
+        warn("missing-material", "material that no library has is taken as a grey of reflectance 0.5", where);
+        return 0;
+    }
+    Definition& definition = entry->second;
+    if (definition.material == none) definition.material = convert(name, definition);
+    return definition.material;
+}
+
+std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& definition) {
+    Material result;
+    result.name = name;
+    result.exitance = definition.emitted * static_cast<float>(std::numbers::pi);
+    result.reflectance = definition.diffuse;
+    const bool has_holes = !definition.mask.empty() && is_readable(definition.mask, "map_d", definition);
+    if (has_holes) {
+        cut_out(definition, result);
+    } else {
+        result.reflectance *= definition.opacity;
+        result.transmittance = Rgb(1 - definition.opacity);
+        result.reflectance_texture = texture(definition);
+    }
+    if (texels_ > max_texels) {
+        reduce_textures(model_.textures);
+        texels_ = texel_count(model_.textures);
+        warn("textures-reduced",
+             fmt::format("the largest images are halved in width and height, so that all have {} texels at most",
+                         max_texels),
+             definition.where);
+    }
+    bool limited = limit_reflectance(result.reflectance);
+    if (result.reflectance_texture != none) {
+        const Rgb largest = largest_texel(model_.textures[result.reflectance_texture]);
+        for (int c = 0; c < 3; ++c) {
+            const float most = static_cast<float>(largest_reflectance) / std::max(largest[c], 1e-6f);
+            result.reflectance[c] = std::min(result.reflectance[c], most);
+        }
+    }
+    limited |= !has_holes && limit_sum(result);
+    if (limited) warn("reflectance-clamped", "diffuse reflectance (Kd) above 0.99 is reduced", definition.where);
+    if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
+        throw InputError(*definition.where.file, definition.where.line,
+                         fmt::format("of the material '{}' the {}", name, fault));
+    if (largest_channel(definition.specular) > 0)
+        warn("specular-reflection", "specular reflectance (Ks) is left out", definition.where);
+    model_.materials.push_back(std::move(result));
+    return static_cast<std::uint32_t>(model_.materials.size() - 1);
+}
+
+bool ObjMaterials::is_readable(const fs::path& texture, std::string_view key, const Definition& definition) {
+    std::error_code ignored;
+    const std::string extension = lower_case_extension(texture);
+    const bool is_png_or_jpeg = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+    const bool is_known = is_png_or_jpeg || (key == map_of_colours && (extension == ".exr" || extension == ".hdr"));
+    if (is_known && fs::exists(texture, ignored)) return true;
+    warn("missing-texture",
+         fmt::format("texture ({}) that is missing, or no {}, is left out", key,
+                     key == map_of_colours ? "PNG, JPEG, EXR or HDR file" : "PNG or JPEG file"),
+         definition.where);
+    return false;
+}
+
+Texture ObjMaterials::read_colours(const Definition& definition) {
+    if (definition.texture.empty() || !is_readable(definition.texture, map_of_colours, definition))
+        return {"", 1, 1, {Rgb(1)}};
+    try {
+        require_regular_file(definition.texture);
+        Texture texture = read_texture(definition.texture);
+        count_decoded(texture.texels.size());
+        model_.files.push_back(definition.texture.string());
+        return texture;
+    } catch (const InputError& unreadable) {
+        throw definition.where.error(fmt::format("the texture {}", unreadable.what()));
+    }
+}
+
+StoredImage ObjMaterials::read_mask(const Definition& definition) {
+    try {
+        constexpr auto most = static_cast<std::int64_t>(max_texels);
+        StoredImage mask = decode_stored_image(read_bytes(definition.mask, max_image_bytes(most)), most);
+        count_decoded(mask.pixel_count());
+        model_.files.push_back(definition.mask.string());
+        return mask;
+    } catch (const std::runtime_error& unreadable) {
+        throw definition.where.error(
+            fmt::format("the texture '{}': {}", definition.mask.filename().string(), unreadable.what()));
+    }
+}
+
+void ObjMaterials::count_decoded(std::size_t pixels) {
+    constexpr std::uint64_t most = 32 * max_texels;  // as for glTF: materials may share an image
+    decoded_ += pixels;
+    if (decoded_ > most) throw InputError(fmt::format("with it, more than {} pixels are decoded", most));
+}
+
+std::uint32_t ObjMaterials::add_texture(Texture texture) {
+    texels_ += texture.texels.size();
+    model_.textures.push_back(std::move(texture));
+    return static_cast<std::uint32_t>(model_.textures.size() - 1);
+}
+
+std::uint32_t ObjMaterials::texture(const Definition& definition) {
+    if (definition.texture.empty()) return none;
+    const auto [entry, is_new] = textures_.try_emplace(definition.texture.string(), none);
+    if (is_new && is_readable(definition.texture, map_of_colours, definition))
+        entry->second = add_texture(read_colours(definition));
+    return entry->second;
+}
+
+void ObjMaterials::cut_out(const Definition& definition, Material& material) {
+    const StoredImage mask = read_mask(definition);
+    const bool has_alpha = has_transparency(mask);
+    const Texture colours = read_colours(definition);
+    Texture reflectance{
+        definition.mask.string(), static_cast<std::uint32_t>(mask.width), static_cast<std::uint32_t>(mask.height), {}};
+    Texture opening = reflectance, coverage = reflectance;
+    for (std::size_t i = 0; i < mask.pixel_count(); ++i) {
+        const float stored =
+            has_alpha ? mask.value(i, 3) : (mask.value(i, 0) + mask.value(i, 1) + mask.value(i, 2)) / 3;
+        const float covered = definition.opacity * std::min(stored, 1.0f);
+        Rgb colour = texel_at(colours, texel_centre(reflectance, i));
+        for (int c = 0; c < 3; ++c) colour[c] = std::min(colour[c], 1.0f);
+        reflectance.texels.push_back(colour * covered);
+        opening.texels.emplace_back(1 - covered);
+        coverage.texels.emplace_back(covered);
+    }
+    material.reflectance_texture = add_texture(std::move(reflectance));
+    material.transmittance = Rgb(1);
+    material.transmittance_texture = add_texture(std::move(opening));
+    if (largest_channel(material.exitance) > 0) material.exitance_texture = add_texture(std::move(coverage));
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <list>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "interflect/formats/build/model.h"
+#include "interflect/formats/reading/location.h"
+#include "interflect/image/codecs/stored_image.h"
+
+namespace interflect::detail {
+
+class ObjMaterials {
+  public:
+    /// Adds a default material.
+    ObjMaterials(Model& model, const ReadOptions& options);
+
+    /// Reads a file once. @throws InputError; std::invalid_argument if forbidden by the options.
+    void read(const std::filesystem::path& path, const Location& where);
+    void read_text(std::string_view text, const std::filesystem::path& path);
+    /// Returns an index into Model::materials; 0, with a warning, if unknown.
+    std::uint32_t find(const std::string& name, const Location& where);
+
+  private:
+    struct Definition {
+        Rgb diffuse{0.5f, 0.5f, 0.5f}, emitted{0, 0, 0}, specular{0, 0, 0};
+        float opacity = 1;
+        bool has_dissolve = false;      // `d`, which overrides `Tr`
+        std::filesystem::path texture;  // map_Kd
+        std::filesystem::path mask;     // map_d
+        Location where;
+        std::uint32_t material = none;  // set by find()
+    };
+    void read_line(std::span<const std::string_view> words, Definition& definition, const Location& where);
+    std::filesystem::path texture_path(std::span<const std::string_view> words, const Location& where);
+    std::uint32_t convert(const std::string& name, const Definition& definition);
+    std::uint32_t texture(const Definition& definition);
+    /// White if missing.
+    Texture read_colours(const Definition& definition);
+    StoredImage read_mask(const Definition& definition);
+    bool is_readable(const std::filesystem::path& texture, std::string_view key, const Definition& definition);
+    void cut_out(const Definition& definition, Material& material);
+    /// Limits the work. @throws InputError
+    void count_decoded(std::size_t pixels);
+    std::uint32_t add_texture(Texture texture);
+    void warn(const std::string& kind, const std::string& message, const Location& where) {
+        model_.warnings.add(kind, message, where.text());
+    }
+
+    Model& model_;
+    const ReadOptions& options_;
+    std::unordered_map<std::string, Definition> definitions_;
+    std::unordered_map<std::string, std::uint32_t> textures_;
+    std::unordered_set<std::string> read_;        // paths of libraries
+    std::list<std::filesystem::path> libraries_;  // referenced by locations
+    std::uint64_t texels_ = 0, decoded_ = 0;
+};
+
+}  // namespace interflect::detail

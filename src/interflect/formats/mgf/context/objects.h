@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "interflect/formats/mgf/context/contexts.h"
+#include "interflect/formats/mgf/context/scene_builder.h"
+#include "interflect/load.h"
+
+namespace interflect::detail {
+
+/// Open objects: `o` and array copies.
+class MgfObjects {
+  public:
+    MgfObjects(const ReadOptions& options, MgfSceneBuilder& scene) : options_(options), scene_(scene) {}
+
+    std::size_t depth() const { return open_.size(); }
+
+    /// @param is_copy  Closed by close_copy() only.
+    void open(std::string_view name, bool is_copy, const Location& where);
+    /// @return  false for an array copy or a depth of at most `outer_depth`.
+    bool close_innermost(std::size_t outer_depth);
+    void close_copy();
+    /// Warns about unclosed objects.
+    void close_down_to(std::size_t depth);
+
+    /// @return  Index into Scene::objects.
+    std::uint32_t current();
+
+  private:
+    struct OpenObject {
+        std::string dotted_name;
+        Location opened;
+        bool is_copy = false;
+        std::optional<std::uint32_t> scene_index;
+    };
+
+    const ReadOptions& options_;
+    MgfSceneBuilder& scene_;
+    std::vector<OpenObject> open_;
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "interflect/core.h"
+#include "interflect/formats/reading/read_fault.h"
+#include "interflect/formats/text/foreign_text.h"
+
+namespace interflect::detail {
+
+struct Location {
+    const std::filesystem::path* file = nullptr;
+    std::int64_t line = 0;       ///< From 1; 0: no lines.
+    std::string_view part = {};  ///< Such as "mesh 'chair'", or empty.
+    bool is_foreign = false;     ///< Messages do not quote referenced files.
+
+    std::string text() const {
+        if (!file) return {};
+        if (line > 0) return fmt::format("{}:{}", file->string(), line);
+        return part.empty() ? file->string() : fmt::format("{}: {}", file->string(), part);
+    }
+    std::string shown(const std::string& message) const { return is_foreign ? without_quotes(message) : message; }
+    /// @param setting  As in Fault.
+    InputError error(const std::string& message, const std::string& setting = {}) const {
+        const std::string text = part.empty() ? shown(message) : fmt::format("{}: {}", part, shown(message));
+        return InputError(Fault{text, std::string(part), setting, *file, line});
+    }
+    InputError error(const std::invalid_argument& fault) const { return error(fault.what(), setting_of(fault)); }
+};
+
+}  // namespace interflect::detail

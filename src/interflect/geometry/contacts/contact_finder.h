@@ -1,0 +1,67 @@
+#pragma once
+
+#include <ImathBox.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/geometry/contacts/facet.h"
+#include "interflect/geometry/polygons/planar_polygon.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+struct FoundSegment {
+    PlanarSegment segment;  ///< `a` is the lexicographically lower end.
+    int outline = 0;        ///< Side of a coplanar face: 1 left, -1 right; 0 otherwise.
+};
+
+class ContactFinder {
+  public:
+    /// @param rank  rank_by_flat_surface().
+    /// @param gap   Maximum distance of facets that count as touching although they do not [m], for large ones.
+    ContactFinder(const Scene& scene, const Facet& facet, std::span<const std::uint32_t> rank, double touch_distance,
+                  double gap);
+
+    const PlanarPolygon& polygon() const { return polygon_; }
+    const PlaneFrame& frame() const { return frame_; }
+
+    /// Maximum distance of a facet that counts as touching [m].
+    float reach() const;
+    bool plane_meets(const Imath::Box3f& box) const;
+    void add_contacts_with(const Facet& other);
+    /// Returns the connected components at least `min_extent` [m] wide.
+    std::vector<PlanarSegment> segments(double min_extent);
+
+  private:
+    /// Removes duplicates and shared borders of coplanar faces.
+    std::vector<PlanarSegment> distinct_segments();
+    /// Returns the lowest index of each segment's component. Common ends connect segments.
+    std::vector<std::uint32_t> connected(const std::vector<PlanarSegment>& segments) const;
+
+    bool is_two_sided(const Facet& f) const { return scene_.patches[f.face].other_side != none; }
+
+    bool starts_alike(std::size_t i, std::size_t j) const {
+        return found_[j].segment.a.x - found_[i].segment.a.x <= facet_.detail();
+    }
+    bool is_same(const PlanarSegment& s, const PlanarSegment& t) const {
+        return (s.a - t.a).length() <= facet_.detail() && (s.b - t.b).length() <= facet_.detail();
+    }
+
+    void add(const Imath::V3d& a, const Imath::V3d& b, int outline);
+    void add_outline(const Facet& other);
+    void add_section(const Facet& other, const std::array<double, 4>& height, double touching);
+
+    const Scene& scene_;
+    const Facet& facet_;
+    std::span<const std::uint32_t> rank_;
+    double touch_distance_, gap_;
+    PlaneFrame frame_;
+    PlanarPolygon polygon_;
+    std::vector<FoundSegment> found_;
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,168 @@
+#include "interflect/geometry/coverage/face_overlap.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+
+#include "interflect/base/threads/parallel.h"
+#include "interflect/core.h"
+#include "interflect/geometry/search/bounds.h"
+#include "interflect/geometry/search/box_tree.h"
+#include "interflect/scene/faces/patch_area.h"
+
+namespace interflect::detail {
+
+namespace {
+
+using V3d = Imath::V3d;
+
+/// Minimum cosine: rejects low upright faces, tolerates noisy normals of small faces.
+constexpr double min_facing = 0.7;
+
+constexpr std::size_t search_grain = 1024;
+
+/// Clipping adds up to four corners.
+struct ClippedFace {
+    std::array<V3d, 8> corners;
+    std::size_t count = 0;
+
+    void add(const V3d& corner) { corners[count++] = corner; }
+    std::span<const V3d> face_corners() const { return {corners.data(), count}; }
+};
+
+ClippedFace polygon_of(const Scene& scene, const Patch& patch) {
+    ClippedFace polygon;
+    for (int i = 0; i < patch.vertex_count(); ++i)
+        polygon.add(V3d(scene.vertices[patch.vertices[static_cast<std::size_t>(i)]]));
+    return polygon;
+}
+
+/// {x: normal . x >= offset}, with a unit normal.
+struct HalfSpace {
+    V3d normal;
+    double offset = 0;
+
+    double height(const V3d& x) const { return normal.dot(x) - offset; }
+};
+
+bool lies_outside(const ClippedFace& polygon, const HalfSpace& half_space) {
+    return std::none_of(polygon.corners.begin(), polygon.corners.begin() + static_cast<std::ptrdiff_t>(polygon.count),
+                        [&](const V3d& corner) { return half_space.height(corner) >= 0; });
+}
+
+ClippedFace clipped(const ClippedFace& polygon, const HalfSpace& half_space) {
+    ClippedFace result;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const V3d &a = polygon.corners[i], &b = polygon.corners[(i + 1) % polygon.count];
+        const double height_a = half_space.height(a), height_b = half_space.height(b);
+        if (height_a >= 0) result.add(a);
+        if ((height_a >= 0) != (height_b >= 0)) result.add(a + (b - a) * (height_a / (height_a - height_b)));
+    }
+    return result;
+}
+
+class LargerFace {
+  public:
+    LargerFace(const Scene& scene, std::uint32_t face, std::span<const float> tolerance)
+        : scene_(scene), face_(face), tolerance_(tolerance), polygon_(polygon_of(scene, scene.patches[face])) {
+        const V3d area = doubled_area_vector<double>(polygon_.face_corners());
+        area_ = area.length();
+        plane_.normal = area / area_;
+        for (std::size_t i = 0; i < polygon_.count; ++i)
+            plane_.offset += plane_.normal.dot(polygon_.corners[i]) / static_cast<double>(polygon_.count);
+        for (std::size_t i = 0; i < polygon_.count; ++i) {
+            const V3d &a = polygon_.corners[i], &b = polygon_.corners[(i + 1) % polygon_.count];
+            const V3d inward = plane_.normal.cross(b - a).normalized();
+            inside_[i] = {inward, inward.dot(a)};
+        }
+    }
+
+    bool plane_meets(const Imath::Box3f& box) const {
+        return meets_plane(
+            box, plane_.normal, [&](const V3d& x) { return plane_.height(x); }, static_cast<double>(tolerance_[face_]));
+    }
+
+    bool is_overlapped_by(std::uint32_t face) const {
+        if (face == face_) return false;
+        ClippedFace shared = polygon_of(scene_, scene_.patches[face]);
+        const double tolerance = pair_tolerance(tolerance_, {face_, face});
+        const auto narrowed = [&](HalfSpace half_space) {
+            half_space.offset += tolerance;
+            return half_space;
+        };
+        for (std::size_t i = 0; i < polygon_.count; ++i)
+            if (lies_outside(shared, narrowed(inside_[i]))) return false;  // true for most neighbours
+        const V3d area = doubled_area_vector<double>(shared.face_corners());
+        const double facing = area.dot(plane_.normal);
+        if (!is_smaller(face, area.length()) || std::abs(facing) < min_facing * area.length()) return false;
+        if (facing < 0 && is_one_sided(face_) && is_one_sided(face)) return false;
+        for (std::size_t i = 0; i < polygon_.count && shared.count > 0; ++i)
+            shared = clipped(shared, narrowed(inside_[i]));
+        const auto end = shared.corners.begin() + static_cast<std::ptrdiff_t>(shared.count);
+        return shared.count > 0 && std::all_of(shared.corners.begin(), end,
+                                               [&](const V3d& x) { return std::abs(plane_.height(x)) <= tolerance; });
+    }
+
+  private:
+    bool is_one_sided(std::uint32_t face) const { return scene_.patches[face].other_side == none; }
+    bool is_smaller(std::uint32_t face, double area) const { return area < area_ || (area == area_ && face < face_); }
+
+    const Scene& scene_;
+    std::uint32_t face_;
+    std::span<const float> tolerance_;
+    ClippedFace polygon_;
+    double area_;  // twice the area
+    HalfSpace plane_;
+    std::array<HalfSpace, 4> inside_;
+};
+
+std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& ignored,
+                                 std::span<const float> tolerance) {
+    std::vector<Boxed> tree;
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        if (scene.patches[i].other_side >= i && !ignored[i]) tree.push_back({Imath::Box3f(), i});
+    parallel_for_ranges(tree.size(), search_grain, [&](std::size_t begin, std::size_t end) {
+        for (Boxed& face : std::span(tree).subspan(begin, end - begin))
+            face.box = widened(bounds_of(scene, scene.patches[face.index]), tolerance[face.index]);
+    });
+    arrange_box_tree(tree);
+    return tree;
+}
+
+}  // namespace
+
+std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
+                                        std::span<const float> tolerance) {
+    const std::vector<Boxed> tree = tree_of_faces(scene, ignored, tolerance);
+    const std::size_t most = free_overlaps + max_overlaps_per_patch * scene.patches.size();
+    std::atomic<std::size_t> count = 0;
+    std::vector<std::vector<FacePair>> found((scene.patches.size() + search_grain - 1) / search_grain);
+    parallel_for_ranges(scene.patches.size(), search_grain, [&](std::size_t begin, std::size_t end) {
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+            if (scene.patches[i].other_side < i || ignored[i] || count > most) continue;
+            const LargerFace larger(scene, i, tolerance);
+            const Imath::Box3f box = widened(bounds_of(scene, scene.patches[i]), tolerance[i]);
+            visit_box_tree(
+                std::span<const Boxed>(tree),
+                [&](const Imath::Box3f& b) { return b.intersects(box) && larger.plane_meets(b); },
+                [&](std::uint32_t j) {
+                    if (count > most || !larger.is_overlapped_by(j)) return;
+                    found[begin / search_grain].push_back({i, j});
+                    ++count;
+                });
+        }
+    });
+    if (count > most)
+        throw InputError(scene.name, 0,
+                         fmt::format("more than {} pairs of its faces lie in each other: expected surfaces of one "
+                                     "layer; remove copies of faces",
+                                     most));
+    std::vector<FacePair> pairs;
+    for (const std::vector<FacePair>& part : found) pairs.insert(pairs.end(), part.begin(), part.end());
+    return pairs;
+}
+
+}  // namespace interflect::detail

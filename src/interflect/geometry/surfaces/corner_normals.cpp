@@ -1,0 +1,152 @@
+#include "interflect/geometry/surfaces/corner_normals.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <span>
+#include <utility>
+
+#include "interflect/geometry/search/disjoint_sets.h"
+
+namespace interflect::detail {
+
+namespace {
+
+constexpr float flat_deviation = 0.0087f;  // of a unit vector turned by the angle of cosine_of_flat
+
+/// Smooth edges, each as two patches.
+std::vector<std::array<std::uint32_t, 2>> smooth_neighbours(const SmoothSurfaces& surfaces) {
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    std::vector<std::uint32_t> first(surfaces.edges.count, none);
+    for (std::uint32_t e = 0; e < surfaces.edges.group.size(); ++e) {
+        const std::uint32_t group = surfaces.edges.group[e];
+        if (group == none) continue;
+        if (first[group] == none)
+            first[group] = e / 4;
+        else
+            pairs.push_back({first[group], e / 4});
+    }
+    for (const SmoothSurfaces::Seam& seam : surfaces.seams) pairs.push_back({seam.edge[0] / 4, seam.edge[1] / 4});
+    return pairs;
+}
+
+/// Steps of the normal from each flat part of a surface to its smooth neighbours.
+class Bends {
+  public:
+    Bends(const Scene& scene, std::span<const V3f> own, const SmoothSurfaces& surfaces) : parts_(own.size()) {
+        const auto neighbours = smooth_neighbours(surfaces);
+        for (const auto& [a, b] : neighbours)
+            if (own[a].dot(own[b]) >= cosine_of_flat) parts_.unite(a, b);
+        unite_pieces(scene);
+        for (const auto& [a, b] : neighbours) {
+            const std::uint32_t p = parts_.find(a), q = parts_.find(b);
+            if (p == q) continue;
+            bends_.push_back({p, q, own[b] - own[a]});
+            bends_.push_back({q, p, own[a] - own[b]});
+        }
+        const auto key = [](const Bend& b) { return std::pair(b.part, b.neighbour); };
+        std::stable_sort(bends_.begin(), bends_.end(), [&](const Bend& a, const Bend& b) { return key(a) < key(b); });
+        bends_.erase(
+            std::unique(bends_.begin(), bends_.end(), [&](const Bend& a, const Bend& b) { return key(a) == key(b); }),
+            bends_.end());
+    }
+
+    /// Returns the largest component of a bend of the patch along `direction`, times its length; at least 0.
+    float largest_along(std::uint32_t patch, const V3f& direction) {
+        const auto [first, last] = std::equal_range(bends_.begin(), bends_.end(), Bend{parts_.find(patch), 0, V3f(0)},
+                                                    [](const Bend& a, const Bend& b) { return a.part < b.part; });
+        float largest = 0;
+        for (auto bend = first; bend != last; ++bend) largest = std::max(largest, std::abs(bend->turn.dot(direction)));
+        return largest;
+    }
+
+  private:
+    struct Bend {
+        std::uint32_t part, neighbour;
+        V3f turn;
+    };
+
+    /// Contacts separate the pieces of a face.
+    void unite_pieces(const Scene& scene) {
+        std::map<std::pair<std::uint32_t, bool>, std::uint32_t> first;
+        for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+            const Patch& patch = scene.patches[p];
+            if (patch.surface == none) continue;
+            const bool is_back = patch.other_side < p;
+            parts_.unite(first.try_emplace({patch.surface, is_back}, p).first->second, p);
+        }
+    }
+
+    DisjointSets parts_;
+    std::vector<Bend> bends_;
+};
+
+/// Returns the angle of a patch at its corner [rad].
+float corner_angle(const Scene& scene, const Patch& patch, int c) {
+    const int count = patch.vertex_count();
+    const auto position = [&](int corner) {
+        return scene.vertices[patch.vertices[static_cast<std::size_t>(corner % count)]];
+    };
+    const V3f a = position(c + 1) - position(c), b = position(c + count - 1) - position(c);
+    return std::atan2(a.cross(b).length(), a.dot(b));
+}
+
+}  // namespace
+
+CornerNormals::CornerNormals(const Scene& scene, const SmoothSurfaces& surfaces)
+    : normals_(4 * scene.patches.size(), V3f(0)), is_replaced_(normals_.size(), false) {
+    if (scene.normals.empty()) return;
+    const std::vector<V3f> own = patch_normals(scene);
+    const auto for_each_corner = [&](const auto& body) {
+        for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+            for (int c = 0; c < scene.patches[p].vertex_count(); ++c) {
+                const std::uint32_t corner = 4 * p + static_cast<std::uint32_t>(c);
+                body(corner, surfaces.corners.group[corner]);
+            }
+    };
+    std::vector<V3f> mean(surfaces.corners.count, V3f(0)), authored = mean;
+    for_each_corner([&](std::uint32_t corner, std::uint32_t group) {
+        const Patch& patch = scene.patches[corner / 4];
+        const V3f n = scene.normals[patch.vertices[corner % 4]];
+        normals_[corner] = n.dot(own[corner / 4]) < 0 ? -n : n;
+        authored[group] += normals_[corner];
+        mean[group] += own[corner / 4] * corner_angle(scene, patch, static_cast<int>(corner % 4));
+    });
+    for (V3f& n : mean) n.normalize();
+    for (V3f& n : authored) n.normalize();
+
+    Bends bends(scene, own, surfaces);
+    // Whether each group's normal of the file counts.
+    std::vector<bool> counts(mean.size(), false);
+    for_each_corner([&](std::uint32_t corner, std::uint32_t group) {
+        if (counts[group]) return;
+        const V3f deviation = authored[group] - mean[group];
+        counts[group] =
+            deviation.length() <= flat_deviation || deviation.length2() <= bends.largest_along(corner / 4, deviation);
+    });
+    for_each_corner([&](std::uint32_t corner, std::uint32_t group) {
+        if (counts[group] || normals_[corner] == V3f(0)) return;
+        normals_[corner] = mean[group];
+        is_replaced_[corner] = true;
+    });
+}
+
+std::vector<std::uint32_t> CornerNormals::contradicted_patches(const Scene& scene, float degrees) const {
+    const float cosine = std::cos(degrees * std::numbers::pi_v<float> / 180);
+    std::vector<std::uint32_t> patches;
+    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        const Patch& patch = scene.patches[p];
+        if (patch.other_side < p) continue;
+        const V3f own = PatchGeometry(scene, patch).normal();
+        for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(patch.vertex_count()); ++c)
+            if (is_replaced_[4 * p + c] && std::abs(scene.normals[patch.vertices[c]].dot(own)) < cosine) {
+                patches.push_back(p);
+                break;
+            }
+    }
+    return patches;
+}
+
+}  // namespace interflect::detail
