@@ -1,5 +1,5 @@
 # interflect_folder(NAME SOURCES ... USES other folders ... LINKS libraries ... [PRIVATE_LINKS libraries ...]):
-# the objects of a folder of src/interflect. USES names only folders above it in docs/develop/design.md's list.
+# the objects of a folder of src/interflect. USES names only folders above it in docs/develop/architecture.md's table.
 
 set(interflect_warnings -Wall -Wextra -Wconversion -Wshadow -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)

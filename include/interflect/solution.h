@@ -129,8 +129,8 @@ struct SolvedScene {
     std::string interflect_version;  ///< Program version that wrote the file; empty if not recorded.
 };
 
-/// Writes scene and solution as one HDF5 file (layout in docs/files/solution-file.md), with a report of every iteration and
-/// checksums of every byte. Equal input gives equal bytes.
+/// Writes scene and solution as one HDF5 file (layout in docs/files/solution-file.md), with a report of every iteration
+/// and checksums of every byte. Equal input gives equal bytes.
 /// @throws std::runtime_error if the file cannot be written; before writing, if the scene has a fault, or a quantity is
 ///         negative, not finite or not one per element. Every written file is therefore readable.
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution);

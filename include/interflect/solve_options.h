@@ -130,7 +130,8 @@ struct ExperimentalOptions {
     double beta = 0.1;  ///< Fraction of power rays that ignore importance, so all light is sampled; in [0, 1].
 };
 
-/// Plan of a run. Settings have the same names in the library, on the command line and in files; see docs/develop/design.md.
+/// Plan of a run. Settings have the same names in the library, on the command line and in files; see
+/// docs/guides/command-line.md.
 struct SolveOptions {
     Method method = automatic_method;
     std::vector<WeightedView> views = {};  ///< Views that define importance; without views importance is off.

@@ -1,4 +1,4 @@
-"""The rules of docs/develop/design.md that a compiler does not check: permitted includes, contents of headers, and wording of
+"""The rules of docs/develop/architecture.md that a compiler does not check: permitted includes, contents of headers, and wording of
 the library's messages."""
 
 import re

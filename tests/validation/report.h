@@ -18,9 +18,9 @@ Estimate mean_of_runs(const std::function<double(std::uint64_t seed)>& run);
 std::vector<Estimate> means_of_runs(std::size_t results,
                                     const std::function<std::vector<double>(std::uint64_t seed)>& run);
 
-/// Compares a result with its expected value, and enters both in a table of docs/method/validation.md. The tolerance is the
-/// bias bound plus a multiple of the standard error that correct code exceeds with a probability of 1e-5 (Student's t
-/// with runs - 1 degrees of freedom). The test fails beyond it.
+/// Compares a result with its expected value, and enters both in a table of docs/method/validation.md. The tolerance is
+/// the bias bound plus a multiple of the standard error that correct code exceeds with a probability of 1e-5 (Student's
+/// t with runs - 1 degrees of freedom). The test fails beyond it.
 /// @param table        Name of the table, as in page.md.
 /// @param case_name    Name of the case; rows of a table with the same name are one case.
 /// @param quantity     Quantity and unit.

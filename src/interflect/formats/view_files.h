@@ -11,7 +11,7 @@ namespace interflect::detail {
 /// Returns /a/office.views.json for /a/office.mgf.
 std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
 
-/// Reads named views, in metres and degrees (docs/develop/design.md). `up` defaults to (0, 0, 1) and `fov` to 45.
+/// Reads named views, in metres and degrees (docs/guides/command-line.md). `up` defaults to (0, 0, 1) and `fov` to 45.
 /// @throws InputError for invalid or unknown members, and duplicate names.
 std::vector<View> read_view_list(const std::filesystem::path& path);
 

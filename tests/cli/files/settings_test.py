@@ -1,4 +1,4 @@
-"""A setting of the solver has the same name in the library, on the command line, in files and in docs/develop/design.md."""
+"""A setting of the solver has the same name in the library, on the command line, in files and in docs/guides/command-line.md."""
 
 import json
 import re
@@ -66,7 +66,7 @@ class Settings(CommandTest):
         self.assertEqual(set(header["options"]), names - NOT_IN_FILES | OF_NO_GROUP)
 
     def test_are_listed_in_the_documentation(self):
-        rows = re.findall(r"^\| `(\w+\.\w+)` \| `--([\w-]+)` \|", (ROOT / "docs/develop/design.md").read_text(), re.MULTILINE)
+        rows = re.findall(r"^\| `(\w+\.\w+)` \| `--([\w-]+)` \|", (ROOT / "docs/guides/command-line.md").read_text(), re.MULTILINE)
         expected = {(path, name.replace("_", "-")) for path, name, _ in self.settings}
         self.assertEqual(set(rows), expected | {("method.importance", "importance")})
 

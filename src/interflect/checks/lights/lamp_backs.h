@@ -8,8 +8,8 @@
 
 namespace interflect::detail {
 
-/// Finds "open-lamp-back" (docs/files/formats.md). Traces 32 rays behind an emitting face, and up to 1,600 if they hit a
-/// close surface; for at most 512 faces.
+/// Finds "open-lamp-back" (docs/files/formats.md). Traces 32 rays behind an emitting face, and up to 1,600 if they hit
+/// a close surface; for at most 512 faces.
 std::vector<Finding> find_open_lamp_backs(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines,
                                           std::size_t places);
 

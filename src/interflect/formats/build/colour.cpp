@@ -15,8 +15,8 @@ namespace {
 using Imath::M33d;
 using Imath::V3d;
 
-constexpr double shortest = 380, longest = 780;  // [nm]
-constexpr int table_step = 10;                   // [nm]
+constexpr double shortest_wave = 380, longest_wave = 780;  // [nm]
+constexpr int table_step = 10;                             // [nm]
 
 /// CIE 1931 2-degree colour matching functions every 10 nm, times 10^4 (CIE 15, table T.4, rounded).
 constexpr std::array<std::array<int, 3>, 41> colour_matching = {{
@@ -32,7 +32,7 @@ constexpr std::array<std::array<int, 3>, 41> colour_matching = {{
 }};
 
 V3d colour_matching_at(double wavelength) {
-    const double position = (wavelength - shortest) / table_step;
+    const double position = (wavelength - shortest_wave) / table_step;
     const auto i = std::min(static_cast<std::size_t>(position), colour_matching.size() - 2);
     const double t = position - static_cast<double>(i);
     const auto row = [](const std::array<int, 3>& r) { return V3d(r[0], r[1], r[2]); };
@@ -51,7 +51,7 @@ Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
 template <class Spectrum>
 Chromaticity integrate(const Spectrum& spectrum) {
     V3d sum(0), equal_energy(0);
-    for (int nm = static_cast<int>(shortest); nm <= static_cast<int>(longest); ++nm) {
+    for (int nm = static_cast<int>(shortest_wave); nm <= static_cast<int>(longest_wave); ++nm) {
         const V3d weight = colour_matching_at(nm);
         sum += weight * spectrum(nm);
         equal_energy += weight;

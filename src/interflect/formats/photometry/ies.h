@@ -9,7 +9,8 @@
 
 namespace interflect::detail {
 
-/// Reads IES LM-63 (1986 to 2019), types A, B and C (docs/light/luminaires.md). `outside_files` applies to the TILT file.
+/// Reads IES LM-63 (1986 to 2019), types A, B and C (docs/light/luminaires.md). `outside_files` applies to the TILT
+/// file.
 /// @throws InputError
 PhotometricWeb read_ies(const std::filesystem::path& path, const ReadOptions& options, Warnings& warnings);
 

@@ -105,7 +105,7 @@ struct PatchEdge {
     bool same_place(const PatchEdge& other) const { return low == other.low && high == other.high; }
 };
 
-std::vector<PatchEdge> sorted_edges(const Scene& scene) {
+std::vector<PatchEdge> sorted_patch_edges(const Scene& scene) {
     const std::vector<std::uint32_t> welded = weld(scene);
     std::vector<PatchEdge> edges;
     edges.reserve(4 * scene.patches.size());
@@ -356,7 +356,7 @@ std::vector<V3f> patch_normals(const Scene& scene) {
 SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& options) {
     const CreaseTest creases(scene, options.crease_angle);
     const ContactTree contacts(scene);
-    const std::vector<PatchEdge> edges = sorted_edges(scene);
+    const std::vector<PatchEdge> edges = sorted_patch_edges(scene);
     std::vector<std::uint8_t> has_contact(edges.size(), 0);
     parallel_for_ranges(edges.size(), edges_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {

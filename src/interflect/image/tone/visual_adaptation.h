@@ -4,8 +4,8 @@
 
 namespace interflect::detail {
 
-// Match perception of display and scene (docs/light/tone-mapping.md). `adapted` is the scene's L_wa, `white` the display's
-// L_dmax, both > 0 [cd/m^2]. Results are relative to white, not clipped.
+// Match perception of display and scene (docs/light/tone-mapping.md). `adapted` is the scene's L_wa, `white` the
+// display's L_dmax, both > 0 [cd/m^2]. Results are relative to white, not clipped.
 
 /// Returns the factor from luminance to [0, 1] (Ward 1994, Graphics Gems IV).
 float ward_factor(float adapted, float white);

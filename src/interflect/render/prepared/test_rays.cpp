@@ -10,7 +10,7 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t min_rays = 256, max_rays = 1 << 16;
-constexpr std::size_t rays_per_task = 1 << 10;
+constexpr std::size_t tests_per_task = 1 << 10;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ TestedSources send_test_rays(const TracedScene& scene, std::size_t sources, std:
         float light = 0;
     };
     std::vector<Sent> sent(count);
-    parallel_for_ranges(count, rays_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(count, tests_per_task, [&](std::size_t begin, std::size_t end) {
         ShadowRays rays;
         RayCounts counts;
         std::vector<std::size_t> number;  // of the rays, in `sent`

@@ -70,7 +70,8 @@ double error_within_leaves(const RiskCheck& check) {
     return sum / check.weight;
 }
 
-/// Noise + bias as corrected by RiskCheck, or as measured if the bias is strongly negative (docs/method/method.md, Errors).
+/// Noise + bias as corrected by RiskCheck, or as measured if the bias is strongly negative (docs/method/method.md,
+/// Errors).
 double squared_error_of_differences(const RiskCheck& check, double noise_of_differences, double bias) {
     const double expected = noise_of_differences + bias;
     const bool is_reliable = bias > -noise_of_differences / 2;

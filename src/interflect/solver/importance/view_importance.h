@@ -28,8 +28,8 @@ class ViewImportance {
     std::int64_t views() const { return std::ssize(views_); }
     /// Share of the pictures that shows surfaces.
     double surface_share() const { return total_weight_ > 0 ? hit_weight_ / total_weight_ : 0; }
-    /// Computes v = V / A by element [1/m^2] (docs/method/method.md, Unknowns). Surfaces behind panes add their transmitted
-    /// share of V.
+    /// Computes v = V / A by element [1/m^2] (docs/method/method.md, Unknowns). Surfaces behind panes add their
+    /// transmitted share of V.
     /// @param at_patches  Spreads V evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 

@@ -9,8 +9,8 @@
 
 namespace interflect::detail {
 
-/// Iterations that are passes ('incremental shooting', Neumann et al. 1995; docs/method/method.md, A run): unbiased estimates
-/// on the current mesh, independent of earlier passes.
+/// Iterations that are passes ('incremental shooting', Neumann et al. 1995; docs/method/method.md, A run): unbiased
+/// estimates on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
     /// Estimates importance and makes the initial mesh by two passes (Eq. 14, 15), not averaged.

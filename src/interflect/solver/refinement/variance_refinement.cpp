@@ -29,8 +29,8 @@ constexpr float min_signal = 0.12f;
 constexpr double negligible_gain = 2e-7;
 /// Share of the pictures' light that a leaf reflects from wrong places.
 constexpr double negligible_misplacement = 3e-7;
-/// Leaves above this share reflect where they receive (docs/method/method.md, A run). Light behind a 1 cm slit is then within
-/// 6%.
+/// Leaves above this share reflect where they receive (docs/method/method.md, A run). Light behind a 1 cm slit is then
+/// within 6%.
 constexpr double tolerable_misplacement = 3e-5;
 /// Relative weight of errors on invisible surfaces, whose effect on the view is blurred.
 constexpr double invisible_error_weight = 0.02;

@@ -37,8 +37,8 @@ struct PowerPlan {
     std::int64_t non_finite_leaves = 0;  ///< Not shot.
 };
 
-/// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000; docs/method/method.md, One step of
-/// transport). The plan refers to `so_far`, `emission` and `light`.
+/// Plans rays that carry power and, if `combined`, importance (Eq. 11, Prikryl et al. 2000; docs/method/method.md, One
+/// step of transport). The plan refers to `so_far`, `emission` and `light`.
 /// @param emission  Shot if `light` emits.
 PowerPlan plan_power(const Materials& materials, const Emission& emission, const Solution& so_far,
                      const Radiosity& light, const ImportanceWeights& weights, bool combined, std::int64_t rays);

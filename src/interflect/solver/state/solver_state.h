@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "interflect/base/files/state_archive.h"
-#include "interflect/base/sums/rank_sums.h"
 #include "interflect/base/sums/common_stop.h"
+#include "interflect/base/sums/rank_sums.h"
 #include "interflect/base/threads/stop_request.h"
 #include "interflect/elements/forest.h"
 #include "interflect/luminaires/emission.h"

@@ -18,7 +18,8 @@ namespace interflect::detail {
 /// importance at the hit leaf, power at the same leaf or, with refinement, at the element of a pair that the oracle
 /// accepts. Unbiased on a fixed mesh if q > 0 wherever the payload is nonzero.
 ///
-/// Rays carry B_s, not the paper's B_j (docs/method/method.md, One step of transport): shot = received + escaped exactly.
+/// Rays carry B_s, not the paper's B_j (docs/method/method.md, One step of transport): shot = received + escaped
+/// exactly.
 /// @param forest   Grows if the oracle refines; old indices stay valid.
 /// @param sums     Zero before and after; has the capacity of the forest.
 /// @param streams  Advanced. The same streams give the same bits for any number of threads.

@@ -8,7 +8,8 @@
 
 namespace interflect::detail {
 
-/// Reads PLY faces (docs/files/formats.md). The reflectance is the vertex colour, if constant and in sRGB bytes, else 0.5.
+/// Reads PLY faces (docs/files/formats.md). The reflectance is the vertex colour, if constant and in sRGB bytes, else
+/// 0.5.
 /// @throws InputError; see also scene_of().
 Scene read_ply(const std::filesystem::path& path, const ReadOptions& options = {});
 
