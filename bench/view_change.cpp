@@ -47,7 +47,8 @@ double square_error(const std::vector<Rgb>& pixels, const std::vector<Rgb>& exac
     double squares = 0, sum = 0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         const double difference = luminance(pixels[i]) - luminance(exact[i]);
-        squares += difference * difference, sum += static_cast<double>(luminance(exact[i]));
+        squares += difference * difference;
+        sum += static_cast<double>(luminance(exact[i]));
     }
     return squares * static_cast<double>(pixels.size()) / (sum * sum);
 }
@@ -98,7 +99,8 @@ Share share_of_rays(std::size_t step, const std::vector<Errors>& of_new_run, con
     double sum = 0, squares = 0;
     for (std::size_t seed = 0; seed < of_new_run.size(); ++seed) {
         const double without = log_share(seed);
-        sum += without, squares += without * without;
+        sum += without;
+        squares += without * without;
     }
     const double error = std::sqrt((squares - sum * sum / seeds) * (seeds - 1) / seeds);
     constexpr double upper_tail = 0.975;

@@ -18,7 +18,7 @@ import numpy as np
 import pandas as pd
 
 
-SCENE, VIEW = "maze:4", "room-0"
+SCENE, VIEW = Path(__file__).resolve().parents[1] / "scenes/maze.mgf", "room-0"
 WIDTH, HEIGHT = 160, 90  # pixels
 VARIANTS: dict[str, dict[str, Any]] = {
     name: {
@@ -82,7 +82,7 @@ def main(arguments: list[str] | None = None) -> pd.DataFrame:
     runs.to_csv(options.output / "convergence.csv", index=False)
     table = runs.pivot_table(index="rays", columns="variant", values="error", sort=False)
     draw(table).savefig(options.output / "convergence.png", dpi=120)
-    print(f"Relative error of the picture of {VIEW} in {SCENE}, mean of {options.seeds} seeds")
+    print(f"Relative error of the picture of {VIEW} in {SCENE.stem}, mean of {options.seeds} seeds")
     print(table.to_string(float_format="{:.3f}".format))
     return table
 

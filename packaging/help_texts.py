@@ -53,12 +53,16 @@ class Page:
 
 
 def read_help(command: str, *subcommands: str) -> Page:
-    """Runs the command with --help. @raises ValueError for a line that is not as CLI11 writes help."""
-    arguments = [command, *subcommands, "--help"]
-    text = subprocess.run(arguments, capture_output=True, text=True, check=True).stdout
-    page = parse(["interflect", *subcommands], text)
+    """Runs the command with --help-all. @raises ValueError for a line that is not as CLI11 writes help."""
+    page = parse(["interflect", *subcommands], help_of(command, *subcommands, "--help"))
+    if "Subcommands" not in page.groups:  # else --help-all would print theirs, too
+        page = parse(page.words, help_of(command, *subcommands, "--help-all"))
     page.subpages = [read_help(command, *subcommands, entry.names[0]) for entry in page.groups.get("Subcommands", [])]
     return page
+
+
+def help_of(*arguments: str) -> str:
+    return subprocess.run(arguments, capture_output=True, text=True, check=True).stdout
 
 
 def parse(words: list[str], text: str) -> Page:

@@ -5,11 +5,13 @@
 #include <string>
 
 #include "apps/interflect/commands/commands.h"
-#include "apps/interflect/console/faults.h"
+#include "apps/interflect/console/help_formatter.h"
 #include "apps/interflect/console/messages.h"
 #include "apps/interflect/console/standard_streams.h"
+#include "apps/interflect/options/shared_options.h"
 #include "apps/interflect/processes/crew.h"
 #include "apps/interflect/processes/signals.h"
+#include "apps/interflect/values/faults.h"
 #include "interflect/core.h"
 
 namespace {
@@ -25,18 +27,20 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
     } else {
         command += " " + chosen.front()->get_name();
     }
-    return "error: " + interflect::detail::escaped(message) + "\n`" + command + " --help` tells what may be given.\n";
+    return "error: " + interflect::detail::escaped(message) + "\n`" + command + " --help` lists the options.\n";
 }
 
 constexpr const char* footer =
     "`interflect SUBCOMMAND --help` lists the options of each.\n"
     "Lengths are in metres, powers in lumens. Results go to stdout, messages to stderr.\n"
-    "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 bad input, 130 interrupted, keeping what is usable.";
+    "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 bad input, 130 interrupted (usable results are kept).";
 
 int run(int argc, char** argv) {
     using namespace interflect::command;
     CLI::App app("Interflect: diffuse global illumination that goes where the eye looks", "interflect");
     app.set_version_flag("--version", "interflect " INTERFLECT_VERSION);
+    app.formatter(std::make_shared<HelpFormatter>(rare_groups));
+    app.set_help_all_flag("--help-all", "Print all options and exit");
     app.require_subcommand(1);
     app.failure_message(usage_message);
     int exit_code = done;

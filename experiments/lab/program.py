@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import platform
+import re
 import shutil
 import signal
 import subprocess
@@ -16,6 +17,8 @@ ROOT = Path(__file__).resolve().parents[2]
 INTERRUPTED = 130  # exit code of the command after Ctrl-C
 BUILT = "build/release/bin/interflect"
 SCENES = "$INTERFLECT_SCENES"  # in a path: folder of scenes outside this repository
+MAZE = re.compile(r"\bmaze:(\d+)(:furniture)?")  # in arguments: a maze of so many rooms, made where it is missing
+MADE = ROOT / "out/experiments/scenes"
 
 
 class ExperimentError(Exception):
@@ -73,14 +76,28 @@ def expanded(text: str) -> str:
     return text.replace(SCENES, os.environ.get(SCENES[1:], str(ROOT.parent / "shared/scenes")))
 
 
+def prepared(program: Program, text: str) -> str:
+    """As expanded(), and replaces each MAZE with a file, made by `make-scene`."""
+    return MAZE.sub(lambda maze: str(_maze(program, maze[1], bool(maze[2]))), expanded(text))
+
+
+def _maze(program: Program, rooms: str, has_furniture: bool) -> Path:
+    path = MADE / f"maze-{rooms}{'-furniture' if has_furniture else ''}.mgf"
+    if not path.is_file():
+        MADE.mkdir(parents=True, exist_ok=True)
+        furniture = ["--furniture"] if has_furniture else []
+        subprocess.run([program.path, "make-scene", "maze", "--rooms", rooms, *furniture, "-o", path], check=True)
+    return path
+
+
 def run(program: Program, arguments: list[str]) -> Finished:
-    """Runs `interflect ARGUMENTS`, with SCENES in them expanded, in the repository's root.
+    """Runs `interflect ARGUMENTS`, prepared(), in the repository's root.
 
     Raises ExperimentError with the command and the end of its messages on failure, KeyboardInterrupt on interruption.
     """
     with tempfile.NamedTemporaryFile("r") as report:
         launch = [sys.executable, "-I", "-S", Path(__file__).with_name("launch.py"), report.name]
-        command = [*launch, program.path, *map(expanded, arguments)]
+        command = [*launch, program.path, *(prepared(program, argument) for argument in arguments)]
         process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         try:
             output, messages = process.communicate()

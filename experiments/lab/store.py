@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .analysis.picture import noise_floor
-from .program import ROOT, Finished, Program, expanded, read_stats, run
+from .program import ROOT, Finished, Program, prepared, read_stats, run
 from .tasks import SHADINGS, Measure, Picture, Reference, Solve, Task, probe
 
 METRICS = ("relative_mse", "perceptual_distance", "flip", "ratio_of_means")  # keys of `compare --json`
@@ -117,7 +117,7 @@ class Store:
 
     def _path(self, value: Solve | Task, suffix: str) -> Path:
         """Returns the path of the results of `value`. Depends on the build and on the content of the scene file."""
-        scene = Path(expanded((value if isinstance(value, Solve | Reference) else value.solve).scene))
+        scene = Path(prepared(self._program, (value if isinstance(value, Solve | Reference) else value.solve).scene))
         content = hashlib.sha256(scene.read_bytes()).hexdigest() if scene.is_file() else ""
         key = hashlib.sha256(f"{self._program.fingerprint}{content}{value}".encode()).hexdigest()[:20]
         return self._folder / f"{key}.{suffix}"

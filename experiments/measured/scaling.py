@@ -64,7 +64,7 @@ def run(command: program.Program, subject: Subject, ranks: int, rate: int) -> li
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         stats = folder / "stats.json"
-        solve = [command.path, "solve", *program.expanded(subject.arguments).split(), "--rays", str(subject.rays)]
+        solve = [command.path, "solve", *program.prepared(command, subject.arguments).split(), "--rays", str(subject.rays)]
         solve += ["--threads", "1", "-o", folder / "out.h5", "--stats", stats]
         launch = Path(program.__file__).with_name("launch.py")
         measured = ["sh", "-c", f'exec "$0" -I -S {launch} {folder}/cost.${{OMPI_COMM_WORLD_RANK:-0}} "$@"', sys.executable]

@@ -112,13 +112,9 @@ void add_daylight(Scene& scene, const Daylight& added);
 /// Reads a scene in the format of the file name's extension (.mgf, .gltf, .glb, .obj, .ply, .rad, .stl, .vs3), and
 /// named views from an optional file beside it: office.views.json for office.mgf. The result has no scene_faults(). A
 /// scene without light gets the warning "no-light".
-///
-/// Instead of a file, `maze:ROOMS` or `maze:ROOMS:furniture` creates that maze and its views in memory, as the
-/// command's make-scene does by default. `maze:9:furniture` has the size of the scene in Prikryl et al. 2000.
 /// @param luminaires  Added to the scene; each is named by its file and its index among the scene's lights: "lamp-3".
 /// @param added       Added after them, as by add_daylight().
-/// @throws InputError for an unknown extension, as the readers do, for an invalid maze, and for a scene of more than
-///         options.max_patches.
+/// @throws InputError for an unknown extension, as the readers do, and for a scene of more than options.max_patches.
 Scene load_scene(const std::filesystem::path& path, const ReadOptions& options = {},
                  std::span<const PlacedLuminaire> luminaires = {}, const Daylight& added = {});
 

@@ -65,7 +65,7 @@ struct PictureLayers {
     /// All other light of the picture.
     SampledLight reflected;
     bool is_indirect_interpolated = false;  ///< By Shading::hybrid: indirect light has no noise to remove.
-    /// The same for two independent halves of the samples.
+    /// Light of two independent halves of the samples.
     std::array<SampledLight, 2> halves;
     Image albedo;              ///< Reflectance of the visible surface; 1 in a picture of irradiance.
     Image normal;              ///< Its normal, towards the camera; shorter than 1 if several surfaces are visible.

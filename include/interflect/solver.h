@@ -43,7 +43,7 @@ class Solver {
     /// @throws InputError listing every option out of range and every fault of the scene; also for a view that defines
     ///         no picture. A scene without light is valid.
     Solver(Scene scene, const SolveOptions& options);
-    /// The same without a copy of the scene.
+    /// Makes a solver without a copy of the scene.
     /// @param ray_caster  Of this scene, otherwise InputError; null: made here.
     Solver(std::shared_ptr<const Scene> scene, const SolveOptions& options,
            std::shared_ptr<const RayCaster> ray_caster = nullptr);
@@ -75,7 +75,7 @@ class Solver {
     std::shared_ptr<const Solution> shared_solution() const;
     /// The same without a copy. The solver must not be used afterwards.
     Solution take_solution() &&;
-    /// With its sources as scaled by set_dimming().
+    /// The scene, with its sources as scaled by set_dimming().
     const Scene& scene() const { return *shared_scene(); }
     const RayCaster& ray_caster() const { return *shared_ray_caster(); }
     std::shared_ptr<const Scene> shared_scene() const;

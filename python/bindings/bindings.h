@@ -1,4 +1,4 @@
-/// The parts of the module `interflect._core`, and what they share.
+/// The parts of the module `interflect._core`, and their common functions.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -108,7 +108,7 @@ py::array_t<float> array_of(Image image);
 /// @throws InputError unless the array has the shape (height, width, 3).
 Image image_of(const py::array_t<float, py::array::c_style | py::array::forcecast>& array, const std::string& name);
 
-/// Converts a number of samples to that of the library: None, the default number, becomes 0.
+/// Converts a number of samples for the library: None, the default number, becomes 0.
 /// @throws InputError for less than 1.
 int samples_of(const std::optional<int>& samples);
 /// Inverse.

@@ -179,7 +179,7 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
         options.lightmap = texels;
     }
     for (const auto& [name, value] : left)
-        throw py::type_error("export: there is no option " + found(name) + (lightmap ? "" : " without lightmap=True"));
+        throw py::type_error("export: unknown option " + found(name) + (lightmap ? "" : " without lightmap=True"));
     options.bake.shading = find_shading(shading, lightmap ? &DefaultSamples::texel : &DefaultSamples::vertex);
     options.bake.samples = samples_of(samples);
     auto files = long_work(progress, threads, [&](const Monitor& monitor) {

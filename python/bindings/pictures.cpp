@@ -85,7 +85,7 @@ Tonemap curve_of(const std::string& name) {
         if (word == name) return curve;
         known += (known.empty() ? "" : ", ") + std::string(word);
     }
-    throw InputError(fmt::format("curve: expected one of {}, found '{}'", known, name));
+    throw InputError(fmt::format("curve: expected {}, found '{}'", known, name));
 }
 
 /// @param exposure  [stops], or None: automatic, for operators of absolute luminance 0.

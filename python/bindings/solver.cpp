@@ -106,7 +106,7 @@ SolveOptions within_memory(const Scene& scene, const RayCaster& ray_caster, Solv
         if (options.limits.rays == Limits().rays) options.limits.rays = most;
         if (options.limits.rays > most)
             throw InputError("rays: " + std::string(options.method.name) + " keeps every ray, expected at most " +
-                             std::to_string(most) + ", for which there is memory");
+                             std::to_string(most) + "; the memory suffices for no more");
     }
     return options;
 }

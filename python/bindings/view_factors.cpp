@@ -43,7 +43,7 @@ std::vector<std::uint32_t> patches_of(const py::handle& value, const std::string
         const auto i = argument<std::int64_t>(index, "groups", "indices of faces");
         if (i < 0 || i >= static_cast<std::int64_t>(patches))
             throw InputError(
-                Fault{.text = fmt::format("groups: '{}': there is no face {}; there are {}", name, i, patches),
+                Fault{.text = fmt::format("groups: '{}': face {} does not exist; expected below {}", name, i, patches),
                       .object = name,
                       .setting = "groups"});
         result.push_back(static_cast<std::uint32_t>(i));

@@ -16,7 +16,7 @@ def load(path: str | os.PathLike[str], *, unit: float | str = 1.0, up_axis: str 
          max_patches: int = 50_000_000, outside_files: bool = False, further_files: Sequence[str | os.PathLike[str]] = (),
          luminaires: Sequence[_core.PlacedLuminaire] = (), daylight: _core.Daylight | None = None,
          light_groups: bool | Mapping[str, str] | None = None) -> _core.Scene:
-    """Reads a scene: glTF, OBJ, PLY, STL, Radiance or MGF, or `maze:ROOMS[:furniture]`, which is made.
+    """Reads a scene: glTF, OBJ, PLY, STL, Radiance, View3D or MGF.
 
     Args:
         path: Scene file.

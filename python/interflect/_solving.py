@@ -128,7 +128,7 @@ Args:
     rays: Limit of the whole run; default: 20 million unless there is another limit.
     time: Limit of the whole run [s]; results then depend on the speed.
     until: Target of the estimated relative error, in [0, 1).
-    contact_cuts: Cuts faces where others meet them, so that no light leaks there.
+    contact_cuts: Cuts faces where others meet them, to prevent light leaks.
     mesh_size: Divides patches to this longest edge [m] first; default: only for methods that do not refine.
     settings: Other settings, named as the options of `interflect solve`: keep_direct, min_area, max_elements,
         refinement_criterion, importance, camera_rays, importance_smoothing, importance_exponent, preset="paper", and the

@@ -61,7 +61,8 @@ std::shared_ptr<PhotometricWeb> downlight() {
 void add_light(Scene& scene, std::shared_ptr<const PhotometricWeb> web, V3f position, V3f direction) {
     MeasuredLight light;
     light.web = std::move(web);
-    light.position = position, light.direction = direction;
+    light.position = position;
+    light.direction = direction;
     if (direction.x != 0) light.c0 = {0, 0, 1};
     scene.luminaires.push_back({"light", 0, light});
 }

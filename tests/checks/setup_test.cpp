@@ -327,7 +327,8 @@ TEST_F(ShutOutSky, OfARoomWithThickWallsOfOneSidedFaces) {
 }
 
 TEST_F(ShutOutSky, IsMeantForSolidsOfOneSidedFaces) {
-    scene.vertices.clear(), scene.patches.clear();
+    scene.vertices.clear();
+    scene.patches.clear();
     add_box(scene, {0, 0, 0}, room_size, 0);
     add_box(scene, {6, 0, 0}, {9, 4, 8}, 0);
     EXPECT_THAT(kinds(scene), IsEmpty());

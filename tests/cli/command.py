@@ -41,7 +41,7 @@ SOLVED = ("--rays", "50k", "--mesh-size", "0.5")
 
 
 def methods():
-    text = subprocess.run([COMMAND, "solve", "--help"], capture_output=True, text=True, check=True).stdout
+    text = subprocess.run([COMMAND, "solve", "--help-all"], capture_output=True, text=True, check=True).stdout
     return re.search(r"--method (\S+)", text)[1].split("|")
 
 
@@ -53,6 +53,13 @@ class CommandTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
+
+    def maze(self, rooms):
+        """Makes a maze and returns the file's name."""
+        name = f"maze-{rooms}.mgf"
+        if not (self.folder / name).exists():
+            subprocess.run([COMMAND, "make-scene", "maze", "--rooms", str(rooms), "-o", name], cwd=self.folder, check=True)
+        return name
 
     def write(self, name, text):
         path = self.folder / name

@@ -61,7 +61,7 @@ class Figure(CommandTest):
         self.assertEqual(len(rows), RUNS)
         for row in rows:
             self.assertEqual(row["rays"], row["budget"])
-            self.assertEqual(row["version"], "0.1.0")
+            self.assertEqual(row["version"], "0.2.0")
             self.assertIn(row["command"].split()[0:3], [["interflect", "solve", "maze:1"]])
             self.assertIn(f"--rays {row['rays']} --seed {row['seed']}", row["command"])
             self.assertEqual(row["reference"], "--shading path --no-mirrors --samples 16 --seed 99")

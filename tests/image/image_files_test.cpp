@@ -302,7 +302,7 @@ TEST_P(ReadableFormats, DamageNeverCrashes) {
 }
 
 TEST_P(ReadableFormats, MissingFilesAndFoldersAreRefused) {
-    EXPECT_THAT(refusal(folder.path() / name()), HasSubstr(name() + ": there is no such file"));
+    EXPECT_THAT(refusal(folder.path() / name()), HasSubstr(name() + ": no such file"));
     fs::create_directory(folder.path() / name());
     EXPECT_THAT(refusal(folder.path() / name()), HasSubstr("this is a folder, not a file"));
 }

@@ -17,7 +17,7 @@ EXCEPTIONS = {
     "mathematics": r"sqrt|exp|log|log10|cos|phi|min|max|[A-Za-z]_\w+",  # F_ij, d_mean
     "the standard library": r"std::\w+|size",
     "other programs": r"AgX|NaN|OpenEXR|SciPy|csr_matrix|oconv .*",
-    "attributes and names in files": r"TEXCOORD_1|look_at|maze:\S+",
+    "attributes and names in files": r"TEXCOORD_1|look_at",
     "variables of the example in interflect.h": r"ray_caster",
 }
 EXCEPTION = re.compile("|".join(EXCEPTIONS.values()))

@@ -35,7 +35,8 @@ def make_packages(folder: Path) -> dict[str, Path]:
 
 
 def help_of(*subcommands: str) -> str:
-    return run(COMMAND, *subcommands, "--help")
+    text = run(COMMAND, *subcommands, "--help")
+    return text if "\nSubcommands:\n" in text else run(COMMAND, *subcommands, "--help-all")
 
 
 def all_subcommands(*above: str) -> list[tuple[str, ...]]:

@@ -108,7 +108,7 @@ class Faults(unittest.TestCase):
         error = self.faults(materials=[ifl.Material("white", 1.2), ifl.Material("black", -0.1, exitance=-5)],
                             faces=np.vstack([WALLS, [(8, 8, 8, 8)]]), face_materials=[0] * 6 + [7])
         text = "\n".join(fault.text for fault in error.faults)
-        for expected in ("'white'", "'black'", "patch 6", "no material 7"):
+        for expected in ("'white'", "'black'", "patch 6", "material 7 does not exist"):
             self.assertIn(expected, text)
             self.assertIn(expected, str(error))
         self.assertGreaterEqual(len(error.faults), 4)
@@ -130,13 +130,13 @@ class Faults(unittest.TestCase):
                 ({"faces": WALLS.astype(float)}, "faces: expected integers, found float64"),
                 ({"faces": WALLS[:, :2]}, "faces: expected the shape (n, 3 or 4), found (6, 2)"),
                 ({"faces": np.zeros((0, 4), int), "face_materials": None}, "faces: expected at least one"),
-                ({"faces": WALLS + 9, "face_materials": None}, "face 0: there is no vertex 12; there are 12"),
+                ({"faces": WALLS + 9, "face_materials": None}, "face 0: vertex 12 does not exist; expected below 12"),
                 ({"face_materials": [0, 1]}, "face_materials: expected the shape (7,), found (2)"),
                 ({"face_materials": [-1] * 7}, "face_materials: face 0 has -1, which is no index"),
                 ({"two_sided": [True]}, "two_sided: expected True, False or an array of 7 booleans"),
                 ({"normals": np.zeros((3, 3))}, "normals: expected the shape (12, 3), found (3, 3)"),
                 ({"texture_coordinates": np.zeros((12, 3))}, "texture_coordinates: expected the shape (12, 2)"),
-                ({"face_objects": [1] * 7}, "patch 0: there is no object 1"),
+                ({"face_objects": [1] * 7}, "patch 0: object 1 does not exist"),
                 ({"views": [VIEW.replace(look_at=VIEW.eye)]}, "view 'door'"),
         ):
             self.assertIn(expected, str(self.faults(**changes)))

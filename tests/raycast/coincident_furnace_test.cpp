@@ -41,8 +41,11 @@ TEST(CoincidentFurnace, FloorInABlackSlabLosesNoLight) {
     const std::uint32_t paint = add_material(scene, wall.reflectance, wall.exitance);
     const V3f x(1, 0, 0), y(0, 2, 0), z(0, 0, 3), o(0, 0, 0);
     const std::uint32_t floor = add_rectangle(scene, o, x, y, paint, 3, 3);
-    add_rectangle(scene, o, y, z, paint), add_rectangle(scene, x, z, y, paint), add_rectangle(scene, o, z, x, paint);
-    add_rectangle(scene, y, x, z, paint), add_rectangle(scene, z, y, x, paint);
+    add_rectangle(scene, o, y, z, paint);
+    add_rectangle(scene, x, z, y, paint);
+    add_rectangle(scene, o, z, x, paint);
+    add_rectangle(scene, y, x, z, paint);
+    add_rectangle(scene, z, y, x, paint);
 
     std::vector<std::vector<double>> samples(9);
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {

@@ -364,7 +364,7 @@ TEST(RayCaster, RefusesABrokenScene) {
         FAIL() << "made";
     } catch (const InputError& e) {
         EXPECT_THAT(e.what(), testing::HasSubstr("patch 1: a vertex index is out of range"));
-        EXPECT_THAT(e.what(), testing::HasSubstr("patch 2: there is no material 99"));
+        EXPECT_THAT(e.what(), testing::HasSubstr("patch 2: material 99 does not exist"));
     }
 }
 

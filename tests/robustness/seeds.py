@@ -141,6 +141,6 @@ def make_seeds(program):
     seeds.written = {key: written_by(program, seeds, command) for key, command in WRITERS.items()}
     resume = Command(("resume", *RUN, "-o", "out.h5", *RESUMED), RUN, ("out.h5",))
     seeds.resumed = written_by(program, seeds, resume)["out.h5"]
-    seeds.helps = {words: run_or_raise(program, ".", (*words, "--help")) for words in SUBCOMMANDS}
+    seeds.helps = {words: run_or_raise(program, ".", (*words, "--help-all")) for words in SUBCOMMANDS}
     seeds.sanitized = b"__asan_init" in Path(program).read_bytes()
     return seeds

@@ -19,7 +19,8 @@ constexpr double pi = std::numbers::pi;
 PhotometricWeb web_of(const std::vector<float>& polar, const std::vector<float>& azimuth,
                       const std::function<float(float, float)>& intensity) {
     PhotometricWeb web;
-    web.polar = polar, web.azimuth = azimuth;
+    web.polar = polar;
+    web.azimuth = azimuth;
     for (const float phi : azimuth)
         for (const float theta : polar) web.intensities.push_back(intensity(theta, phi));
     return web;

@@ -101,7 +101,8 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"wide_patch", [](Scene& s) { scale(s, 1e7f); }, "patch 0 is 1.12e+07 m wide; at most 1e+07 m"},
         FaultCase{"tiny_patch",
                   [](Scene& s) {
-                      s.vertices.push_back({1e-10f, 0, 0}), s.vertices.push_back({0, 1e-10f, 0});
+                      s.vertices.push_back({1e-10f, 0, 0});
+                      s.vertices.push_back({0, 1e-10f, 0});
                       s.patches[0].vertices = {0, 6, 7, none};
                   },
                   "patch 0 has an area of 5e-21 m2; at least 1e-18"},
@@ -109,8 +110,9 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"weak_exitance", [](Scene& s) { s.materials[0].exitance = Rgb(9e-10f); },
                   "the scene emits only 9e-10 lm/m2"},
         FaultCase{"strong_exitance", [](Scene& s) { s.materials[0].exitance.y = 1.1e10f; }, "'material 0': exitance"},
-        FaultCase{"missing_material", [](Scene& s) { s.patches[0].material = 1; }, "patch 0: there is no material 1"},
-        FaultCase{"missing_object", [](Scene& s) { s.patches[0].object = 1; }, "patch 0: there is no object 1"},
+        FaultCase{"missing_material", [](Scene& s) { s.patches[0].material = 1; },
+                  "patch 0: material 1 does not exist"},
+        FaultCase{"missing_object", [](Scene& s) { s.patches[0].object = 1; }, "patch 0: object 1 does not exist"},
         FaultCase{"missing_other_side", [](Scene& s) { s.patches[2].other_side = 4; }, "patch 2: its other side 4"},
         FaultCase{"wrong_other_side", [](Scene& s) { s.patches[0].other_side = 2; }, "patch 0: its other side 2"},
         FaultCase{"itself_as_other_side", [](Scene& s) { s.patches[0].other_side = 0; }, "patch 0: its other side 0"},
@@ -128,7 +130,8 @@ TEST(SceneFaults, OfAValidSceneAreNone) {
 
 TEST(SceneFaults, AreNoneAtTheLimits) {
     Scene widest = valid_scene(), narrowest = valid_scene(), far = valid_scene();
-    scale(widest, 8.9e6f), scale(narrowest, 7.2e-7f);
+    scale(widest, 8.9e6f);
+    scale(narrowest, 7.2e-7f);
     far.origin = Imath::V3d(-1e15, 1e15, 0);
     far.views[0].eye = Imath::V3d(1e15, 0, 0);
     far.views[0].look_at = Imath::V3d(-1e15, 0, 0);
@@ -159,7 +162,11 @@ TEST(SceneFaults, NameTheObject) {
     EXPECT_EQ(object_of([](Scene& s) { s.materials[0] = {"it's 'white'", Rgb(2), Rgb(0)}; }), "it's 'white'");
     EXPECT_EQ(object_of([](Scene& s) { s.patches[1].material = 7; }), "patch 1");
     EXPECT_EQ(object_of([](Scene& s) { s.vertices[2].x = infinity; }), "vertex 2");
-    EXPECT_EQ(object_of([](Scene& s) { s.views[0].name = "door", s.views[0].look_at = s.views[0].eye; }), "door");
+    EXPECT_EQ(object_of([](Scene& s) {
+                  s.views[0].name = "door";
+                  s.views[0].look_at = s.views[0].eye;
+              }),
+              "door");
 }
 
 TEST(InputErrors, KeepTheirPlace) {

@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "1 from the left and 1 from the top"},
         FaultCase{"InfiniteTexel", [](Scene& s) { s.textures[0].texels[0].x = std::numeric_limits<float>::infinity(); },
                   "not finite"},
-        FaultCase{"NoSuchTexture", [](Scene& s) { s.materials[0].exitance_texture = 1; }, "there is no texture 1"},
+        FaultCase{"NoSuchTexture", [](Scene& s) { s.materials[0].exitance_texture = 1; }, "texture 1 does not exist"},
         FaultCase{"ReflectsTooMuch", [](Scene& s) { s.materials[0].reflectance = Rgb(0.2f); },
                   "reflectance times its texture is up to (1.2"},
         FaultCase{"LetsTooMuchThrough",
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
                   },
                   "times their textures, are up to (1.2"},
         FaultCase{"NoSuchTransmittance", [](Scene& s) { s.materials[0].transmittance_texture = 7; },
-                  "there is no texture 7"},
+                  "texture 7 does not exist"},
         FaultCase{"EmitsTooMuch", [](Scene& s) { s.materials[0].exitance = Rgb(2e9f); }, "times its texture: exitance"},
         FaultCase{"TooDark", [](Scene& s) { s.textures[0].texels.assign(6, Rgb(1e-10f)); }, "emits only 1e-10 lm/m2"},
         FaultCase{"NoCoordinates", [](Scene& s) { s.texture_coordinates.clear(); },
@@ -147,7 +147,8 @@ TEST(TexturedScene, MayReflectWhereNothingGoesThrough) {
     EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
     scene.materials[0].transmittance_texture = 0;
     EXPECT_THAT(scene_faults(scene), testing::Contains(testing::Field(&Fault::text, HasSubstr("are up to (1.9"))));
-    scene.textures[0].width = 6, scene.textures[0].height = 1;  // sizes differ: the largest values count
+    scene.textures[0].width = 6;
+    scene.textures[0].height = 1;  // sizes differ: the largest values count
     scene.materials[0].transmittance_texture = 1;
     EXPECT_THAT(scene_faults(scene), testing::Contains(testing::Field(&Fault::text, HasSubstr("are up to (1.9"))));
 }

@@ -277,7 +277,7 @@ TEST(ViewFactors, RefuseFaultyGroups) {
     EXPECT_THAT(fault_of({{"a", {0}}, {"b", {1, 0}}}), HasSubstr("patch 0 belongs to the groups 'a' and 'b'"));
     EXPECT_THAT(fault_of({{"a", {0, 0}}}), HasSubstr("patch 0 belongs to the groups 'a' and 'a'"));
     EXPECT_THAT(fault_of({{"a", {2}}}), HasSubstr("group 'a' has patch 2; the scene has 2 patches"));
-    EXPECT_THAT(fault_of({}), HasSubstr("there is no group of faces"));
+    EXPECT_THAT(fault_of({}), HasSubstr("expected at least one group of faces"));
     EXPECT_THAT(fault_of({{"a", {0}}}, 0), HasSubstr("rays: expected a positive number, found 0"));
 }
 

@@ -54,7 +54,7 @@ struct Workload {
           forest(std::const_pointer_cast<ElementForest>(solution.forest)),
           streams(options.experimental.points, options.seed) {
         if (!(channel_sum(solution.emitted_power) > 0))
-            throw InputError(scene.name, 0, "nothing in the scene emits light: there is nothing to measure");
+            throw InputError(scene.name, 0, "the scene emits no light to measure");
         const bool combined = importance_use(solution) == ImportanceUse::full;
         const Radiosity light(materials, solution.irradiance);
         const ImportanceWeights weights = importance_weights(solution, Neighbourhoods(*forest));

@@ -127,7 +127,7 @@ void add_compare(CLI::App& app) {
     const auto options = std::make_shared<CompareArguments>();
     CLI::App& command = *app.add_subcommand("compare", "Measure how a picture differs from a reference");
     command.add_option("IMAGE", options->image, "Picture (.exr .hdr .png)")->required()->type_name("FILE");
-    command.add_option("REFERENCE", options->reference, "Reference: as large, or smaller by a whole factor")
+    command.add_option("REFERENCE", options->reference, "Reference: of the same size, or smaller by a whole factor")
         ->required()
         ->type_name("FILE");
     command.add_flag("--scale", options->scale, "Divide the ratio of mean luminances out first");

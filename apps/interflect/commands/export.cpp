@@ -90,7 +90,7 @@ float automatic_exposure_of(const SolvedScene& solved) {
 V3f up_of(const Scene& scene) {
     const std::optional<UpAxis> found = find_up_axis(scene);
     if (!found) {
-        spdlog::warn("{}: nothing tells which way is up: taking z (--up chooses another)", scene.name);
+        spdlog::warn("{}: the up direction is unknown: taking z (--up chooses another)", scene.name);
         return {0, 0, 1};
     }
     const std::string axis = found->axis;
@@ -265,7 +265,8 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
         command.add_flag("--lightmap", arguments.has_lightmap, "The light in images, not in vertices");
     group(flag);
     const auto of_lightmap = [&](CLI::Option* option) { return group(option)->needs(flag); };
-    of_lightmap(command.add_option("--texels-per-metre", lightmap.texels_per_metre, "Of the images, at least"))
+    of_lightmap(command.add_option("--texels-per-metre", lightmap.texels_per_metre,
+                                   "Maximum width and height of the images, at least"))
         ->capture_default_str()
         ->check(number_between(1e-6, 1e6));
     of_lightmap(
@@ -286,7 +287,7 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
                     "irradiance, which the renderer multiplies by the reflectance; or radiance, shown as it is"))
         ->default_str("irradiance");
     of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image, {{"exr", ".exr"}, {"hdr", ".hdr"}},
-                                        "Of the unclamped images beside the file"))
+                                        "Format of the unclamped images beside the file"))
         ->default_str("exr");
     of_lightmap(
         command.add_flag("--own-charts", lightmap.own_charts, "Ignore lightmap coordinates of the scene's file"));
@@ -308,11 +309,12 @@ void add_export(CLI::App& app, int& exit_code) {
                "Stops by which colours are brightened, or auto, as `render` does")
         ->type_name("STOPS|auto[+STOPS]")
         ->default_str("auto");
-    add_parsed(
-        command, "--up", options->up, parse_vector,
-        "Which way is up (default: that of the views, or the light); with --eye: in the picture, as for `render`")
+    add_parsed(command, "--up", options->up, parse_vector,
+               "Up direction (default: of the views, or the light); with --eye: of the picture, as for `render`")
         ->type_name("X,Y,Z");
-    command.add_option("--probe-spacing", options->probes.spacing, "Of irradiance probes (.json, .exr), at most [m]")
+    command
+        .add_option("--probe-spacing", options->probes.spacing,
+                    "Maximum distance of irradiance probes (.json, .exr) [m]")
         ->type_name("METRES")
         ->check(number_between(1e-6, 1e15))
         ->capture_default_str();
@@ -320,7 +322,7 @@ void add_export(CLI::App& app, int& exit_code) {
         ->type_name("N")
         ->check(CLI::Range(8, 1 << 20))
         ->capture_default_str();
-    add_parsed(command, "--size", options->size, parse_size, "Of the pictures of scenes for renderers [pixels]")
+    add_parsed(command, "--size", options->size, parse_size, "Size of the pictures of scenes for renderers [pixels]")
         ->type_name("WxH")
         ->default_str("1280x720");
     command.add_option("--pixel-samples", options->samples, "Of scenes for renderers")

@@ -164,8 +164,8 @@ void add_info(CLI::App& app) {
         bool json = false;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App& command = *app.add_subcommand("info", "Tell what is in a scene or a solution");
-    options->scene.add_to(command, std::string(scene_formats) + ", maze:ROOMS[:furniture], or solution file (.h5)");
+    CLI::App& command = *app.add_subcommand("info", "List the contents of a scene or a solution");
+    options->scene.add_to(command, std::string(scene_formats) + ", or solution file (.h5)");
     command.add_flag("--json", options->json, "As JSON on stdout");
     command.callback([options, &command] {
         options->scene.check(command);

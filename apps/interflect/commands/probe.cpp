@@ -287,7 +287,7 @@ void add_quantity(CLI::App& command, ProbeArguments& options) {
     add_seats(command, options.seats);
     command
         .add_option("--exterior", options.exterior,
-                    "Horizontal illuminance outside [lx], for daylight factors (default: that of the scene's sky)")
+                    "Horizontal illuminance outside [lx], for daylight factors (default: from the scene's sky)")
         ->type_name("LUX")
         ->check(number_between(1e-12, 1e12));
 }

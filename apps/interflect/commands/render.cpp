@@ -90,8 +90,9 @@ View view_to_draw(const Scene& scene, const RenderArguments& options) {
     const std::vector<View> views = options.view.views(scene);
     if (!views.empty()) return views.front();
     if (!scene.views.empty()) return scene.views.front();
-    spdlog::warn("{} names no view and none was given: drawing an overview (--eye and --look-at choose another)",
-                 scene.name);
+    spdlog::warn(
+        "{} names no view, and the command line has none: drawing an overview (--eye and --look-at choose another)",
+        scene.name);
     return overview(scene);
 }
 
@@ -445,11 +446,11 @@ void add_tone_options(CLI::App& command, RenderArguments& options) {
                          {"tumblin", Tonemap::tumblin},
                          {"ferwerda", Tonemap::ferwerda}},
                         "Tone mapping of .png and .jpg. srgb: true ratios, clipped; reinhard, filmic, agx: curves with "
-                        "soft highlights; ward, tumblin, ferwerda: as bright as the scene looks, from cd/m^2")
+                        "soft highlights; ward, tumblin, ferwerda: brightness by luminance [cd/m^2]")
         ->default_str("srgb");
     command
         .add_option("--display-luminance", options.display_luminance,
-                    "Of the white of the display, for ward, tumblin and ferwerda [cd/m^2]")
+                    "Luminance of the display's white, for ward, tumblin and ferwerda [cd/m^2]")
         ->check(number_between(1, 10000))
         ->type_name("CD/M2")
         ->default_str("100");
@@ -489,7 +490,7 @@ void add_render(CLI::App& app, int& exit_code) {
     options->dimming.add_to(command);
     options->solver.add_to(command);
     command.get_option("--rays")->description(
-        "Most rays to trace in all, such as 20M (default 20M, unless --until is given)");
+        "Maximum number of rays, such as 20M (default 20M, unless --until is given)");
     command.get_option("--time")->description(
         "Most seconds of the whole command, divided between solving and drawing; too short for --shading hybrid: "
         "smooth");

@@ -170,7 +170,7 @@ void run(const ReportArguments& options) {
 
 void add_report(CLI::App& app) {
     const auto options = std::make_shared<ReportArguments>();
-    CLI::App& command = *app.add_subcommand("report", "Write what a lighting designer hands over, as one HTML page");
+    CLI::App& command = *app.add_subcommand("report", "Write a lighting designer's report, as one HTML page");
     command.add_option("SOLUTION", options->solution, "Solution file (.h5)")->required()->type_name("FILE");
     command.add_option("-o,--output", options->output, "Page to write (.html)")->required()->type_name("FILE");
     command.add_option("--title", options->title, "Heading (default: the scene's name)")->type_name("TEXT");

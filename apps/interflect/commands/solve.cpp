@@ -58,7 +58,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         std::filesystem::path output;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App& command = *app.add_subcommand("solve", "Find the light on the surfaces of a scene");
+    CLI::App& command = *app.add_subcommand("solve", "Solve for the light on the surfaces of a scene");
     options->scene.add_to(command);
     command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required()->type_name("FILE");
     options->solver.add_to(command);
@@ -113,12 +113,12 @@ void add_resume(CLI::App& app, int& exit_code) {
         int threads = 0;
     };
     const auto options = std::make_shared<Options>();
-    CLI::App& command = *app.add_subcommand("resume", "Go on with a run that was saved, as if it had never ended");
+    CLI::App& command = *app.add_subcommand("resume", "Continue a saved run, with the bits of an uninterrupted one");
     command.add_option("FILE", options->input, "What --checkpoint wrote")->required();
     command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required()->type_name("FILE");
     options->limits.add_to(command);
     options->checkpoints.add_to(command, "Save the run to this file now and then (default: FILE itself)");
-    command.add_option("--stats", options->stats, "Write what each iteration did to this file, as JSON lines")
+    command.add_option("--stats", options->stats, "File for statistics of each iteration, as JSON lines")
         ->type_name("FILE");
     add_threads(command, options->threads);
     command.callback([options, &exit_code] {

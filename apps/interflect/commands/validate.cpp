@@ -115,14 +115,14 @@ void run(const ValidateArguments& arguments, const CLI::App& command, int& exit_
 
 void add_validate(CLI::App& app, int& exit_code) {
     const auto arguments = std::make_shared<ValidateArguments>();
-    CLI::App& command = *app.add_subcommand("validate", "List what would spoil a solve of a scene");
+    CLI::App& command = *app.add_subcommand("validate", "List faults of a scene that would spoil its solution");
     arguments->scene.add_to(command);
     arguments->mesh.add_to(command);
     command.add_option("--places", arguments->validate.places, "Most places of each kind that are listed")
         ->type_name("COUNT")
         ->capture_default_str()
         ->check(CLI::Range(0, 1'000'000));
-    command.add_flag("--strict", arguments->strict, "End with exit code 1 where there is a problem");
+    command.add_flag("--strict", arguments->strict, "Exit code 1 if the scene has a problem");
     command.add_flag("--json", arguments->json, "As JSON on stdout");
     add_threads(command, arguments->threads);
     command.callback([arguments, &command, &exit_code] { run(*arguments, command, exit_code); });

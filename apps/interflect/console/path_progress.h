@@ -9,7 +9,7 @@ namespace interflect::command {
 
 /// Calls `work` with a monitor that shows a progress bar and obeys stop_flag(). @return  Duration [s].
 double with_path_progress(const std::function<void(const Monitor&)>& work);
-/// Also shares the work with the crew.
+/// Shares the work with the crew, too.
 double with_path_progress(CrewLight& crew_light, const std::function<void(const Monitor&)>& work);
 
 }  // namespace interflect::command

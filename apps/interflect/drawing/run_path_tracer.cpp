@@ -64,7 +64,7 @@ void PathTracerArguments::add_to(CLI::App& app, PictureOptions& picture) {
         ->group(path_group);
     app.add_flag(
            "--mirrors,!--no-mirrors", picture.mirrors,
-           "Show what mirrors reflect to the camera (default), or leave it out, as all other light that they reflect")
+           "Show the reflections in mirrors (default), or leave them out, as all other light that mirrors reflect")
         ->group(path_group);
     app.add_option("--error-image", error_image, "Write the standard error of each pixel: .exr .hdr")
         ->type_name("FILE")
@@ -88,7 +88,7 @@ void PathTracerArguments::check_samples(const CLI::App& app, int samples) {
     const CLI::Option& most = *app.get_option("--max-samples");
     if (most.count() == 0) return;
     if (app.get_option("--until")->count() == 0)
-        throw UsageError("--max-samples", "it has no effect without --until: there are --samples everywhere");
+        throw UsageError("--max-samples", "it has no effect without --until: every pixel has --samples");
     if (most.as<int>() < samples)
         throw UsageError("--max-samples",
                          fmt::format("expected no less than --samples, {}, found {}", samples, most.as<int>()));

@@ -38,7 +38,7 @@ std::vector<float> values_of(Shown shown, const Solution& solution) {
     };
     const bool needs_importance = shown == Shown::importance || shown == Shown::direct_importance;
     if (needs_importance && solution.view_importance.empty())
-        throw InputError("there is no importance to show: the scene was solved without a view (solve --view NAME)");
+        throw InputError("the solution has no importance: the scene was solved without a view (solve --view NAME)");
     switch (shown) {
         case Shown::irradiance:
             fill([&](std::uint32_t e) { return luminance(solution.irradiance[e]); });
@@ -67,16 +67,17 @@ std::vector<float> values_of(Shown shown, const Solution& solution) {
 }  // namespace
 
 void add_show(CLI::App& app, Shown& shown) {
-    add_choice<Shown>(app, "--show", shown,
-                      {{"light", Shown::light},
-                       {"mesh", Shown::mesh},
-                       {"irradiance", Shown::irradiance},
-                       {"importance", Shown::importance},
-                       {"direct-importance", Shown::direct_importance},
-                       {"level", Shown::level},
-                       {"rays", Shown::rays},
-                       {"error", Shown::error}},
-                      "What to draw: the light, the same with the mesh, or a number of the elements with a legend")
+    add_choice<Shown>(
+        app, "--show", shown,
+        {{"light", Shown::light},
+         {"mesh", Shown::mesh},
+         {"irradiance", Shown::irradiance},
+         {"importance", Shown::importance},
+         {"direct-importance", Shown::direct_importance},
+         {"level", Shown::level},
+         {"rays", Shown::rays},
+         {"error", Shown::error}},
+        "Quantity to draw: the light, the light with the mesh, or a quantity of the elements with a legend")
         ->default_str("light");
 }
 

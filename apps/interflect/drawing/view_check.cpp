@@ -49,7 +49,7 @@ FirstMet first_met(const Scene& scene, const RayCaster& ray_caster, const View& 
     const std::vector<Hit> hits = hits_of(ray_caster, rays);
     const float beyond = beyond_all(scene, rays.front().origin);
 
-    // Reversed rays hit fronts of one-sided faces whose backs let rays pass.
+    // Reversed rays hit the fronts of one-sided faces; their backs are open to rays.
     constexpr float almost = 0.9999f;  // excludes the face that was hit
     std::vector<Ray> backwards;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -72,20 +72,20 @@ FirstMet first_met(const Scene& scene, const RayCaster& ray_caster, const View& 
 void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect) {
     const FirstMet met = first_met(scene, ray_caster, view, aspect);
     if (view.extent > 0) {  // plans may have empty surroundings, and cut walls show backs
-        if (met.nothing == all) spdlog::warn("{}: nothing of the scene lies beyond the cut", view.name);
+        if (met.nothing == all) spdlog::warn("{}: the whole scene lies in front of the cut", view.name);
         return;
     }
     if (met.nothing + met.backs <= 0.5) return;
     spdlog::warn(
-        "view '{}': the camera seems to be outside the scene: {} of the picture shows nothing and {} is seen through "
+        "view '{}': the camera seems to be outside the scene: {} of the picture is empty and {} is seen through "
         "the backs of one-sided faces",
         view.name, percent(met.nothing), percent(met.backs));
 }
 
 void warn_of_darkness(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect) {
-    const char* reason = "what it sees is unlit; is the camera inside a closed object?";
+    const char* reason = "all that it sees is unlit; is the camera inside a closed object?";
     if (brightest_source(scene) == 0)
-        reason = "nothing in the scene emits";
+        reason = "the scene emits no light";
     else if (first_met(scene, ray_caster, view, aspect).nothing == all)
         reason = "it meets no surface";
     spdlog::warn("the view shows no light: {}", reason);

@@ -56,7 +56,7 @@ void MeasuringPlaces::add_to(CLI::App& app) {
 void MeasuringPlaces::check(Least least) const {
     const bool has_areas = !tops.empty() || !planes.empty() || !surfaces.empty();
     if (least == Least::one && !has_areas && points.empty() && lines.empty())
-        throw UsageError("nothing to measure: expected --grid, --plane, --surface, --point or --line");
+        throw UsageError("no places to measure: expected --grid, --plane, --surface, --point or --line");
     if (!over.empty() && planes.empty()) throw UsageError("--over has no effect without --plane");
     if (facing && surfaces.empty()) throw UsageError("--facing has no effect without --surface");
     if (facing && !(facing->length() > 0)) throw UsageError("--facing 0,0,0 is no direction");

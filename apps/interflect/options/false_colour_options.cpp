@@ -35,10 +35,10 @@ void FalseColourOptions::add_to(CLI::App& app) {
         option->group("False colours");
         return option;
     };
-    group(add_choice<Measured>(app, "--false-colour", measured,
-                               {{"lux", Measured::illuminance}, {"cd/m2", Measured::luminance}},
-                               "Illuminance of what is seen, or luminance of the picture; numbers in .exr and .hdr"));
-    group(add_parsed(app, "--scale", scale, parse_range, "What the first and the last colour stand for")
+    group(add_choice<Measured>(
+        app, "--false-colour", measured, {{"lux", Measured::illuminance}, {"cd/m2", Measured::luminance}},
+        "Illuminance of the visible surfaces, or luminance of the picture; numbers in .exr and .hdr"));
+    group(add_parsed(app, "--scale", scale, parse_range, "Values of the first and the last colour")
               ->type_name("LOW..HIGH"));
     group(app.add_flag("--logarithmic", logarithmic, "Equal ratios have equal steps of colour"));
     group(add_parsed(app, "--isolines", isolines, parse_isolines, "Draw lines of equal value with numbers on them")

@@ -43,7 +43,8 @@ void SceneOptions::add_to(CLI::App& app, const std::string& what) {
         ->type_name("FILE");
     app.add_option("--curve-divisions", read.curve_divisions, "Flat pieces per quarter circle of curved surfaces")
         ->capture_default_str()
-        ->check(CLI::Range(1, 1000));
+        ->check(CLI::Range(1, 1000))
+        ->group(reading_group);
     add_parsed(app, "--unit", read.unit, parse_unit,
                "Unit of the lengths in the file: m, cm, mm, km, in, ft, or so many metres")
         ->type_name("UNIT")
@@ -55,14 +56,16 @@ void SceneOptions::add_to(CLI::App& app, const std::string& what) {
                       {"-y", Axis::minus_y},
                       {"z", Axis::z},
                       {"-z", Axis::minus_z}},
-                     "What is up in the file: the scene is turned so that this becomes z")
+                     "Axis of the file that points up; it becomes z")
         ->default_str("z");
     app.add_flag("--outside-files", read.outside_files,
-                 "Read files that the scene names outside of its own folder, too");
+                 "Also read files outside of the scene's folder that the scene names")
+        ->group(reading_group);
     add_parsed(app, "--max-patches", read.max_patches, parse_count,
-               "Refuse a scene of more patches (files can ask for any number)")
+               "Maximum number of patches; a scene with more is refused")
         ->type_name("COUNT")
-        ->default_str("50M");
+        ->default_str("50M")
+        ->group(reading_group);
     const auto place = [this](const std::vector<std::string>& texts) {
         for (const std::string& text : texts) try {
                 luminaires.push_back(parse_luminaire(text));
@@ -112,16 +115,12 @@ void SceneOptions::add_daylight_to(CLI::App& app) {
                      "Surround the scene with an image (.exr, .hdr) of longitudes and latitudes; ROTATION: azimuth in "
                      "its middle [degrees], SCALE: factor of its radiance")
               ->type_name("FILE[,ROTATION[,SCALE]]"));
-    group(add_parsed(app, "--zenith", zenith_, parse_vector, "What is up for these")->type_name("X,Y,Z"))
+    group(add_parsed(app, "--zenith", zenith_, parse_vector, "Up direction of sky and sun")->type_name("X,Y,Z"))
         ->default_str("0,0,1");
 }
 
 void SceneOptions::check(const CLI::App& command, bool traces_paths) const {
     refuse_scene_options(command, path, traces_paths);
-    constexpr std::array<std::string_view, 5> of_files = {"MORE", "--curve-divisions", "--unit", "--up-axis",
-                                                          "--outside-files"};
-    if (path.string().starts_with("maze:"))
-        refuse_options(command, of_files, "it has no effect on a maze, which is made in metres, with z up");
     for (const std::filesystem::path& file : read.further_files)
         for (const std::filesystem::path& part : {path, file})
             if (const std::string extension = lower_case_extension(part); extension != ".rad" && extension != ".mat")
@@ -137,7 +136,7 @@ Daylight SceneOptions::placed_daylight() const {
     return placed;
 }
 
-/// Adds one part after the other to an empty scene, so that errors name their option.
+/// Adds one part after the other to an empty scene: an error then names its option.
 void SceneOptions::check_daylight(const CLI::App& command) const {
     constexpr std::array<std::string_view, 1> zenith = {"--zenith"};
     if (!daylight.sun && !daylight.cie_sky && !daylight.perez_sky && !daylight.environment)
@@ -172,10 +171,10 @@ Scene SceneOptions::load(bool needs_light) const {
         return scene;
     } catch (const InputError& e) {
         if (is_patch_limit(e) && limited.max_patches < read.max_patches)
-            throw std::runtime_error(
-                fmt::format("{}: there is memory for no more, the limits of this process (its machine, ulimit -v, "
-                            "control groups) leave {} MiB; a scene of fewer copies, fewer --curve-divisions need less",
-                            e.what(), usable_memory() >> 20));
+            throw std::runtime_error(fmt::format(
+                "{}: the memory does not suffice for more: the limits of this process (its machine, ulimit -v, "
+                "control groups) leave {} MiB; a scene of fewer copies, fewer --curve-divisions need less",
+                e.what(), usable_memory() >> 20));
         throw;
     }
 }
@@ -196,7 +195,7 @@ void MeshOptions::add_to(CLI::App& app) {
         ->default_str("auto")
         ->group(solver_group);
     app.add_flag("--contact-cuts,!--no-contact-cuts", contact_cuts,
-                 "Cut faces where others stand on them, pass through or cover them, so that no light leaks there "
+                 "Cut faces where others stand on them, pass through or cover them, to prevent light leaks "
                  "(default), or leave them as in the file")
         ->group(solver_group);
 }
@@ -228,14 +227,14 @@ Scene MeshOptions::divide(Scene scene, const ReadOptions& read, bool refines) co
         if (!is_patch_limit(e)) throw;
         if (most < read.max_patches)
             throw std::runtime_error(
-                fmt::format("{}: there is memory for no more, use a larger --mesh-size", e.what()));
+                fmt::format("{}: the memory does not suffice for more; use a larger --mesh-size", e.what()));
         throw InputError(fmt::format("{}; use a larger --mesh-size or raise --max-patches", e.what()));
     }
 }
 
 void ViewOptions::add_to(CLI::App& app) {
     add_without_up(app);
-    add_parsed(app, "--up", up, parse_vector, "What is up in the picture, of --eye")
+    add_parsed(app, "--up", up, parse_vector, "Up direction of the picture, with --eye")
         ->type_name("X,Y,Z")
         ->needs("--eye")
         ->default_str("0,0,1")
@@ -252,7 +251,7 @@ void ViewOptions::add_without_up(CLI::App& app) {
     const auto vector_option = [&](const std::string& name, auto& v, const std::string& help) {
         return group(add_parsed(app, name, v, parse_vector, help)->type_name("X,Y,Z"));
     };
-    CLI::Option* eye_option = vector_option("--eye", eye, "Where the eye is [m]");
+    CLI::Option* eye_option = vector_option("--eye", eye, "Position of the eye [m]");
     CLI::Option* look_at_option = vector_option("--look-at", look_at, "A point in the middle of the picture [m]");
     eye_option->needs(look_at_option);
     look_at_option->needs(eye_option);
@@ -271,7 +270,8 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
     std::vector<View> views;
     if (!names.empty() && scene.views.empty())
         throw InputError(scene.name, 0,
-                         fmt::format("there is no view '{}'; it names none, give --eye and --look-at", names.front()));
+                         fmt::format("there is no view '{}'; the scene has no named views: give --eye and --look-at",
+                                     names.front()));
     for (const std::string& name : names) views.push_back(find_view(scene, name));
     for (const auto& file : files) views.push_back(read_radiance_view(file));
     if (eye) views.push_back(view_of_eye());
@@ -292,7 +292,7 @@ std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions&
 }
 
 void add_threads(CLI::App& app, int& threads) {
-    app.add_option("--threads", threads, "Threads to use; 0: as many as the machine has. Results do not depend on it")
+    app.add_option("--threads", threads, "Number of threads; 0: all of the machine. Results do not depend on it")
         ->capture_default_str()
         ->check(CLI::Range(0, 4096));
 }
@@ -301,24 +301,23 @@ void add_method(CLI::App& app, std::optional<Method>& method) {
     std::vector<std::pair<std::string, Method>> choices;
     choices.reserve(methods.size());
     for (const Method& m : methods) choices.emplace_back(m.name, m);
-    add_choice<Method>(
-        app, "--method", method, choices,
-        "How to solve; docs/method/method.md tells them apart (default: ihsrr with a view, hsrr without)")
+    add_choice<Method>(app, "--method", method, choices,
+                       "Method of solving, see docs/method/method.md (default: ihsrr with a view, hsrr without)")
         ->group(solver_group);
 }
 
 void LimitOptions::add_to(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(limits_group); };
     group(add_parsed(app, "--rays", rays, parse_count,
-                     "Most rays to trace in all, such as 20M (default 20M, unless --time or --until is given)")
+                     "Maximum number of rays, such as 20M (default 20M, unless --time or --until is given)")
               ->type_name("COUNT"));
-    group(
-        app.add_option("--time", time,
-                       "Most seconds to solve, besides reading, cutting and writing; in render: for the whole command")
-            ->type_name("SECONDS")
-            ->check(number_between(1e-3, 1e9)));
+    group(app.add_option(
+                 "--time", time,
+                 "Maximum solving time, without reading, cutting and writing; in render: time of the whole command")
+              ->type_name("SECONDS")
+              ->check(number_between(1e-3, 1e9)));
     group(add_parsed(app, "--until", until, parse_share,
-                     "Stop at this estimated relative error, such as 2%; with a view: of what it shows")
+                     "Stop at this estimated relative error, such as 2%; with a view: of its picture")
               ->type_name("SHARE"));
 }
 
@@ -333,13 +332,17 @@ void SolverOptions::add_to(CLI::App& app) {
         ->type_name("NUMBER")
         ->default_str("1")
         ->group(solver_group);
-    app.add_flag("--keep-direct", solve_.keep_direct,
-                 "Keep the light that comes straight from sources apart, in the solution file")
+    app.add_flag("--keep-direct", solve_.keep_direct, "Store direct light separately in the solution file")
         ->group(solver_group);
-    app.add_option("--stats", stats, "Write what each iteration did to this file, as JSON lines")
+    app.add_option("--stats", stats, "File for statistics of each iteration, as JSON lines")
         ->type_name("FILE")
         ->group(solver_group);
     limits_.add_to(app);
+    add_parsed(app, "--memory", memory, parse_memory,
+               "Maximum memory of the process, where refinement ends (k, M, G: powers of 1024)")
+        ->type_name("BYTES")
+        ->default_str("9/10 of the machine's")
+        ->group(limits_group);
     add_refinement(app);
     add_importance(app);
     add_schedule(app);
@@ -351,27 +354,24 @@ void SolverOptions::add_to(CLI::App& app) {
 void SolverOptions::add_refinement(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(refinement_group); };
     RefinementOptions& refinement = solve_.refinement;
-    group(add_choice<RefinementCriterion>(
-              app, "--refinement-criterion", refinement.criterion,
-              {{"variance", RefinementCriterion::variance},
-               {"perceptual", RefinementCriterion::perceptual},
-               {"power", RefinementCriterion::power}},
-              "Elements are split by the differences that rays measure, by visible differences only, or pairs by power "
-              "(Eq. 14, 15)")
+    group(add_choice<RefinementCriterion>(app, "--refinement-criterion", refinement.criterion,
+                                          {{"variance", RefinementCriterion::variance},
+                                           {"perceptual", RefinementCriterion::perceptual},
+                                           {"power", RefinementCriterion::power}},
+                                          "Split elements where rays measure differences, only where these are "
+                                          "visible, or by the power between pairs "
+                                          "(Eq. 14, 15)")
               ->default_str("variance"));
-    group(
-        app.add_option("--min-area", refinement.min_area,
-                       "No element smaller than this [m2]; 0: what a pixel shows of what is seen, else (5 mm)2 or less")
-            ->type_name("AREA")
-            ->capture_default_str()
-            ->check(number_between(0, 1e9)));
-    group(add_parsed(app, "--max-elements", refinement.max_elements, parse_element_count, "Refinement ends there")
+    group(app.add_option("--min-area", refinement.min_area,
+                         "Minimum area of elements [m2]; 0: the area that a pixel shows of visible surfaces, elsewhere "
+                         "(5 mm)2 or less")
+              ->type_name("AREA")
+              ->capture_default_str()
+              ->check(number_between(0, 1e9)));
+    group(add_parsed(app, "--max-elements", refinement.max_elements, parse_element_count,
+                     "Maximum number of elements, where refinement ends")
               ->type_name("COUNT")
               ->default_str("67M"));
-    group(add_parsed(app, "--memory", memory, parse_memory,
-                     "Refinement ends before the process takes more than this (k, M, G: powers of 1024)")
-              ->type_name("BYTES")
-              ->default_str("9/10 of the machine's"));
 }
 
 void SolverOptions::add_importance(CLI::App& app) {
@@ -379,20 +379,21 @@ void SolverOptions::add_importance(CLI::App& app) {
     group(add_choice<ImportanceUse>(
         app, "--importance", importance_,
         {{"off", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}},
-        "What a view steers by: nothing, what it shows, or that and all that lights it (default: the method's)"));
+        "Surfaces on which a view concentrates rays: off: none; direct: visible ones; full: also those that light them "
+        "(default: of the method)"));
     ImportanceOptions& importance = solve_.importance;
     group(app.add_option("--camera-rays", importance.camera_rays,
-                         "Rays that find what a view shows at first, per view; more follow as rays are averaged")
+                         "Initial camera rays per view; their number grows with that of the averaged rays")
               ->capture_default_str()
               ->check(CLI::Range(1, max_camera_rays)));
-    group(app.add_option(
-                 "--importance-smoothing", importance.smoothing,
-                 "How much of its parent's importance drives an element's rays and refinement; 0: as in the paper")
-              ->type_name("SHARE")
-              ->capture_default_str()
-              ->check(number_between(0, 1)));
+    group(
+        app.add_option("--importance-smoothing", importance.smoothing,
+                       "Share of its parent's importance in the rays and refinement of an element; 0: as in the paper")
+            ->type_name("SHARE")
+            ->capture_default_str()
+            ->check(number_between(0, 1)));
     group(app.add_option("--importance-exponent", importance.exponent,
-                         "Rays start by power times importance to this power; 1: as in the paper")
+                         "Rays are sampled by power times importance to this power; 1: as in the paper")
               ->type_name("EXPONENT")
               ->capture_default_str()
               ->check(number_between(0, 1)));
@@ -415,14 +416,14 @@ void SolverOptions::add_schedule(CLI::App& app) {
               ->check(CLI::IsMember({"paper"}))
               ->trigger_on_parse());
     group(add_choice<PointSet>(app, "--points", o.points, {{"sobol", PointSet::sobol}, {"random", PointSet::random}},
-                               "Sample points: scrambled Sobol' or pseudo-random")
+                               "Sample points: Owen-scrambled Sobol' or pseudo-random")
               ->default_str("sobol"));
     group(app.add_flag("--one-bounce", o.one_bounce,
-                       "Each iteration takes the mean one bounce further, instead of following light to its end"));
+                       "An iteration is one bounce of the running mean, not a pass over all bounces"));
     group(app.add_option("--warm-up", o.warm_up, "Iterations that are not averaged, after the first estimate")
               ->capture_default_str()
               ->check(CLI::Range(0, 1'000'000)));
-    group(app.add_option("--iterations", o.iterations, "Averaged iterations; 0: as many as the limits allow")
+    group(app.add_option("--iterations", o.iterations, "Number of averaged iterations; 0: until a limit is reached")
               ->capture_default_str()
               ->check(CLI::Range(0, 1'000'000'000)));
     group(add_parsed(app, "--rays-per-iteration", o.rays_per_iteration, parse_iteration_size,
@@ -440,24 +441,24 @@ void SolverOptions::add_paper_refinement(CLI::App& app) {
                        "Also between faces that are near each other and face alike: for scenes of many small faces. "
                        "Method hr: link clusters of faces where they are many"));
     group(app.add_option("--epsilon", o.epsilon,
-                         "Power that may pass between two elements undivided, relative to what is seen (or emitted), "
-                         "once 20M rays are averaged")
+                         "Maximum power between two undivided elements, relative to the visible (or emitted) power, "
+                         "after 20M averaged rays")
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(1e-15, 1e15)));
     group(
         app.add_option("--epsilon-decay", o.epsilon_decay,
-                       "That power falls as rays^-EXPONENT: the mesh gets finer as the noise falls; 0: as in the paper")
+                       "--epsilon falls as rays^-EXPONENT: the mesh gets finer as the noise falls; 0: as in the paper")
             ->type_name("EXPONENT")
             ->capture_default_str()
             ->check(number_between(0, 1)));
     group(app.add_option("--inherited-weight", o.inherited_weight,
-                         "How much its parent's past counts for a new element; 1: as in the paper")
+                         "Weight of its parent's earlier rays in a new element; 1: as in the paper")
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(0, 1)));
     group(app.add_flag("--defer-refinement", o.defer_refinement,
-                       "No refinement during the warm-up ('dr'); there is one with --warm-up"));
+                       "No refinement during the warm-up ('dr', with --warm-up)"));
 }
 
 void SolverOptions::add_paper_importance(CLI::App& app) {
@@ -466,14 +467,14 @@ void SolverOptions::add_paper_importance(CLI::App& app) {
     group(app.add_flag("--separate-iterations", o.separate_iterations,
                        "Importance and power in steps of their own ('si'), instead of in one ('ci')"));
     group(app.add_flag("--importance-at-patches", o.importance_at_patches,
-                       "Keep importance by patches, instead of by elements ('hi')"));
+                       "Store importance per patch, instead of per element ('hi')"));
     group(app.add_flag("--total-importance", o.total_importance,
-                       "Rays start by total importance (Eq. 9), instead of indirect (Eq. 10)"));
+                       "Sample rays by total importance (Eq. 9), instead of indirect (Eq. 10)"));
     group(app.add_option("--alpha", o.alpha, "Share of the rays for importance")
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(0, 1)));
-    group(app.add_option("--beta", o.beta, "Share of the other rays that start by power alone")
+    group(app.add_option("--beta", o.beta, "Share of the other rays that are sampled by power alone")
               ->type_name("SHARE")
               ->capture_default_str()
               ->check(number_between(0, 1)));

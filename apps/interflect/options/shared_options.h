@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -25,7 +27,7 @@ struct SceneOptions {
     std::vector<PlacedLuminaire> luminaires;
     Daylight daylight;
 
-    void add_to(CLI::App& app, const std::string& what = std::string(scene_formats) + ", or maze:ROOMS[:furniture]");
+    void add_to(CLI::App& app, const std::string& what = scene_formats);
     /// @param traces_paths  As for refuse_scene_options().
     /// @throws UsageError for invalid daylight and for options without effect on a solution or a maze.
     void check(const CLI::App& command, bool traces_paths = false) const;
@@ -60,7 +62,7 @@ struct ViewOptions {
     float fov = 45;
 
     void add_to(CLI::App& app);
-    /// As add_to(), without --up, for a command that has its own.
+    /// Adds all options but --up, for a command that has its own.
     void add_without_up(CLI::App& app);
     /// Number of requested views.
     std::size_t count() const { return names.size() + files.size() + (eye ? 1 : 0); }
@@ -75,14 +77,17 @@ struct ViewOptions {
 
 std::vector<NamedFile> input_files(const SceneOptions& scene, const ViewOptions& view);
 
-/// Headings in the help; `render --shading path` refuses these options.
+/// Headings in the help.
+inline constexpr const char* reading_group = "Reading the scene";
 inline constexpr const char* view_group = "View";
 inline constexpr const char* solver_group = "Solver";
 inline constexpr const char* limits_group = "Limits";
 inline constexpr const char* refinement_group = "Refinement";
 inline constexpr const char* importance_group = "Importance";
-inline constexpr const char* experimental_group =
-    "Experimental (the paper's switches, and what is measured against them)";
+inline constexpr const char* experimental_group = "Experimental (of the paper, and for comparison with it)";
+/// Headings that only --help-all shows.
+inline constexpr std::array<std::string_view, 5> rare_groups = {reading_group, solver_group, refinement_group,
+                                                                importance_group, experimental_group};
 
 struct LimitOptions {
     std::optional<std::int64_t> rays;

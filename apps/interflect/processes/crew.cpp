@@ -16,9 +16,9 @@
 #include <utility>
 
 #include "apps/interflect/commands/commands.h"
-#include "apps/interflect/console/faults.h"
 #include "apps/interflect/processes/signals.h"
 #include "apps/interflect/processes/threads.h"
+#include "apps/interflect/values/faults.h"
 #include "interflect/cluster/fingerprint.h"
 #include "interflect/exports/saved_run.h"
 #include "interflect/ranks.h"

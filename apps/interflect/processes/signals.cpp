@@ -34,7 +34,7 @@ extern "C" void handle_stop_signal(int signal) {
     if (!first_only_stops || stop_requested.exchange(true)) return end_process(signal);
     const int errno_before = errno;
     if (::isatty(STDERR_FILENO) == 1) say("\n");  // below a progress bar
-    say("stopping, keeping what is usable; once more ends at once, keeping nothing\n");
+    say("stopping, and keeping usable results; the same signal again ends at once, without results\n");
     errno = errno_before;
 }
 

@@ -221,7 +221,7 @@ std::string surfaces(const ReportContent& content) {
 std::string plans(const ReportContent& content) {
     return "<section class=\"sheet\">\n<h2>Plan</h2>\n<figure class=\"plan\">\n" + illuminance_figure(content.plan) +
            fmt::format(
-               "<figcaption>Horizontal illuminance at z = {:.3g} m, isolines in lux; outlines of what lies "
+               "<figcaption>Horizontal illuminance at z = {:.3g} m, isolines in lux; outlines of the objects that lie "
                "lower than {:.3g} m.</figcaption>\n</figure>\n</section>\n",
                content.working_plane, content.working_plane + 1) +
            "<section class=\"sheet\">\n<h2>Values</h2>\n<figure class=\"plan\">\n" +
@@ -235,7 +235,7 @@ std::string pictures(const ReportContent& content) {
     for (const ReportPicture& p : content.pictures)
         text += fmt::format(
             "<figure>\n<div class=\"pair\"><img alt=\"{0}\" src=\"{1}\"><img alt=\"{0}, illuminance\" "
-            "src=\"{2}\"></div>\n<figcaption>View “{0}”, and illuminance on what is seen [lx]."
+            "src=\"{2}\"></div>\n<figcaption>View “{0}”, and illuminance of the visible surfaces [lx]."
             "</figcaption>\n</figure>\n",
             html_text(p.view), data_url(p.picture), data_url(p.illuminance));
     return text + "</section>\n";
@@ -253,11 +253,11 @@ std::string method(const ReportContent& content, const SolvedScene& solved) {
     }
     text += fmt::format(
         "){}. Illuminance at points is gathered from this solution: direct light is sampled from the "
-        "sources, indirect light along {} directions a point; the standard errors told are those of "
+        "sources, indirect light along {} directions per point; the standard errors are those of "
         "this sampling. The errors of the solution are estimated by path tracing at up to 256 points. Pictures: {} "
         "directions a pixel, filtered. Surfaces are taken as diffuse, "
         "light passes straight through thin glass, and light that mirrors reflect is not counted. "
-        "Maintenance factors are those of the scene.</p>\n",
+        "The scene has the maintenance factors.</p>\n",
         solution.interrupted ? ", interrupted" : "", content.samples, content.picture_samples);
     return text;
 }

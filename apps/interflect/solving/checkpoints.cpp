@@ -85,7 +85,7 @@ void Checkpoints::save(Solver& solver) {
         if (!std::exchange(replaces_other_, false)) keep(file, previous());
         solver.save(file);
     } catch (const std::bad_alloc&) {
-        spdlog::warn("no checkpoint: there is not enough memory");
+        spdlog::warn("no checkpoint: not enough memory");
     } catch (const std::exception& e) {
         spdlog::warn("no checkpoint: {}", e.what());
     }

@@ -11,7 +11,7 @@ namespace interflect::command {
 SolvedScene read_light_of(const std::filesystem::path& solution) {
     std::error_code unknown;
     if (std::filesystem::is_regular_file(solution, unknown) && !is_solution_file(solution))
-        throw InputError(solution, 0, "not a solution file: expected one that `interflect solve` has written (.h5)");
+        throw InputError(solution, 0, "not a solution file: expected a file from `interflect solve` (.h5)");
     const LongWork work(fmt::format("reading {}", solution.string()));
     return read_solution(solution);
 }

@@ -45,7 +45,7 @@ void warn_of_one_way_light(const Scene& scene, const RayCaster& ray_caster, cons
     const bool is_bright = found.share > 0;
     const bool has_name = found.object < scene.objects.size() && !scene.objects[found.object].empty();
     spdlog::warn(
-        "the solution is too {} by {}, what is gathered from it by {}: {}, most of it in '{}' (material '{}'); faces "
+        "the solution is too {} by {}, light gathered from it by {}: {}, most of it in '{}' (material '{}'); faces "
         "that keep light in or out need two sides",
         is_bright ? "bright" : "dark", percent(std::abs(found.share)), percent(std::abs(found.reflected_share)),
         is_bright ? "light goes through the backs of one-sided faces, whose fronts stop path tracing and gathering"
@@ -99,9 +99,8 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
         const auto most = static_cast<std::int64_t>(bytes / share / options.method.bytes_per_ray);
         if (options.limits.rays == std::numeric_limits<std::int64_t>::max()) options.limits.rays = most;
         if (options.limits.rays > most)
-            throw InputError(
-                fmt::format("--rays {}: {} keeps every ray, expected at most {}, for which there is memory",
-                            options.limits.rays, options.method.name, most));
+            throw InputError(fmt::format("--rays {}: {} keeps every ray; the memory suffices for at most {}",
+                                         options.limits.rays, options.method.name, most));
     }
     options.refinement.max_elements = std::min(options.refinement.max_elements, elements_within(need, bytes, scene));
     return options;

@@ -20,9 +20,9 @@ namespace interflect::command {
 
 /// "20M" -> 20'000'000: a positive number, with k, M, G or T for powers of a thousand.
 std::int64_t parse_count(const std::string& text);
-/// The same, at most 4G.
+/// Parses a count of at most 4G.
 std::size_t parse_element_count(const std::string& text);
-/// The same, at most max_rays_per_iteration.
+/// Parses a count of at most max_rays_per_iteration.
 std::int64_t parse_iteration_size(const std::string& text);
 /// "1.5G" -> 1.5 * 2^30 [bytes]: with k, M, G or T for powers of 1024.
 std::size_t parse_memory(const std::string& text);

@@ -14,7 +14,7 @@ from .lit_materials import glTF2ImportUserExtension  # the importer looks for it
 bl_info = {
     "name": "Interflect",
     "author": "The Interflect authors",
-    "version": (0, 1, 0),
+    "version": (0, 2, 0),
     "blender": (3, 4, 0),
     "location": "Properties > Render > Interflect",
     "description": "Bakes diffuse global illumination, where the camera looks first",

@@ -20,7 +20,7 @@ namespace py = pybind11;
 
 namespace {
 
-constexpr std::chrono::milliseconds between_checks{20};  // a pause that nobody notices, at little cost
+constexpr std::chrono::milliseconds between_checks{20};  // a pause too short to notice, at little cost
 
 /// Progress of the working thread, for the thread of the interpreter.
 class LatestProgress {

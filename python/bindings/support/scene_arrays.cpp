@@ -147,7 +147,7 @@ void add_faces(Scene& scene, const Integers& faces, const std::vector<std::uint3
             if (c == 3 && (v == -1 || v == none)) continue;  // a triangle
             if (v < 0 || v >= static_cast<std::int64_t>(scene.vertices.size()))
                 return arguments.add(
-                    {fmt::format("face {}: there is no vertex {}; there are {}", f, v, scene.vertices.size()),
+                    {fmt::format("face {}: vertex {} does not exist; expected below {}", f, v, scene.vertices.size()),
                      fmt::format("face {}", f), "faces"});
             patch.vertices[static_cast<std::size_t>(c)] = static_cast<std::uint32_t>(v);
         }

@@ -114,7 +114,7 @@ SolveOptions solve_options(const Scene& scene, const py::object& method, const p
             options.refinement.max_elements = static_cast<std::size_t>(whole_number(value, name));
         } else {
             if (!json.contains(name) || name == "views")
-                throw py::type_error("there is no setting '" + name + "'; there are seed, max_elements, preset" +
+                throw py::type_error("unknown setting '" + name + "'; known: seed, max_elements, preset" +
                                      names_of(json));
             json[name] = setting(name, value, json[name]);
         }

@@ -21,7 +21,7 @@ struct MemoryNeed {
     static constexpr std::size_t per_textured_element = 37;
     /// Bytes: H, unshot light and pass result, 12 each; contributions 24 or received light 12.
     static constexpr std::size_t per_element_and_group = 60;
-    /// With SolveOptions::keep_direct, per light group [bytes].
+    /// Memory per element and light group for SolveOptions::keep_direct [bytes].
     static constexpr std::size_t per_element_of_direct_light = 24;
 
     std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }

@@ -33,12 +33,16 @@ class Validator {
         add_reflectances();
         add_warnings("no-light", "nothing emits light", "give surfaces an emission, or add lamps, a sky or the sun");
         add_warnings("implausible-size", "the scene has an implausible size", "tell the unit of the file");
-        add_warnings("maintenance-factor", "maintenance factors are above 1, so that light grows with age",
+        add_warnings("maintenance-factor", "maintenance factors are above 1, as if light grew with age",
                      "give 1 for new luminaires, and less for old ones: 0.8 is usual");
         add_open_edges();
         if (scene_.views.empty())
-            findings_.push_back(
-                {"no-view", false, "the file has no view", "give a view, so that work goes where it is seen", 1, {}});
+            findings_.push_back({"no-view",
+                                 false,
+                                 "the file has no view",
+                                 "give a view, which concentrates the work on visible surfaces",
+                                 1,
+                                 {}});
         for (Finding& finding : validate_setup(scene_, ray_caster_, options_)) findings_.push_back(std::move(finding));
         return std::move(findings_);
     }
@@ -70,7 +74,7 @@ class Validator {
             tolerance[i] = ray_caster_.ray_offset(i) / offset_over_tolerance;
         const CoincidentFaces coincident(scene_, tolerance);
         Finder duplicates = finder("duplicate-face", "faces have the same corners as another face, which hides them",
-                                   "remove one of each pair");
+                                   "remove one face of each pair");
         Finder overlaps = finder("coincident-face", "faces lie in the plane of another, which covers a part of them",
                                  "the smaller one is seen there; move the other away where that is not meant", false);
         for (std::uint32_t i = 0; i < scene_.patches.size(); ++i) {
@@ -100,7 +104,7 @@ class Validator {
     /// Finds faces with the void in front and the lit scene behind, except bottoms of solids and outer faces of thick
     /// walls.
     void add_inverted_faces() {
-        Finder inverted = finder("inverted-face", "one-sided faces have the scene behind them and nothing before them",
+        Finder inverted = finder("inverted-face", "one-sided faces have the scene only behind them",
                                  "turn them round: reverse the order of their vertices");
         for (const std::uint32_t i :
              sampled_patches([&](std::uint32_t k) { return scene_.patches[k].other_side == none && !emits(k); })) {
@@ -113,10 +117,10 @@ class Validator {
 
     void add_lamps() {
         Finder inverted =
-            finder("inverted-lamp", "lamps shine against a surface close before them, with none behind them",
+            finder("inverted-lamp", "lamps shine against a surface close before them, with free space behind them",
                    "turn them round: reverse the order of their vertices");
-        Finder hidden = finder("hidden-lamp", "lamps are covered or closely enclosed, so that their light goes nowhere",
-                               "move them into the open, or make what encloses them transparent");
+        Finder hidden = finder("hidden-lamp", "lamps are covered or closely enclosed, and light nothing",
+                               "move them into the open, or make their enclosure transparent");
         Finder dark = finder("zero-power-lamp", "lamps emit nothing", "remove them, or give them an intensity");
         for (const std::uint32_t i : sampled_patches([&](std::uint32_t k) { return emits(k); })) {
             if (ray_caster_.uncovered_share(i) == 0) {
@@ -148,9 +152,8 @@ class Validator {
     }
 
     void add_reflectances() {
-        Finder high =
-            finder("high-reflectance", "materials reflect more than surfaces do, so that light is lost slowly",
-                   "check them: white paint has 0.8 to 0.9");
+        Finder high = finder("high-reflectance", "materials reflect more than real surfaces, and lose light slowly",
+                             "check them: white paint has 0.8 to 0.9");
         const std::vector<Rgb> largest = largest_texels(scene_);
         std::vector<bool> is_used(scene_.materials.size());
         for (const Patch& patch : scene_.patches) is_used[patch.material] = true;

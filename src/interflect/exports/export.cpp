@@ -96,7 +96,7 @@ std::vector<fs::path> export_solution(const fs::path& path, const Scene& scene, 
     solution.forest->require_made_for(scene);
     require_values_of_elements(*solution.forest, solution.irradiance.size(), "irradiance");
     if (options.lightmap && options.lightmap->groups && solution.groups.empty())
-        throw InputError("lightmaps of light groups: the solution has none: solve the scene with light groups");
+        throw InputError("lightmaps of light groups: the solution has no groups; solve the scene with light groups");
     const PendingFile can_be_written(path);
 
     return write_files(format.make(path, scene, solution, options));

@@ -48,7 +48,7 @@ bool is_scene_export(const std::filesystem::path& path) { return find_scene_form
 
 SceneExport export_scene(const std::filesystem::path& path, const Scene& scene, const SceneExportOptions& options) {
     const SceneFormat* format = find_scene_format(path);
-    if (!format) throw InputError(path, 0, "expected one of the extensions .rad, .xml, .pbrt, .py");
+    if (!format) throw InputError(path, 0, "expected the extension .rad, .xml, .pbrt or .py");
     if (options.width < 1 || options.height < 1 || options.samples < 1)
         throw InputError("scene export: width, height and samples must be at least 1");
     require_no_faults(scene_faults(scene), "cannot export", scene);

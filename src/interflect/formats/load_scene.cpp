@@ -20,10 +20,8 @@
 #include "interflect/formats/rad/rad.h"
 #include "interflect/formats/reading/checked_options.h"
 #include "interflect/formats/text/extension.h"
-#include "interflect/formats/text/number.h"
 #include "interflect/formats/text/text_file.h"
 #include "interflect/formats/view_files.h"
-#include "interflect/generators/maze.h"
 #include "interflect/scene/core/core.h"
 
 namespace interflect {
@@ -99,32 +97,6 @@ void warn_of_size(Scene& scene) {
                            fmt::format("the scene is {:.3g} m across: the file may be in another unit (unit)", size));
 }
 
-constexpr std::string_view maze_prefix = "maze:";
-
-MazeOptions parse_maze(const std::string& name) {
-    std::string_view rooms = std::string_view(name).substr(maze_prefix.size());
-    MazeOptions maze;
-    if (const auto colon = rooms.find(':'); colon != rooms.npos) {
-        maze.furniture = rooms.substr(colon) == ":furniture";
-        if (maze.furniture) rooms = rooms.substr(0, colon);
-    }
-    const auto count = parse_integer(rooms);
-    if (!count || *count < 1)
-        throw InputError(name, 0, "expected maze:ROOMS or maze:ROOMS:furniture, such as maze:9:furniture");
-    maze.rooms = static_cast<std::uint32_t>(*count);
-    return maze;
-}
-
-Scene load_maze(const std::string& name, const ReadOptions& options) {
-    Scene scene = make_maze(parse_maze(name));
-    if (scene.patches.size() > options.max_patches)
-        throw InputError(Fault{.text = fmt::format("this maze has {} patches, more than the limit of {} (max_patches)",
-                                                   scene.patches.size(), options.max_patches),
-                               .setting = "max_patches",
-                               .file = name});
-    return scene;
-}
-
 void add_luminaires(Scene& scene, std::span<const PlacedLuminaire> luminaires, const ReadOptions& options) {
     std::map<fs::path, std::shared_ptr<const PhotometricWeb>> webs;
     for (const PlacedLuminaire& placed : luminaires) {
@@ -157,15 +129,6 @@ std::vector<std::uint32_t> checksums_of(const std::vector<std::string>& files) {
 
 Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<const PlacedLuminaire> luminaires,
                  const Daylight& added) {
-    if (path.string().starts_with(maze_prefix)) {
-        if (options.unit != 1 || options.up_axis != Axis::z)
-            throw InputError(path, 0, "a maze is made in metres, with z up: unit and up_axis are for files");
-        Scene maze = load_maze(path.string(), options);
-        add_luminaires(maze, luminaires, options);
-        add_daylight(maze, added);
-        maze.file_checksums = checksums_of(maze.files);
-        return maze;
-    }
     require_regular_file(path);
     require_joinable(path, options.further_files);
     Scene scene = format_of(path).read(path, checked(options));
@@ -176,7 +139,7 @@ Scene load_scene(const fs::path& path, const ReadOptions& options, std::span<con
     files.insert(files.begin(), path);
     read_views(scene, std::move(files));
     scene.file_checksums = checksums_of(scene.files);
-    if (!emits(scene)) scene.warnings.add("no-light", "nothing in the scene emits light: all pictures will be black");
+    if (!emits(scene)) scene.warnings.add("no-light", "the scene emits no light: all pictures will be black");
     return scene;
 }
 

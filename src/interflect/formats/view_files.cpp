@@ -144,8 +144,7 @@ std::vector<View> read_view_list(const fs::path& path) {
     for (const json& value : list) {
         views.push_back(parse_view(value, views.size(), path));
         if (!names.insert(views.back().name).second)
-            throw InputError(path, 0,
-                             fmt::format("view {}: there is another view '{}'", views.size(), views.back().name));
+            throw InputError(path, 0, fmt::format("view {}: a second view '{}'", views.size(), views.back().name));
     }
     return views;
 }

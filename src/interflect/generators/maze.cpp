@@ -53,7 +53,7 @@ Scene make_maze(const MazeOptions& options) {
     const FloorPlan plan =
         make_floor_plan({.rooms = options.rooms, .extra_doors = options.extra_doors, .seed = options.seed});
     Scene scene;
-    scene.name = fmt::format("maze:{}{}", options.rooms, options.furniture ? ":furniture" : "");
+    scene.name = fmt::format("maze of {} rooms", options.rooms);
     scene.objects.emplace_back();
     const Palette palette = add_palette(scene);
 

@@ -25,7 +25,8 @@ Imath::Box3f box_around(const Scene& scene) {
         for (int k = 0; k < patch.vertex_count(); ++k)
             box.extendBy(scene.vertices[patch.vertices[static_cast<std::size_t>(k)]]);
     const V3f around(margin * box.size().length());
-    box.min -= around, box.max += around;
+    box.min -= around;
+    box.max += around;
     return box;
 }
 
@@ -52,7 +53,8 @@ std::array<BoxSide, 6> sides_of(const V3f& low, const V3f& size) {
         V3f edge_u(0), edge_v(0), normal(0), across(0);
         edge_u[(axis + 1) % 3] = size[(axis + 1) % 3];
         edge_v[(axis + 2) % 3] = size[(axis + 2) % 3];
-        normal[axis] = 1, across[axis] = size[axis];
+        normal[axis] = 1;
+        across[axis] = size[axis];
         const std::size_t first = 2 * static_cast<std::size_t>(axis);
         sides[first] = {low, edge_u, edge_v, normal};
         sides[first + 1] = {low + across, edge_u, edge_v, -normal};
@@ -160,10 +162,16 @@ void Emission::add(const DirectionalLight& light) {
             for (const float y : {boxes_[b].min.y, boxes_[b].max.y})
                 for (const float z : {boxes_[b].min.z, boxes_[b].max.z}) {
                     const V3f corner(x, y, z), p(corner.dot(frame.s), corner.dot(frame.t), corner.dot(direction));
-                    for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+                    for (int k = 0; k < 3; ++k) {
+                        low[k] = std::min(low[k], p[k]);
+                        high[k] = std::max(high[k], p[k]);
+                    }
                 }
         const float sine = light.disc_sine(), margin = (high.z - low.z) * sine / std::sqrt(1 - sine * sine);
-        for (int k = 0; k < 2; ++k) low[k] -= margin, high[k] += margin;
+        for (int k = 0; k < 2; ++k) {
+            low[k] -= margin;
+            high[k] += margin;
+        }
         const V3f corner = frame.s * low.x + frame.t * low.y + direction * low.z;
         add_rectangle(
             {corner, frame.s * (high.x - low.x), frame.t * (high.y - low.y), direction, frame.s, frame.t, sine, 0},
@@ -344,7 +352,7 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
     if (const Web* web = std::get_if<Web>(&emitter.shape))
         return {ray.origin, V3f(0), emitter.rating * web->light->intensity(web->frame.to_luminaire(ray.direction))};
     const auto of_side = [&](const V3f& normal, float part_area, const Rgb& exitance) {
-        // For a disk of this area, from a point on its axis.
+        // The form factor of a disk of this area, seen from a point on its axis.
         const float form_factor = part_area / (part_area + pi * squared);
         return Proxy{ray.origin, normal, exitance * (form_factor * squared)};
     };

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "interflect/core.h"
-#include "interflect/scene.h"
+#include "interflect/light_sources.h"
 
 namespace interflect::detail {
 

@@ -28,7 +28,7 @@ class WebSampler {
     PhotometricWeb::Pole pole_;
     std::vector<double> polar_, azimuth_;  // [radians]
     std::vector<float> intensities_;
-    /// Per azimuth: flux per radian, cumulative over polar angles.
+    /// Flux per radian of each azimuth, cumulative over polar angles.
     std::vector<double> cumulative_;
     std::vector<double> azimuth_flux_;  // cumulative
 };

@@ -49,7 +49,7 @@ MeasuringGrid area_grid(const Scene& scene, const PlanarArea& area, const GridOp
     const PlanarOutline outline = outline_of(scene, area);
     const V2d low = outline.box.min + V2d(options.boundary), sides = outline.box.max - V2d(options.boundary) - low;
     if (!(sides.x > 0 && sides.y > 0))
-        throw InputError(fmt::format("'{}' is {:.3g} x {:.3g} m: a boundary strip of {:.3g} m leaves nothing of it",
+        throw InputError(fmt::format("'{}' is {:.3g} x {:.3g} m: a boundary strip of {:.3g} m covers all of it",
                                      area.name, outline.box.size().x, outline.box.size().y, options.boundary));
     const double spacing = options.spacing.value_or(grid_spacing(sides.x, sides.y));
     MeasuringGrid grid{.name = area.name, .normal = area.normal};
@@ -80,7 +80,7 @@ MeasuringGrid area_grid(const Scene& scene, const PlanarArea& area, const GridOp
         }
     if (grid.points.empty())
         throw InputError(
-            fmt::format("'{}': none of {} x {} measuring points lies within it, expected a smaller "
+            fmt::format("'{}': no point of the grid of {} x {} lies within it, expected a smaller "
                         "spacing or boundary strip",
                         area.name, grid.columns, grid.rows));
     return grid;

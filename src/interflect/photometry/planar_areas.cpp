@@ -62,10 +62,10 @@ std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& obj
     for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
         if (!object.empty() && is_part_of(object_name(scene, i), object)) patches.push_back(i);
     if (patches.empty())
-        throw InputError(Fault{.text = fmt::format("there is no object '{}' with faces; {}", object,
-                                                   text_of_nearest(object, scene.objects)),
-                               .object = object,
-                               .file = scene.name});
+        throw InputError(
+            Fault{.text = fmt::format("no object '{}' has faces; {}", object, text_of_nearest(object, scene.objects)),
+                  .object = object,
+                  .file = scene.name});
     return patches;
 }
 
@@ -162,7 +162,7 @@ PlanarArea find_surface(const Scene& scene, const std::string& object, const std
     if (planes.size() > 1 && planes[1].area > (1 - equal_areas) * planes[0].area)
         throw InputError(scene.name, 0,
                          fmt::format("'{}' has several planar surfaces of {:.3g} m2: expected the way that the one to "
-                                     "measure on faces, one of {}",
+                                     "measure on the faces of one of {}",
                                      object, planes[0].area, text_of_directions(planes)));
     return std::move(planes.front());
 }
@@ -193,7 +193,7 @@ PlanarArea find_floor(const Scene& scene, double height) {
     }
     if (patches.empty())
         throw InputError(scene.name, 0,
-                         fmt::format("there is no floor: no face at or below z = {:.4g} m faces up", height));
+                         fmt::format("the scene has no floor: no face at or below z = {:.4g} m faces up", height));
     return std::move(planes_of(scene, std::move(patches), "floor").front());
 }
 

@@ -60,7 +60,8 @@ double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
         const V2d side = hull[(i + 1) % hull.size()] - hull[i];
         const double angle = std::remainder(std::atan2(side.y, side.x), quarter), a = area(angle);
         if (a >= better * smallest) continue;
-        best = angle, smallest = a;
+        best = angle;
+        smallest = a;
     }
     return best;
 }

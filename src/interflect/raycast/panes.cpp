@@ -51,7 +51,8 @@ void Panes::trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vec
         }
         const std::size_t first = behind.size();
         behind.insert(behind.end(), passing.begin(), passing.end());
-        passing.clear(), rest.clear();
+        passing.clear();
+        rest.clear();
         for (std::size_t k = first; k < behind.size(); ++k) pass(behind[k].ray, behind[k].transmittance, behind[k].hit);
     }
     std::stable_sort(behind.begin(), behind.end(), [](const auto& a, const auto& b) { return a.ray < b.ray; });

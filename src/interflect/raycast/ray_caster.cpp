@@ -164,7 +164,8 @@ RayCaster::~RayCaster() = default;
 
 void RayCaster::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
     if (hits.size() != rays.size())
-        throw InputError(fmt::format("{} rays, and room for {} hits: expected as many", rays.size(), hits.size()));
+        throw InputError(
+            fmt::format("{} rays, and room for {} hits: expected the same number", rays.size(), hits.size()));
     if (embree_->recorder) embree_->recorder->record(rays);
     constexpr std::size_t at_once = 32;
     EmbreeContext context;

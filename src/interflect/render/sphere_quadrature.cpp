@@ -15,7 +15,8 @@ Legendre legendre(int degree, double x) {
     double before = 1, value = x;
     for (int k = 2; k <= degree; ++k) {
         const double next = ((2 * k - 1) * x * value - (k - 1) * before) / k;
-        before = value, value = next;
+        before = value;
+        value = next;
     }
     return {value, degree * (x * value - before) / (x * x - 1)};
 }

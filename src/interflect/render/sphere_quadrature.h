@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "interflect/scene.h"
+#include "interflect/core.h"
 
 namespace interflect::detail {
 

@@ -79,7 +79,7 @@ void check_points(const Scene& scene, Faults& faults) {
 void check_material(const Scene& scene, const Material& m, Faults& faults) {
     for (const std::uint32_t texture : {m.reflectance_texture, m.exitance_texture, m.transmittance_texture})
         faults.check(texture == none || texture < scene.textures.size(), named(m.name),
-                     [&] { return fmt::format("material '{}': there is no texture {}", m.name, texture); });
+                     [&] { return fmt::format("material '{}': texture {} does not exist", m.name, texture); });
     const Rgb& r = m.reflectance;
     faults.check(is_reflectance(r), named(m.name), [&] {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
@@ -128,7 +128,7 @@ void check_textures(const Scene& scene, Faults& faults) {
     });
     if (scene.texture_coordinates.empty()) return;
     faults.check(scene.texture_coordinates.size() == scene.vertices.size(), {}, [&] {
-        return fmt::format("there are {} vertices and {} texture coordinates", scene.vertices.size(),
+        return fmt::format("{} vertices, but {} texture coordinates", scene.vertices.size(),
                            scene.texture_coordinates.size());
     });
     for (std::size_t i = 0; i < scene.texture_coordinates.size(); ++i)
@@ -142,7 +142,7 @@ void check_lightmap_coordinates(const Scene& scene, Faults& faults) {
     const std::vector<V2f>& all = scene.lightmap_coordinates;
     if (all.empty()) return;
     faults.check(all.size() == scene.vertices.size(), {}, [&] {
-        return fmt::format("there are {} vertices and {} lightmap coordinates", scene.vertices.size(), all.size());
+        return fmt::format("{} vertices, but {} lightmap coordinates", scene.vertices.size(), all.size());
     });
     for (std::size_t i = 0; i < all.size(); ++i) {
         const V2f& c = all[i];
@@ -157,7 +157,7 @@ void check_lightmap_coordinates(const Scene& scene, Faults& faults) {
 void check_normals(const Scene& scene, Faults& faults) {
     if (scene.normals.empty()) return;
     faults.check(scene.normals.size() == scene.vertices.size(), {}, [&] {
-        return fmt::format("there are {} vertices and {} normals", scene.vertices.size(), scene.normals.size());
+        return fmt::format("{} vertices, but {} normals", scene.vertices.size(), scene.normals.size());
     });
     constexpr float tolerance = 1e-3f;  // of the length
     for (std::size_t i = 0; i < scene.normals.size(); ++i) {
@@ -189,7 +189,7 @@ void check_materials(const Scene& scene, Faults& faults) {
 void check_luminaire(const Scene& scene, const Luminaire& l, Faults& faults) {
     faults.add(luminaire_fault(l), named(l.name), [&] { return fmt::format("light '{}' ", l.name); });
     faults.check(l.object < scene.objects.size(), named(l.name),
-                 [&] { return fmt::format("light '{}': there is no object {}", l.name, l.object); });
+                 [&] { return fmt::format("light '{}': object {} does not exist", l.name, l.object); });
 }
 
 void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
@@ -200,14 +200,14 @@ void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
     else
         faults.check(false, patch, [&] { return fmt::format("patch {}: a vertex index is out of range", i); });
     faults.check(p.material < scene.materials.size(), patch,
-                 [&] { return fmt::format("patch {}: there is no material {}", i, p.material); });
+                 [&] { return fmt::format("patch {}: material {} does not exist", i, p.material); });
     faults.check(p.material >= scene.materials.size() || !scene.materials[p.material].is_textured() ||
                      !scene.texture_coordinates.empty(),
                  patch, [&] { return fmt::format("patch {} has a texture, but no texture coordinates", i); });
     faults.check(!has_vertices(scene, p) || !has_some_lightmap_coordinates_only(scene, p), patch,
                  [&] { return fmt::format("patch {} has lightmap coordinates at some of its vertices only", i); });
     faults.check(p.object < scene.objects.size(), patch,
-                 [&] { return fmt::format("patch {}: there is no object {}", i, p.object); });
+                 [&] { return fmt::format("patch {}: object {} does not exist", i, p.object); });
     const bool are_neighbours = p.other_side == i + 1 || p.other_side + 1 == i;
     faults.check(
         p.other_side == none ||

@@ -28,7 +28,7 @@ constexpr std::int64_t rays_per_wave = 1 << 22, rays_per_task = 1 << 14;
 
 std::int64_t rays_per_group(const ViewFactorOptions& options, std::size_t groups) {
     if (options.rays <= 0) throw InputError(fmt::format("rays: expected a positive number, found {}", options.rays));
-    if (groups == 0) throw InputError("there is no group of faces: view factors need at least one");
+    if (groups == 0) throw InputError("expected at least one group of faces");
     if (groups > max_groups)
         throw InputError(fmt::format("{} groups of faces; at most {} are possible", groups, max_groups));
     const auto each = static_cast<std::uint64_t>(options.rays) / groups;
@@ -69,11 +69,14 @@ class RowAppender {
         const std::size_t group = factors_.row_offsets.size() - 1;
         for (const EstimatedFactor& entry : row) {
             if (entry.column == others_.sky) {
-                factors_.sky[group] = entry.value, factors_.sky_errors[group] = entry.error;
+                factors_.sky[group] = entry.value;
+                factors_.sky_errors[group] = entry.error;
             } else if (entry.column == others_.ground) {
-                factors_.ground[group] = entry.value, factors_.ground_errors[group] = entry.error;
+                factors_.ground[group] = entry.value;
+                factors_.ground_errors[group] = entry.error;
             } else if (entry.column == others_.blocked) {
-                factors_.blocked[group] = entry.value, factors_.blocked_errors[group] = entry.error;
+                factors_.blocked[group] = entry.value;
+                factors_.blocked_errors[group] = entry.error;
             } else {
                 factors_.columns.push_back(static_cast<std::int32_t>(entry.column));
                 factors_.values.push_back(entry.value);

@@ -97,7 +97,10 @@ TEST(RankSums, AreTheSumsOfAllRanksInEachOfThem) {
         for (int r = 0; r < count; ++r) {
             const Table of_rank = random_table(elements, terms, 2, static_cast<unsigned>(r));
             std::vector<std::int64_t> row(terms);
-            for (std::size_t e = 0; e < elements; ++e) of_rank.read(e, row), expected.add(e, row);
+            for (std::size_t e = 0; e < elements; ++e) {
+                of_rank.read(e, row);
+                expected.add(e, row);
+            }
         }
         ThreadRanks(count).run([&](Ranks& ranks) {
             Table table = random_table(elements, terms, 2, static_cast<unsigned>(ranks.rank()));

@@ -56,7 +56,7 @@ class Bench(CommandTest):
     def test_there_is_nothing_to_measure_in_the_dark(self):
         self.write("dark.mgf", room().replace("ed 1000", "ed 0"))
         result = self.interflect("bench", "dark.mgf", *self.TINY, exit_code=BAD_INPUT)
-        self.assertIn("nothing in the scene emits light", result.stderr)
+        self.assertIn("the scene emits no light", result.stderr)
 
 
 if __name__ == "__main__":

@@ -37,7 +37,7 @@ class BadInput(CommandTest):
 
 class BadScene(BadInput):
     def test_missing_file(self):
-        self.assert_refused("bad.mgf: there is no such file")
+        self.assert_refused("bad.mgf: no such file")
 
     def test_folder(self):
         (self.folder / "bad.mgf").mkdir()
@@ -51,7 +51,7 @@ class BadScene(BadInput):
                 ("bad.h5", ("render", "bad.h5", "-o", "out.png")),
                 ("bad.h5", ("resume", "bad.h5", "-o", "out.h5")),
                 ("bad.png", ("compare", "bad.png", "bad.png")),
-                ("bad.hdr", ("info", "maze:1", "--environment", "bad.hdr")),
+                ("bad.hdr", ("info", "room.mgf", "--environment", "bad.hdr")),
             ):
                 path = self.folder / name
                 path.unlink(missing_ok=True)
@@ -60,7 +60,7 @@ class BadScene(BadInput):
                     error = self.interflect(*arguments, exit_code=BAD_INPUT, timeout=AT_ONCE).stderr
                     self.assertIn(f"{name}: this is not a regular file", error)
         os.mkfifo(self.folder / "run.h5")
-        error = self.interflect("solve", "maze:1", "-o", "out.h5", "--checkpoint", "run.h5", exit_code=WRONG_USAGE).stderr
+        error = self.interflect("solve", "room.mgf", "-o", "out.h5", "--checkpoint", "run.h5", exit_code=WRONG_USAGE).stderr
         self.assertIn("'run.h5' is not a regular file", error)
         self.assertFalse((self.folder / "out.h5").exists())
 
@@ -206,7 +206,7 @@ class BadView(BadInput):
         self.assert_view_refused(("--view", "desk"), "there is no view 'desk'", "door, lamp")
 
     def test_files(self):
-        self.assert_view_refused(("--view-file", "view.vf"), "view.vf: there is no such file")
+        self.assert_view_refused(("--view-file", "view.vf"), "view.vf: no such file")
         self.write("view.vf", "rvu -vtv -vp 1 1\n")
         self.assert_view_refused(("--view-file", "view.vf"), "view.vf:1: ")
         self.write("room.views.json", '{"views": [{"name": 7}]}')
@@ -239,7 +239,7 @@ class BadPictureOrSolution(CommandTest):
         for name in ("missing.exr", "text.exr", "room.txt"):
             for pair in ((name, "text.exr"), ("text.exr", name)):
                 self.interflect("compare", *pair, exit_code=BAD_INPUT, timeout=AT_ONCE)
-        self.assertIn("missing.exr: there is no such file", self.interflect(
+        self.assertIn("missing.exr: no such file", self.interflect(
             "compare", "missing.exr", "text.exr", exit_code=BAD_INPUT).stderr)
 
 

@@ -144,7 +144,7 @@ class Docs(CommandTest):
                 with self.subTest(page=page.name, command=name + rest):
                     self.assertIn(name, SUBCOMMANDS if rest else {*SUBCOMMANDS, "checksums"})  # a line of solution files
                     scene = re.findall(r"\w[\w-]+", rest)[:1] if name == "make-scene" else ()
-                    known = self.interflect(name, *scene, "--help").stdout
+                    known = self.interflect(name, *scene, "--help-all").stdout
                     for option in re.findall(r"(?<!\S)--?[a-z][a-z-]*", rest):
                         self.assertRegex(known, rf"(^|[\s,]){option}\b(?!-)")
                         count += 1

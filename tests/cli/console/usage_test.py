@@ -213,8 +213,6 @@ class WrongUsage(CommandTest):
             ((*SOLVE, "--up", "1,0,0"), "--up"),
             ((*SOLVE, "--every", "5s"), "--every"),
             ((*SOLVE, "--zenith", "1,0,0"), "--zenith"),
-            (("info", "maze:2", "--unit", "cm"), "--unit"),
-            (("info", "maze:2", "--curve-divisions", "5"), "--curve-divisions"),
             (("report", "room.h5", "-o", "out.html", "--eye-height", "1"), "--eye-height"),
             (("probe", "room.mgf", "--point", "1,1,1", "--quantity", "ugr", "--exterior", "9"), "--exterior"),
             (("probe", "room.mgf", "--seat", "1,1,1:1,0,0"), "--seat"),
@@ -244,6 +242,10 @@ class WrongUsage(CommandTest):
         self.assert_wrong([*RENDER, "--look-at", "1,1,1"], "--eye", "--look-at")
 
 
+def options_of(help_text):
+    return set(re.findall(r"^  (?:-\w,)?(--[\w-]+)", help_text, re.MULTILINE))
+
+
 class Help(CommandTest):
     def test_names_every_subcommand(self):
         text = self.interflect("--help").stdout
@@ -261,9 +263,18 @@ class Help(CommandTest):
         }
         self.assertEqual(tuple(expected), SUBCOMMANDS)
         for subcommand, words in expected.items():
-            text = self.interflect(subcommand, "--help").stdout
+            text = self.interflect(subcommand, "--help-all").stdout
             for word in words:
                 self.assertIn(word, text, subcommand)
+
+    def test_shows_rare_options_on_request(self):
+        for subcommand in ("solve", "render", "probe", "export", "validate", "info"):
+            usual, all_of_it = (self.interflect(subcommand, option).stdout for option in ("--help", "--help-all"))
+            self.assertLess(len(options_of(usual)), 50, subcommand)
+            self.assertLess(options_of(usual), options_of(all_of_it), subcommand)
+            self.assertIn("More options with --help-all: Reading the scene", usual)
+            self.assertNotIn("--alpha", usual)
+        self.assertLessEqual({"--alpha", "--min-area", "--importance"}, options_of(self.interflect("solve", "--help-all").stdout))
 
     def test_version(self):
         self.assertRegex(self.interflect("--version").stdout, r"^interflect \d+\.\d+\.\d+\n$")

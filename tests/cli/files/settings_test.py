@@ -39,7 +39,7 @@ def settings(known: set[str]) -> list[tuple[str, str, str]]:
 class Settings(CommandTest):
     def setUp(self):
         super().setUp()
-        help_text = self.interflect("solve", "--help").stdout
+        help_text = self.interflect("solve", "--help-all").stdout
         self.headings = {}  # by option
         heading = ""
         for line in help_text.splitlines():

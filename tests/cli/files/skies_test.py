@@ -66,7 +66,7 @@ class Skies(CommandTest):
         self.write("text.hdr", "no picture")
         (self.folder / "flat.png").write_bytes(b"\x89PNG\r\n\x1a\n")
         (self.folder / "large.hdr").write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 16384\n")
-        for value, message in (("none.exr", "none.exr: there is no such file"), ("text.hdr", "text.hdr: cannot read"),
+        for value, message in (("none.exr", "none.exr: no such file"), ("text.hdr", "text.hdr: cannot read"),
                                ("flat.png", "expected .exr or .hdr"), ("large.hdr", "expected 1 to 33554432"),
                                ("open.mgf", "no image format")):
             with self.subTest(value=value):

@@ -498,11 +498,11 @@ class Camera(CommandTest):
         corners = [(0.1 + 0.4 * x, 0.1 + 0.4 * y, 1.4 + 0.4 * z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
         faces = "f v0 v1 v3 v2\nf v4 v6 v7 v5\nf v0 v2 v6 v4\nf v1 v5 v7 v3\nf v0 v4 v5 v1\nf v2 v3 v7 v6\n"
         said = self.said(room() + vertices(*corners) + PAINT + faces)
-        self.assertIn("the view shows no light: what it sees is unlit; is the camera inside a closed object?", said)
+        self.assertIn("the view shows no light: all that it sees is unlit; is the camera inside a closed object?", said)
 
     def test_in_the_dark(self):
         said = self.said(room().replace("ed 1000", "ed 0"))
-        self.assertIn("warning: the view shows no light: nothing in the scene emits", said)
+        self.assertIn("warning: the view shows no light: the scene emits no light", said)
         self.write("dark.mgf", room().replace("ed 1000", "ed 0"))
         path = ("--shading", "path", "--samples", "2", "--size", "8x4")
         said = self.interflect("render", "dark.mgf", "-o", "out.png", *path, *VIEW).stderr

@@ -78,7 +78,8 @@ class DamagedRun : public testing::Test {
         const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
                     set = H5Dopen2(file, array, H5P_DEFAULT);
         const Place place{H5Dget_offset(set), H5Dget_storage_size(set)};
-        H5Dclose(set), H5Fclose(file);
+        H5Dclose(set);
+        H5Fclose(file);
         return place;
     }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -14,6 +15,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "interflect/base/numbers/random.h"
@@ -121,6 +123,14 @@ Scene room_with(Sources sources) {
     return {};
 }
 
+/// One case for each class of iterations: each opening of such a run makes the tables of its sky anew.
+bool keeps_outdoor_light_its_own_way(std::string_view name) {
+    constexpr std::array<std::string_view, 8> names = {"srr",         "ihsrr",       "ihsrr_one_bounce",
+                                                       "ihwdrs",      "random_walk", "random_walk_with_importance",
+                                                       "photon_mesh", "pr"};
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 std::vector<Case> cases() {
     std::vector<Case> all;
     const auto add = [&](const std::string& name, const std::string& method, const auto& change) {
@@ -166,7 +176,7 @@ std::vector<Case> cases() {
         const Method method = c.options.method;
         all.push_back({c.name + "_images", c.options, Sources::images});
         if (!method.takes_luminaires) continue;
-        all.push_back({c.name + "_outdoors", c.options, Sources::outdoor});
+        if (keeps_outdoor_light_its_own_way(c.name)) all.push_back({c.name + "_outdoors", c.options, Sources::outdoor});
         if (method.separates_groups) all.push_back({c.name + "_lights", c.options, Sources::luminaires});
     }
     return all;
@@ -367,7 +377,8 @@ TEST_P(UnbiasedChangeOfViews, InAFurnace) {
             solver.advance({.rays = 10'000});
         }
         const double power = solver.solution().iterations.back().total_power.x;
-        sum += power, squares += power * power;
+        sum += power;
+        squares += power * power;
     }
     const double mean = sum / runs, exact = 22 * 2 / (1 - 0.6);
     const double standard_error = std::sqrt((squares / runs - mean * mean) / (runs - 1));

@@ -216,11 +216,15 @@ void drop_surfaces_of_patches(const std::filesystem::path& path) {
     for (std::size_t i = 0; i < numbers.size(); ++i)
         if (i % size[1] != size[1] - 1) fewer.push_back(numbers[i]);
     --size[1];
-    H5Dclose(old), H5Sclose(old_space), H5Ldelete(file, name, H5P_DEFAULT);
+    H5Dclose(old);
+    H5Sclose(old_space);
+    H5Ldelete(file, name, H5P_DEFAULT);
     const hid_t space = H5Screate_simple(2, size.data(), nullptr);
     const hid_t set = H5Dcreate2(file, name, H5T_STD_U32LE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     EXPECT_GE(H5Dwrite(set, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, fewer.data()), 0);
-    H5Dclose(set), H5Sclose(space), H5Fclose(file);
+    H5Dclose(set);
+    H5Sclose(space);
+    H5Fclose(file);
 }
 
 /// Converts a file to version 3: no checksums, and less in the description.
@@ -249,7 +253,7 @@ TEST_F(SolutionFile, OpensVersion3) {
 
 /// A room of six two-sided walls and a lamp that Interflect 0.1.0 solved when version 3 was the newest.
 TEST_F(SolutionFile, OpensAFileOfItsTime) {
-    const SolvedScene read = read_solution(INTERFLECT_SOURCE_FOLDER "/tests/exports/version-3.h5");
+    const SolvedScene read = read_solution(INTERFLECT_SOURCE_FOLDER "/tests/exports/hdf5/version-3.h5");
     EXPECT_EQ(read.format_version, 3);
     EXPECT_EQ(read.scene.name, "room.mgf");
     EXPECT_EQ(read.scene.patches.size(), 13u);
@@ -260,7 +264,7 @@ TEST_F(SolutionFile, OpensAFileOfItsTime) {
 
 /// The same room with a light group and a view, refined, solved by Interflect 0.1.0 when version 4 was the newest.
 TEST_F(SolutionFile, OpensVersion4) {
-    const SolvedScene read = read_solution(INTERFLECT_SOURCE_FOLDER "/tests/exports/version-4.h5");
+    const SolvedScene read = read_solution(INTERFLECT_SOURCE_FOLDER "/tests/exports/hdf5/version-4.h5");
     EXPECT_EQ(read.format_version, 4);
     EXPECT_EQ(read.interflect_version, "0.1.0");
     EXPECT_THAT(read.scene.files, testing::ElementsAre("room.mgf", "room.views.json"));
@@ -311,7 +315,7 @@ TEST_F(SolutionFile, HasTheSameBytesForTheSameInput) {
 }
 
 TEST_F(SolutionFile, ExplainsWhatIsWrongWithAPath) {
-    EXPECT_THAT(error_of(folder_.path() / "missing.h5"), HasSubstr("there is no such file"));
+    EXPECT_THAT(error_of(folder_.path() / "missing.h5"), HasSubstr("no such file"));
     EXPECT_THAT(error_of(folder_.path()), HasSubstr("is a folder"));
 }
 

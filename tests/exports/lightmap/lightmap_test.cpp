@@ -403,7 +403,9 @@ class FilteredTexels : public testing::Test {
         double sum = 0, exact_sum = 0, squares = 0;
         for (std::size_t i = 0; i < found.size(); ++i) {
             const auto x = static_cast<double>(found[i].x), e = static_cast<double>(exact[i].x);
-            sum += x, exact_sum += e, squares += (x / e - 1) * (x / e - 1);
+            sum += x;
+            exact_sum += e;
+            squares += (x / e - 1) * (x / e - 1);
         }
         return {sum / exact_sum, std::sqrt(squares / static_cast<double>(found.size()))};
     }

@@ -170,7 +170,9 @@ TEST(VertexLight, IsEvenInAFurnace) {
             for (const MeshTriangle& triangle : triangles_of(light))
                 for (const MeshCorner& corner : triangle) {
                     const double error = static_cast<double>(corner.irradiance.x / exact - 1);
-                    sum += error, squares += error * error, ++count;
+                    sum += error;
+                    squares += error * error;
+                    ++count;
                 }
             EXPECT_GT(count, 500);
             EXPECT_LT(std::sqrt(squares / count), 0.05) << static_cast<int>(shading);  // most in the corners

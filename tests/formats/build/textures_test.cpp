@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadTexture{"NoFile", "texture rd", "expected 'texture rd|ed|ts image'"},
         BadTexture{"OfWhat", "texture rs image.exr", "a texture is one of rd, ts or ed, not of 'rs'"},
-        BadTexture{"MissingImage", "texture rd nowhere.png\nrd .5", "there is no such file"},
+        BadTexture{"MissingImage", "texture rd nowhere.png\nrd .5", "no such file"},
         BadTexture{"Folder", "texture rd .\nrd .5", "this is a folder"},
         BadTexture{"UnknownFormat", "texture rd scene.mgf\nrd .5", "no image format has the extension '.mgf'"},
         BadTexture{"EmptyImage", "texture rd empty.png\nrd .5", "cannot read this image"},

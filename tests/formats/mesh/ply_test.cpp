@@ -182,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadText{"NoEnd", "ply\nformat ascii 1.0\n", "the header has no end"},
         BadText{"NoFormat", "ply\nend_header\n", "lacks a format"},
         BadText{"AnotherFormat", header("middle_endian"), "expected 'format ascii|"},
-        BadText{"AnotherType", "ply\nelement a 1\nproperty quad x\n", "part.ply:3: there is no type 'quad'"},
+        BadText{"AnotherType", "ply\nelement a 1\nproperty quad x\n", "part.ply:3: PLY files have no type 'quad'"},
         BadText{"EarlyProperty", "ply\nproperty float x\n", "before the first element"},
         BadText{"FloatLength", "ply\nelement a 1\nproperty list float int x\n", "must be a whole number"},
         BadText{"NegativeCount", header("ascii", "-4") + square + face, "'-4' is no count"},

@@ -97,7 +97,7 @@ TEST(Vs3, WarnsOfFactorsWithReflection) {
 }
 
 TEST(Vs3, RefusesFaultsWithTheirLine) {
-    EXPECT_THAT(fault(square), HasSubstr("there is no surface"));
+    EXPECT_THAT(fault(square), HasSubstr("the file has no surface"));
     EXPECT_THAT(fault("F 2\n"), HasSubstr("scene.vs3:1: the geometry is of format '2'; expected 3 or 3a"));
     EXPECT_THAT(fault(square + "V 6 0 0 0\n"), HasSubstr("scene.vs3:9: vertex 6 is out of sequence; expected 5"));
     EXPECT_THAT(fault(square + "V 5 0 nan 0\n"), HasSubstr("scene.vs3:9: expected a finite number, not 'nan'"));

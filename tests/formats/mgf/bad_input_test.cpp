@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
 
         BadLine{"EmptyHole", "fh - a b d", "three different vertices"},
         BadLine{"HoleOfTwo", "fh a b d - a b", "three different vertices"},
-        BadLine{"UnknownLight", "light bulb a 1", "there is no light 'bulb'"},
+        BadLine{"UnknownLight", "light bulb a 1", "unknown light 'bulb'"},
         BadLine{"LightWithoutIntensity", "light point a", "light point vertex intensity"},
         BadLine{"NegativeLight", "light sky -1", "'-1' must not be"},
         BadLine{"LightTooBright", "light point a 2e10", "this light is too bright"},
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadLine{"CloseWithoutOpen", "xf", "none was opened"},
         BadLine{"BillionCopies", "xf -a 1000000000 -t 1 0 0", "(max_patches)"},
         BadLine{"BillionCopiesTogether", "xf -a 10000 -t 1 0 0 -a 100000 -t 0 1 0", "(max_patches)"},
-        BadLine{"MissingInclude", "i nowhere.mgf", "there is no such file"}),
+        BadLine{"MissingInclude", "i nowhere.mgf", "no such file"}),
     testing::PrintToStringParamName());
 
 TEST(MgfBadInput, SpotLightWithoutACone) {
@@ -245,7 +245,7 @@ TEST(MgfLimits, OptionsThemselves) {
 
 TEST(MgfBadFiles, MissingFileAndFolder) {
     const TemporaryFolder folder;
-    expect_in(message_of([&] { read_mgf(folder.path() / "none.mgf"); }), "none.mgf: there is no such file");
+    expect_in(message_of([&] { read_mgf(folder.path() / "none.mgf"); }), "none.mgf: no such file");
     expect_in(message_of([&] { read_mgf(folder.path()); }), "this is a folder");
 }
 

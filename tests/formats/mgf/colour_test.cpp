@@ -42,7 +42,10 @@ TEST(MgfColour, LuminanceIsKeptForEveryChromaticity) {
     std::uniform_real_distribution<double> uniform(0, 1);
     for (int i = 0; i < 10'000; ++i) {
         double x = uniform(random), y = uniform(random);
-        if (x + y > 1) x = 1 - x, y = 1 - y;
+        if (x + y > 1) {
+            x = 1 - x;
+            y = 1 - y;
+        }
         if (y < 1e-6) continue;
         const double rd = uniform(random);
         const Rec709Colour reflectance = to_rec709({x, y}, rd, 0.99);

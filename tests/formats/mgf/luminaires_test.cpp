@@ -122,7 +122,7 @@ TEST_F(MgfLuminaires, FaultsNameTheScenesLine) {
         }
     };
     folder.write("bad.ies", "IESNA91\n");
-    expect_fault("ies no.ies\n", "no.ies: there is no such file");
+    expect_fault("ies no.ies\n", "no.ies: no such file");
     expect_fault("ies bad.ies\n", "bad.ies:1: expected a line that begins with TILT=");
     expect_fault("ies lamp.txt\n", "no format of measured light");
     expect_fault("ies lamp.ies -m -1\n", "'-1' must not be negative");

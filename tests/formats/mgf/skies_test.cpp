@@ -136,8 +136,8 @@ TEST_F(MgfSkies, MayBeAnImage) {
 TEST_F(MgfSkies, FaultsNameTheScenesLine) {
     folder.write("bad.hdr", "not an image");
     folder.write("small.png", "\x89PNG");
-    expect_fault("light sky blue 5", "there is no sky 'blue'");
-    expect_fault("light sky cie-17 5", "there is no sky 'cie-17'");
+    expect_fault("light sky blue 5", "unknown sky 'blue'");
+    expect_fault("light sky cie-17 5", "unknown sky 'cie-17'");
     expect_fault("light sky overcast", "expected 'light sky overcast illuminance [ground]', found 1 arguments");
     expect_fault("light sky clear s", "expected 'light sky clear vertex illuminance [ground]'");
     expect_fault("light sky clear a 5", "needs a normal");
@@ -152,7 +152,7 @@ TEST_F(MgfSkies, FaultsNameTheScenesLine) {
     expect_fault("light sky overcast 1e12", "is too bright");
     expect_fault("light sky clear up 5", "has its sun below the horizon");
     expect_fault("light sky perez up 800 100", "a sun at -90 degrees");
-    expect_fault("light environment none.hdr", "none.hdr: there is no such file");
+    expect_fault("light environment none.hdr", "none.hdr: no such file");
     expect_fault("light environment bad.hdr", "bad.hdr: cannot read this image");
     expect_fault("light environment small.png", "expected .exr or .hdr");
     expect_fault("light environment map.exr north", "'north' is not a finite number");
@@ -259,7 +259,7 @@ TEST_F(PlacedDaylight, RefusesWhatCannotBe) {
     expect_refused({.sun = Daylight::Sun{0, -5, {}}}, "expected an altitude above 0 to 90");
     expect_refused({.sun = Daylight::Sun{0, 5, -1}}, "negative");
     expect_refused({.cie_sky = Daylight::CieSky{1, 5}, .zenith = {0, 0, 0}}, "the zenith has no direction");
-    expect_refused({.environment = Daylight::Environment{"none.exr"}}, "none.exr: there is no such file");
+    expect_refused({.environment = Daylight::Environment{"none.exr"}}, "none.exr: no such file");
 }
 
 }  // namespace

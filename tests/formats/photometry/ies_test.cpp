@@ -206,7 +206,7 @@ std::vector<MalformedText> malformed() {
         {"NoTilt", "IESNA91\n1 2 3\n", ":2: expected a line that begins with TILT="},
         {"TiltWithoutValue", "IESNA91\nTILT=\n", ":2: expected TILT=NONE"},
         {"TiltWithoutEquals", "IESNA91\nTILT NONE\n1 1000\n", "expected a line that begins with TILT="},
-        {"TiltFileMissing", IesText{.tilt = "TILT=no.tlt\n"}.str(), ":3: the TILT file no.tlt: there is no such file"},
+        {"TiltFileMissing", IesText{.tilt = "TILT=no.tlt\n"}.str(), ":3: the TILT file no.tlt: no such file"},
         {"TiltGeometry", IesText{.tilt = "TILT=INCLUDE\n4 1 0 1\n"}.str(), ":4: the lamp's geometry in TILT data is 4"},
         {"TiltCount", IesText{.tilt = "TILT=INCLUDE\n1 0\n"}.str(), ":4: the number of TILT angles is 0"},
         {"TiltOrder", IesText{.tilt = "TILT=INCLUDE\n1 2\n90 0\n1 1\n"}.str(), ":6: TILT angles must ascend"},

@@ -512,7 +512,7 @@ TEST(Rad, FilesThatIncludeThemselvesOrLeaveTheFolderAreRefused) {
     expect_in(message("!xform ../secret.rad\n"), "room.rad:5: '../secret.rad' lies outside the folder of the scene");
     expect_in(message("!xform " + (folder.path() / "secret.rad").string()), "outside the folder of the scene");
     expect_in(message("!xform link.rad\n"), "outside the folder of the scene");
-    expect_in(message("!xform missing.rad\n"), "there is no such file");
+    expect_in(message("!xform missing.rad\n"), "no such file");
     expect_in(message("!xform part.rad\n", {.max_include_depth = 0}), "nested more than 0 deep");
     expect_in(message("!xform -a 1000000000 -t 1 0 0 part.rad\n"), "max_patches");
     expect_in(message("!xform -a 100 -t 1 0 0 part.rad\n", {.max_patches = 100}), "max_patches");

@@ -43,8 +43,6 @@ TEST(ReadOptions, UnitOutsideItsRangeIsRefused) {
         const auto read = [&] { read_obj_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj", {.unit = unit}); };
         testing_support::expect_in(testing_support::message_of(read), "unit: expected");
     }
-    testing_support::expect_in(testing_support::message_of([] { load_scene("maze:4", {.up_axis = Axis::y}); }),
-                               "unit and up_axis are for files");
 }
 
 }  // namespace

@@ -147,8 +147,10 @@ TEST(Curves, EqualAreaKeepsTheHeightOfAConeAndTheShapeOfARing) {
     double low = 10, high = -10, large = 0, small = 10;
     for (const V3d& p : cone.points) {
         const double height = (p - centre).dot(tilted), radius = (p - centre - height * tilted).length();
-        low = std::min(low, height), high = std::max(high, height);
-        large = std::max(large, radius), small = std::min(small, radius);
+        low = std::min(low, height);
+        high = std::max(high, height);
+        large = std::max(large, radius);
+        small = std::min(small, radius);
     }
     EXPECT_NEAR(low, 0, 1e-12);
     EXPECT_NEAR(high, 3, 1e-12);

@@ -3,6 +3,8 @@
 import base64
 import os
 import struct
+import subprocess
+import tempfile
 import unittest
 
 import nbformat
@@ -11,7 +13,7 @@ from nbclient import NotebookClient
 CELLS = [
     """
 import interflect as ifl
-scene = ifl.load("maze:2")
+scene = ifl.load("MAZE")
 view = scene.views[0]
 solution = ifl.solve(scene, view=view, rays=2e5, progress=True)
 """,
@@ -27,7 +29,12 @@ def outputs_of(cell: nbformat.NotebookNode, mime: str) -> list[str]:
 class Notebook(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in CELLS])
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        maze = f"{folder.name}/maze.mgf"
+        subprocess.run([os.environ["INTERFLECT_COMMAND"], "make-scene", "maze", "--rooms", "2", "-o", maze], check=True)
+        cells = [nbformat.v4.new_code_cell(cell.replace("MAZE", maze)) for cell in CELLS]
+        notebook = nbformat.v4.new_notebook(cells=cells)
         os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"  # no warning of the debugger
         NotebookClient(notebook, timeout=300, kernel_name="python3").execute()
         cls.solving, cls.solution, cls.list = notebook.cells

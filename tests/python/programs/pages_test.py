@@ -42,13 +42,13 @@ class Pages(unittest.TestCase):
     def test_the_options_of_the_command_have_arguments(self) -> None:
         page = (PAGES / "command.rst").read_text(encoding="utf-8")
         listed = set(re.findall(r"--([a-z][\w-]*)", page))
-        commands = {name: subprocess.run([os.environ["INTERFLECT_COMMAND"], name, "--help"], text=True, check=True,
+        commands = {name: subprocess.run([os.environ["INTERFLECT_COMMAND"], name, "--help-all"], text=True, check=True,
                                          stdout=subprocess.PIPE).stdout
                     for name in ("solve", "render", "probe", "compare", "export", "validate", "resume")}
         known = set(re.findall(r"--([a-z][\w-]*)", "".join(commands.values())))
         self.assertEqual(listed - known, set())
 
-        solver = ifl.Solver("maze:1", rays=1000)
+        solver = ifl.Solver(ROOT / "scenes/office.mgf", rays=1000)
         arguments = set(solver.options) | set(inspect.signature(ifl.Solver).parameters) | {"preset"}
         options = set(re.findall(r"^  (?:-\w,)?--([a-z][\w-]*)", commands["solve"], re.MULTILINE))
         self.assertGreater(len(options), 40)
@@ -56,9 +56,12 @@ class Pages(unittest.TestCase):
         self.assertEqual(missing, {"help", "output"})
 
     def test_a_picture_of_another_size_has_the_bits_of_the_command(self) -> None:
-        subprocess.run([os.environ["INTERFLECT_COMMAND"], "render", "maze:2", "--view", "room-0", "--rays", "20k", "--size",
-                        "64x36", "--samples", "2", "-o", self.folder / "picture.exr"], check=True, stderr=subprocess.DEVNULL)
-        scene = ifl.load("maze:2")
+        maze = self.folder / "maze.mgf"
+        for arguments in (("make-scene", "maze", "--rooms", "2", "-o", maze),
+                          ("render", maze, "--view", "room-0", "--rays", "20k", "--size", "64x36", "--samples", "2",
+                           "-o", self.folder / "picture.exr")):
+            subprocess.run([os.environ["INTERFLECT_COMMAND"], *arguments], check=True, stderr=subprocess.DEVNULL)
+        scene = ifl.load(maze)
         (view,) = (view for view in scene.views if view.name == "room-0")
         solution = ifl.solve(scene, view=ifl.WeightedView(view, aspect=64 / 36, pixel_rows=36), rays=2e4)
         picture = ifl.render(solution, width=64, height=36, samples=2)

@@ -190,7 +190,8 @@ double noise_beside(Hidden hidden, bool has_patch, int samples) {
     const TracedScene traced(scene, ray_caster);
     std::vector<Gauge> gauges;
     for (Gauge g : gauges_on_floor(2000)) {
-        g.position += V3f(2.8f, 1.5f, 0.01f), g.patch = none;
+        g.position += V3f(2.8f, 1.5f, 0.01f);
+        g.patch = none;
         gauges.push_back(g);
     }
     PictureOptions options{.samples = samples, .quantity = PictureQuantity::irradiance};

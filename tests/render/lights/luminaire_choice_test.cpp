@@ -31,7 +31,8 @@ std::shared_ptr<PhotometricWeb> web(PhotometricWeb::Pole pole, std::vector<float
                                     std::vector<float> intensities, const V3f& opening) {
     auto result = std::make_shared<PhotometricWeb>();
     result->pole = pole;
-    result->polar = std::move(polar), result->azimuth = std::move(azimuth);
+    result->polar = std::move(polar);
+    result->azimuth = std::move(azimuth);
     result->intensities = std::move(intensities);
     result->opening.size = opening;
     return result;
@@ -82,7 +83,9 @@ TEST(LuminaireChoice, BringsWhatAllLuminairesBring) {
             }
             const double d = channel_sum(choice.choose_lamp(x, n, sample).light.irradiance) +
                              channel_sum(choice.choose_sun(x, n, sample).light.irradiance) - all;
-            sum += all, difference += d, squares += d * d;
+            sum += all;
+            difference += d;
+            squares += d * d;
         }
         const double error = std::hypot(std::sqrt(squares) / samples, 1e-6 * sum / samples);  // including rounding
         EXPECT_GT(z_test(difference / samples, 0, error), false_alarm) << k;

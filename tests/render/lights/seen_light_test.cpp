@@ -42,7 +42,10 @@ struct House {
 
     explicit House(bool has_outside) {
         irradiance.assign(scene.patches.size(), Rgb(1));
-        for (std::size_t i = 0; i < 4; ++i) irradiance[i] = irradiance[8 + i] = Rgb(9), irradiance[spot + i] = Rgb(100);
+        for (std::size_t i = 0; i < 4; ++i) {
+            irradiance[i] = irradiance[8 + i] = Rgb(9);
+            irradiance[spot + i] = Rgb(100);
+        }
         if (has_outside) {
             add_rectangle(scene, {-0.1f, 0, 0}, {0, 0, 3}, {0, 4, 0}, 0, 2, 2);
             add_rectangle(scene, {0, -0.1f, 0}, {4, 0, 0}, {0, 0, 3}, 0, 2, 2);

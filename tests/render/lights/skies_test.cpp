@@ -144,9 +144,11 @@ TEST_P(EverySky, IsSampledByItsDensity) {
     constexpr double often = 20;
     for (std::size_t i = 0; i < observed.size(); ++i) {
         if (expected[i] >= often) {
-            often_observed.push_back(observed[i]), often_expected.push_back(expected[i]);
+            often_observed.push_back(observed[i]);
+            often_expected.push_back(expected[i]);
         } else {
-            seldom_observed += observed[i], seldom_expected += expected[i];
+            seldom_observed += observed[i];
+            seldom_expected += expected[i];
         }
     }
     EXPECT_NEAR(seldom_observed, seldom_expected, 5 * std::sqrt(seldom_expected));

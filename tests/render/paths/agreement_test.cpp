@@ -114,7 +114,10 @@ struct Means {
 void expect_agreement(const std::vector<Deviation>& found, double of_one, double of_all, const std::string& what) {
     double mean = 0, variance = 0;
     const auto count = static_cast<double>(found.size());
-    for (const Deviation& d : found) mean += d.value / count, variance += d.squared_error / count;
+    for (const Deviation& d : found) {
+        mean += d.value / count;
+        variance += d.squared_error / count;
+    }
     for (std::size_t i = 0; i < found.size(); ++i)
         EXPECT_LT(std::abs(found[i].value), of_one + deviations * std::sqrt(std::max(found[i].squared_error, variance)))
             << what << ", room " << i + 1;
@@ -201,7 +204,8 @@ TEST(Agreement, OfBakes) {
                 of_baked += channel_sum(baked[i].irradiance());
                 of_measured += channel_sum(measured[i].sum());
             }
-            found.push_back(of_baked), expected.push_back(of_measured);
+            found.push_back(of_baked);
+            expected.push_back(of_measured);
         }
         hybrid.push_back(Means(found).from(Means(expected)));
     }

@@ -140,12 +140,14 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     std::vector<Rgb> irradiance(forest.size(), Rgb(1));
     for (std::uint32_t patch = 0; patch < forest.patch_count(); patch += 5) irradiance[patch] = Rgb(20);
     const std::uint32_t first = forest.first_child(7);
-    irradiance[first + 1] = Rgb(30), irradiance[first + 3] = Rgb(40);
+    irradiance[first + 1] = Rgb(30);
+    irradiance[first + 3] = Rgb(40);
     pull(forest, irradiance);
     KnownLight light(scene, geometry, forest, irradiance);
     light.sample_brighter_than(3);
     std::vector<float> weights(scene.patches.size(), 1);
-    weights[5] = 0.7f, weights[10] = 1.3f;
+    weights[5] = 0.7f;
+    weights[10] = 1.3f;
     light.weigh(weights);
     const V3f x(0.5f, 1, 0), n(0, 0, 1);
     double in_front = 0;  // area of the bright leaves
@@ -161,7 +163,8 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
         EXPECT_EQ(light.place(place.patch, geometry[place.patch].point(place.parameters)).leaf, place.leaf);
         EXPECT_FLOAT_EQ(light.density(place, x, n), density);
         const double area = 1 / static_cast<double>(density);
-        sum += area, squares += area * area;
+        sum += area;
+        squares += area * area;
     }
     const double mean = sum / samples, error = std::sqrt((squares / samples - mean * mean) / samples);
     EXPECT_GT(z_test(mean, in_front, error), false_alarm);

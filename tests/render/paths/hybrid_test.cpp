@@ -319,8 +319,10 @@ double relative_to_surroundings(const std::vector<double>& variance, const std::
         for (int column = 0; column < width; ++column) {
             double light = 0, count = 0;
             for (int y = std::max(0, row - 3); y <= std::min(height - 1, row + 3); ++y)
-                for (int x = std::max(0, column - 3); x <= std::min(width - 1, column + 3); ++x)
-                    light += mean[static_cast<std::size_t>(y * width + x)], ++count;
+                for (int x = std::max(0, column - 3); x <= std::min(width - 1, column + 3); ++x) {
+                    light += mean[static_cast<std::size_t>(y * width + x)];
+                    ++count;
+                }
             const double scale = std::max(least, light / count);
             sum += variance[static_cast<std::size_t>(row * width + column)] / (scale * scale);
         }

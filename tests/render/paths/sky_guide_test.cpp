@@ -81,7 +81,9 @@ std::vector<double> errors_below(const KnownSky& sky, bool has_glass, std::uint6
             {.position = place, .normal = {0, 0, 1}, .patch = 0, .side_u = {0.05f, 0, 0}, .side_v = {0, 0.05f, 0}});
     }
     PictureOptions options;
-    options.samples = samples, options.seed = seed, options.quantity = PictureQuantity::irradiance;
+    options.samples = samples;
+    options.seed = seed;
+    options.quantity = PictureQuantity::irradiance;
     const std::vector<GaugeLight> found = hybrid_irradiance(traced, known, gauges, options, {});
     std::vector<double> exact;
     double mean = 0;
@@ -101,7 +103,10 @@ struct MeanAndError {
 MeanAndError statistics_of(const std::vector<double>& errors) {
     const auto n = static_cast<double>(errors.size());
     double sum = 0, squares = 0;
-    for (const double e : errors) sum += e, squares += e * e;
+    for (const double e : errors) {
+        sum += e;
+        squares += e * e;
+    }
     return {sum / n, std::sqrt((squares / n - sum * sum / (n * n)) / n), std::sqrt(squares / n)};
 }
 
@@ -143,11 +148,13 @@ TEST(UniformSky, IsUnbiasedForAnyNumberOfSamples) {
     std::vector<Gauge> gauges(20'000, {.normal = {0, 0, 1}, .patch = 0});
     for (const int count : {2, 6, 10, 16}) {
         PictureOptions options;
-        options.samples = count, options.quantity = PictureQuantity::irradiance;
+        options.samples = count;
+        options.quantity = PictureQuantity::irradiance;
         double sum = 0, squares = 0;
         for (const SampledIrradiance& light : direct_irradiance(traced, gauges, options, {})) {
             const double relative = static_cast<double>(light.irradiance.x) / (pi * 100) - 1;
-            sum += relative, squares += relative * relative;
+            sum += relative;
+            squares += relative * relative;
         }
         const auto n = static_cast<double>(gauges.size());
         EXPECT_NEAR(sum / n, 0, 5 * std::sqrt(squares / n / n) + 1e-5) << count;

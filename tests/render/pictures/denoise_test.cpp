@@ -105,7 +105,8 @@ double square_of_blocks(const Image& image, const Image& reference, int block) {
 Rendering draw(Shading shading, const Place& place, const Solution& solution, const RayCaster& ray_caster, int samples,
                std::uint64_t seed) {
     PictureOptions options{.width = width, .height = height, .shading = shading, .samples = samples, .seed = seed};
-    options.until = 1e-9, options.max_samples = samples;  // all samples in every pixel
+    options.until = 1e-9;
+    options.max_samples = samples;  // all samples in every pixel
     return render(place.scene, solution, ray_caster, place.view, options);
 }
 

@@ -84,7 +84,8 @@ TEST(Normals, OfACoarseCylinderAreTheSameInPathTracingGatheringAndHybridShading)
     View above{"above", {0, 0.5, 4}, {0, 0.5, 0}, {0, 1, 0}, 45};
     above.extent = 0.1f;
     PictureOptions options = few_samples;
-    options.height = 2, options.width = 2;
+    options.height = 2;
+    options.width = 2;
     options.quantity = PictureQuantity::irradiance;
     for (const float x : {-0.6f, -0.2f, 0.2f, 0.6f}) {
         above.eye.x = above.look_at.x = x;

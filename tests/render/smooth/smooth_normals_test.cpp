@@ -79,7 +79,9 @@ Errors errors(const Scene& scene, const ElementForest& forest, const SmoothField
             for (const float v : {0.1f, 0.3f, 0.45f}) {
                 const V3f n = forest.geometry(p).point({u, v}).normalized();
                 const double error = std::abs(field.at(p, {u, v}).x - std::max(0.0f, n.dot(light)));
-                largest = std::max(largest, error), squares += error * error, ++count;
+                largest = std::max(largest, error);
+                squares += error * error;
+                ++count;
             }
     return {largest, std::sqrt(squares / count)};
 }

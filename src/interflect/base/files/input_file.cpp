@@ -20,7 +20,7 @@ void require_regular_file(const fs::path& path) {
     const fs::file_status status = fs::status(path, error);
     if (error == std::errc::too_many_symbolic_link_levels)
         throw InputError(path, 0, "its symbolic links lead in a circle");
-    if (!fs::exists(status)) throw InputError(path, 0, "there is no such file");
+    if (!fs::exists(status)) throw InputError(path, 0, "no such file");
     if (fs::is_directory(status)) throw InputError(path, 0, "this is a folder, not a file");
     if (!fs::is_regular_file(status)) throw InputError(path, 0, "this is not a regular file");
 }

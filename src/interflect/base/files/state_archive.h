@@ -20,9 +20,9 @@ namespace interflect::detail {
 /// It refuses invalid numbers, with which a run would crash or never end.
 class StateArchive {
   public:
-    /// For writing, which changes no value. Values must not change until written.
+    /// Makes an archive for writing, which changes no value. Values must not change until written.
     StateArchive() = default;
-    /// For reading.
+    /// Makes an archive for reading.
     explicit StateArchive(std::map<std::string, std::vector<std::byte>> arrays)
         : reads_(true), arrays_(std::move(arrays)) {}
 
@@ -32,7 +32,7 @@ class StateArchive {
         unchecked(name, values);
         if (reads_) require_range(are_all(values, [](auto number) { return is_regular(number); }), name);
     }
-    /// As operator(); all numbers must be non-negative.
+    /// Archives values whose numbers must be non-negative, otherwise as operator().
     template <class T>
     void amounts(const std::string& name, T& values) {
         (*this)(name, values);

@@ -28,7 +28,7 @@ std::size_t free_memory();
 /// @throws std::runtime_error with these three if `bytes` exceeds usable_memory().
 void require_memory(std::size_t bytes, std::string_view what, std::string_view remedy = {});
 
-/// The same for bytes in addition to memory_in_use().
+/// Requires memory for these bytes in addition to memory_in_use().
 void require_free_memory(std::size_t bytes, std::string_view what, std::string_view remedy = {});
 
 }  // namespace interflect::detail

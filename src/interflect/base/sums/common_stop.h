@@ -15,7 +15,7 @@ class CommonStop {
     CommonStop(const std::atomic<bool>* flag, Ranks* ranks) : requested_(flag), ranks_(ranks) {}
 
     void limit_time(StopRequest::Clock::time_point start, double seconds) { requested_.limit_time(start, seconds); }
-    /// For loops within this process; never due with several ranks.
+    /// Returns a stop for loops within this process. It is never due with several ranks.
     const StopRequest& within_process() const { return ranks_ ? never_ : requested_; }
     /// The following are collective.
     bool is_due() const { return of_first_rank(ranks_, requested_.is_due()); }

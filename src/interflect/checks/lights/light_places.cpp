@@ -88,7 +88,7 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights
                             "check their positions, the unit and the up axis of the scene");
     Finder wide = finder("wide-opening", true,
                          "luminaires have an opening that is larger than the scene or reaches through its walls",
-                         "check the unit of the file with their light, that of the scene, and their positions");
+                         "check the units of their photometric file and of the scene, and their positions");
     Finder sunk = finder("sunk-luminaire", true,
                          "luminaires reach into a ceiling or wall by half of their height, and the light of the hidden "
                          "half is lost",

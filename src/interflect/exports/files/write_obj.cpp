@@ -81,7 +81,10 @@ void append_faces(std::string& text, const Scene& scene, const ElementForest& fo
     std::uint32_t object = none, material = none, coordinates = 0;
     for (const std::uint32_t i : by_object_and_material(scene, forest, polygons)) {
         const Patch& patch = scene.patches[forest.patch(polygons.leaves[i])];
-        if (patch.object != object) text += fmt::format("o {}\n", objects[object = patch.object]), material = none;
+        if (patch.object != object) {
+            text += fmt::format("o {}\n", objects[object = patch.object]);
+            material = none;
+        }
         if (patch.material != material) text += fmt::format("usemtl {}\n", materials[material = patch.material]);
         const bool is_textured = scene.materials[patch.material].is_textured();
         std::string face = "f";

@@ -106,7 +106,7 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
                            rgb("intensity", light->intensity));
     if (const auto* spot = std::get_if<SpotLight>(&luminaire.kind)) {
         if (spot->inner_angle < spot->outer_angle) scene.warnings.add("spot", "spots fade in another way there");
-        if (spot->outer_angle > 90) scene.leave_out("what spots shine beyond 90 degrees from their axes");
+        if (spot->outer_angle > 90) scene.leave_out("light of spots beyond 90 degrees from their axes");
         const V3f up = std::abs(spot->direction.normalized().z) < 0.9f ? V3f(0, 0, 1) : V3f(1, 0, 0);
         return fmt::format(
             "  <emitter type=\"spot\">{}<float name=\"cutoff_angle\" value=\"{}\"/><float name=\"beam_width\" "

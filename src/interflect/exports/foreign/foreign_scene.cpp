@@ -74,7 +74,10 @@ class Meshes {
 std::vector<View> local_views(const Scene& scene, const std::vector<View>& chosen) {
     std::vector<View> views = chosen.empty() ? scene.views : chosen;
     if (views.empty()) views.push_back(overview(scene));
-    for (View& view : views) view.eye -= scene.origin, view.look_at -= scene.origin;
+    for (View& view : views) {
+        view.eye -= scene.origin;
+        view.look_at -= scene.origin;
+    }
     return views;
 }
 

@@ -16,7 +16,7 @@ namespace interflect::detail {
 namespace {
 
 Json json_of(const Imath::V3d& v) { return {v.x, v.y, v.z}; }
-/// In glTF's order (x, y, z, w).
+/// Returns the components in glTF's order (x, y, z, w).
 Json json_of(const Imath::Quatd& q) { return {q.v.x, q.v.y, q.v.z, q.r}; }
 
 double size_of(const Scene& scene) {

@@ -130,7 +130,7 @@ void add_vertex_light(GltfDocument& document, const Scene& scene, const Solution
     document.json["asset"]["extras"]["interflect"] = {
         {"exposure", options.exposure},
         {"COLOR_0",
-         "radiance [cd/m^2] * 2^exposure, scaled to at most 1 in its largest channel; that of the brightest "
+         "radiance [cd/m^2] * 2^exposure, scaled to at most 1 in its largest channel; of the brightest "
          "texel where there is a base colour texture"},
         {"_IRRADIANCE", "irradiance [lm/m^2] of each channel, linear Rec. 709"}};
     add_nodes(document, scene, written, options.up);

@@ -129,7 +129,7 @@ void write_checksums(const fs::path& path, std::vector<FileRange> ranges) {
     std::ifstream written(path, std::ios::binary);
     for (const FileRange& range : partition(std::move(ranges), fs::file_size(path))) {
         const std::optional<std::uint32_t> checksum = checksum_of(written, range);
-        if (!checksum) throw std::runtime_error("cannot read back what was written");
+        if (!checksum) throw std::runtime_error("cannot read the written data");
         block += fmt::format("{} {} {} {}\n", text_of_crc32(*checksum), range.begin, range.length, range.name);
     }
     if (block.size() > checked_length) throw std::runtime_error("too many ranges for the block of checksums");

@@ -119,7 +119,8 @@ std::vector<Gauge> BakedLight::gauges(std::span<const BakedPoint> points, float 
         gauge.position = geometry.point(geometry.inset(point.at, inset * spacing));
         gauge.normal = vertices_.normals().at(geometry, point.patch, point.at);
         gauge.patch = point.patch;
-        gauge.side_u = side(point.sides[0]), gauge.side_v = side(point.sides[1]);
+        gauge.side_u = side(point.sides[0]);
+        gauge.side_v = side(point.sides[1]);
         gauge.inset = inset * spacing;
         gauges.push_back(gauge);
     }

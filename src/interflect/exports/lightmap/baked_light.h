@@ -51,7 +51,7 @@ class BakedLight {
     /// Direct light of hybrid shading, if DirectSampling::is_tested; not for Shading::smooth.
     std::vector<SampledIrradiance> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
                                           const Monitor& monitor) const;
-    /// As by SmoothField.
+    /// Returns the interpolated irradiance of the solution (SmoothField).
     Rgb interpolated(const BakedPoint& point) const { return smooth_.at(point.patch, point.at); }
 
   private:

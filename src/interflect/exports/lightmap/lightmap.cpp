@@ -157,7 +157,10 @@ std::vector<std::size_t> copied_texels(std::span<const TexelPlace> places, std::
     constexpr auto unknown = static_cast<std::size_t>(-1);
     std::vector<std::size_t> copied(places.size(), unknown), reached;
     for (std::size_t i = 0; i < places.size(); ++i)
-        if (places[i].is_near) copied[i] = i, reached.push_back(i);
+        if (places[i].is_near) {
+            copied[i] = i;
+            reached.push_back(i);
+        }
     for (std::size_t next = 0; next < reached.size(); ++next) {
         const std::size_t i = reached[next], column = i % columns;
         const auto fill = [&](std::size_t neighbour) {
@@ -256,9 +259,9 @@ double texel_count(const LightmapChart& chart, int gutter) {
 void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, Shading shading,
                     std::size_t groups) {
     constexpr double encoded_bytes = 16, target_bytes = 16;
-    // Per image texel: itself, a copy to encode.
+    // A texel of an image needs itself and a copy to encode.
     constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
-    // Per chart texel: two copies of its place, target, light.
+    // A texel of a chart needs two copies of its place, its target and its light.
     constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb),
                      hybrid_bytes = sizeof(SurfacePoint) + sizeof(Gauge) + sizeof(GaugeLight) + sizeof(Rgb),
                      gathered_bytes =

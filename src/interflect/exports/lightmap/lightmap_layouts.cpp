@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// In the unit square; above the rounding of 16-bit coordinates.
+/// Tolerance of coordinates in the unit square, above the rounding to 16 bits.
 constexpr double layout_rounding = 0x1p-15;
 
 /// v points downwards.

@@ -21,7 +21,7 @@ struct PositionHash {
     }
 };
 
-/// As for smooth surfaces [m].
+/// Returns the distance within which vertices are joined, the same as for smooth surfaces [m].
 float joining_distance(const Scene& scene) {
     constexpr float relative = 0x1p-20f;
     float largest = 0;

@@ -105,8 +105,7 @@ PhotometricWeb web_of(const Json& json) {
     const Json& opening = json.at("opening");
     const auto shape = opening.at("shape").get<std::string>();
     const auto found = std::find(shape_names.begin(), shape_names.end(), shape);
-    if (found == shape_names.end())
-        throw std::runtime_error("there is no luminous opening of the shape '" + shape + "'");
+    if (found == shape_names.end()) throw std::runtime_error("unknown shape of a luminous opening: '" + shape + "'");
     web.opening = {static_cast<LuminousOpening::Shape>(found - shape_names.begin()), vector_at<V3f>(opening, "size"),
                    opening.at("axis").get<int>()};
     web.lamp_lumens = json.at("lamp_lumens").get<double>();
@@ -170,7 +169,7 @@ Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const
                                        json.at("mirrored").get<bool>(),
                                        vector_at<Rgb>(json, "factor")};
     else
-        throw std::runtime_error("there is no light of the kind '" + kind + "'");
+        throw std::runtime_error("unknown kind of light: '" + kind + "'");
     return luminaire;
 }
 

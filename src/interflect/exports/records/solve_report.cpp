@@ -102,7 +102,9 @@ struct RowWriter {
     }
     void field_or_null(const char* name, double value, double) const { field(name, value); }
     void vector(const std::string& name, const RgbD& value) const {
-        field(name + "_red", value.x), field(name + "_green", value.y), field(name + "_blue", value.z);
+        field(name + "_red", value.x);
+        field(name + "_green", value.y);
+        field(name + "_blue", value.z);
     }
 };
 

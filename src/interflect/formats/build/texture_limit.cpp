@@ -27,7 +27,8 @@ void halve(Texture& texture) {
         average(&texture.texels[y * texture.width], texture.width, &texture.texels[y * width], width, 1);
     for (std::size_t x = 0; x < width; ++x)
         average(&texture.texels[x], texture.height, &texture.texels[x], height, width);
-    texture.width = width, texture.height = height;
+    texture.width = width;
+    texture.height = height;
     texture.texels.resize(std::size_t{width} * height);
     texture.texels.shrink_to_fit();
 }

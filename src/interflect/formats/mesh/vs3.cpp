@@ -84,7 +84,7 @@ class Vs3Reader {
     Scene read() {
         while (words_.next_line() && read_line()) {
         }
-        if (surfaces_.empty()) throw InputError(path_, 0, "there is no surface: expected lines that begin with S");
+        if (surfaces_.empty()) throw InputError(path_, 0, "the file has no surface: expected lines that begin with S");
         return make_scene();
     }
 
@@ -231,7 +231,7 @@ class Vs3Reader {
     /// Outline in a plane: origin, azimuth (clockwise from y) and tilt (0: faces up, 90: vertical) [degrees].
     void read_shape(char shape, Vs3Surface& surface) {
         if (shape != 'R' && shape != 'Q' && shape != 'T')
-            fail("the shape is none of R (rectangle), Q (quadrilateral) and T (triangle)");
+            fail("the shape is not R (rectangle), Q (quadrilateral) or T (triangle)");
         const auto next = [&] { return number(words_.word_of_any_line()); };
         V3d origin;
         for (int axis = 0; axis < 3; ++axis) origin[axis] = next();

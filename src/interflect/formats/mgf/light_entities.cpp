@@ -46,7 +46,7 @@ void MgfReader::light(MgfWords words) {
     const auto kind = kinds.find(words[0]);
     if (kind == kinds.end())
         throw MgfFault(
-            fmt::format("there is no light '{}'; expected point, spot, directional, sky or environment", words[0]));
+            fmt::format("unknown light '{}'; expected point, spot, directional, sky or environment", words[0]));
     if (words.size() < kind->second.fewest || words.size() > kind->second.most)
         throw MgfFault(fmt::format("expected '{}', found {} argument{}", kind->second.usage, words.size(),
                                    words.size() == 1 ? "" : "s"));

@@ -30,7 +30,8 @@ constexpr std::array<float SkyModel::*, 6> model_parameters = {&SkyModel::a, &Sk
 void MgfReader::sky(MgfWords words) {
     if (words[0] == "perez") return perez_sky(words);
     SkyDome dome;
-    dome.zenith = turned({0, 0, 1}), dome.sun = dome.zenith;
+    dome.zenith = turned({0, 0, 1});
+    dome.sun = dome.zenith;
     const auto take_illuminance = [&](std::string_view word) {
         dome.irradiance = scene_.emitted(colours_.current(), non_negative_argument(word), here());
     };
@@ -49,7 +50,7 @@ void MgfReader::sky(MgfWords words) {
         const int type = cie_sky_type(words[0]);
         if (type == 0)
             throw MgfFault(
-                fmt::format("there is no sky '{}'; expected overcast, uniform, intermediate, clear, cie-1 to cie-16, "
+                fmt::format("unknown sky '{}'; expected overcast, uniform, intermediate, clear, cie-1 to cie-16, "
                             "perez or model",
                             words[0]));
         dome.model = cie_standard_sky(type);
@@ -67,7 +68,8 @@ void MgfReader::perez_sky(MgfWords words) {
     constexpr std::size_t without_ground = 4, with_ground = 5;
     require_arguments(words, without_ground, with_ground, "vertex direct-normal diffuse-horizontal [ground]");
     SkyDome dome;
-    dome.zenith = turned({0, 0, 1}), dome.sun = -direction_of(words[1]);
+    dome.zenith = turned({0, 0, 1});
+    dome.sun = -direction_of(words[1]);
     const double sine = std::clamp(static_cast<double>(dome.sun.dot(dome.zenith)), -1.0, 1.0);
     const double reflectance = words.size() == with_ground ? non_negative_argument(words[with_ground - 1]) : 0;
     ModelledDaylight perez;

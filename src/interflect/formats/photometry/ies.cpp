@@ -174,7 +174,7 @@ void IesReader::read_tilt(std::string_view tilt) {
     } catch (const InputError&) {  // its message quotes the file
         text_.refuse(
             fmt::format("the TILT file {} has no TILT data: expected the lamp's geometry (1 to 3), the number of "
-                        "angles, the angles, and as many factors of at least 0",
+                        "angles, the angles, and the same number of factors of at least 0",
                         text.where()));
     }
 }
@@ -188,7 +188,7 @@ double IesReader::tilt_factor(PhotometricText& text) {
     if (!std::is_sorted(angles.begin(), angles.end())) text.refuse("TILT angles must ascend");
     if (*std::min_element(factors.begin(), factors.end()) < 0) text.refuse("a TILT factor must not be negative");
     if (std::any_of(factors.begin(), factors.end(), [](double f) { return f != 1; }))
-        warn("ies-tilt", "TILT factors are ignored but that of the position in which the luminaire was measured");
+        warn("ies-tilt", "TILT factors are ignored, except for the position in which the luminaire was measured");
     const auto above = static_cast<std::size_t>(std::upper_bound(angles.begin(), angles.end(), 0) - angles.begin());
     if (above == 0 || above == count) return factors[above == 0 ? 0 : count - 1];
     const double share = -angles[above - 1] / (angles[above] - angles[above - 1]);
@@ -304,7 +304,8 @@ void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> hori
     constexpr auto half = static_cast<float>(half_turn), turn = static_cast<float>(full_turn);
     const bool is_complete = (vertical.front() == 0 || vertical.front() == right_angle) &&
                              (vertical.back() == right_angle || vertical.back() == half);
-    if (!is_complete) warn("ies-angles", "vertical angles do not reach 0, 90 or 180; beyond them there is no light");
+    if (!is_complete)
+        warn("ies-angles", "vertical angles do not reach 0, 90 or 180; beyond them the luminaire emits no light");
     const float first = horizontal.front(), span = horizontal.back() - first;
     const float step = horizontal.size() > 1 ? span / static_cast<float>(horizontal.size() - 1) : 0;
     const bool is_open = span > half && span < turn && span + 1.5f * step > turn;
@@ -328,7 +329,7 @@ void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> hori
 void IesReader::read_type_a_or_b(std::vector<float> vertical, std::vector<float> horizontal, Type type) {
     if (horizontal.size() < 2) text_.refuse("a single horizontal angle; expected at least two of types A and B");
     if (std::abs(vertical.back()) < right_angle || std::abs(horizontal.back()) < right_angle)
-        warn("ies-angles", "angles do not reach 90 degrees; beyond them there is no light");
+        warn("ies-angles", "angles do not reach 90 degrees; beyond them the luminaire emits no light");
     const bool is_symmetric = horizontal.front() == 0;
     PhotometricPlanes all = planes(std::move(horizontal), vertical.size());
     if (is_symmetric) all.mirror_at_first();

@@ -80,7 +80,7 @@ PhotometricWeb LdtReader::read() {
     const std::vector<float> all_planes = angles(plane_count, "C", full_turn);
     web_.polar = angles(height, "gamma", half_turn);
     if (std::fmod(web_.polar.front(), right_angle) != 0 || std::fmod(web_.polar.back(), right_angle) != 0)
-        warn("ldt-angles", "gamma angles do not reach 0, 90 or 180; beyond them there is no light");
+        warn("ldt-angles", "gamma angles do not reach 0, 90 or 180; beyond them the luminaire emits no light");
     const std::vector<float> measured = planes_of(all_planes, symmetry);
     std::vector<float> intensities;
     for (std::size_t i = 0; i < measured.size() * height; ++i) {

@@ -73,10 +73,16 @@ void write_ies(const PhotometricWeb& web, std::ostream& out) {
     PhotometricPlanes planes = is_c ? all_around(web) : PhotometricPlanes(web.azimuth, web.intensities);
     std::vector<float> vertical = web.polar, horizontal, intensities;
     if (is_b) {
-        vertical = web.azimuth, horizontal = shifted(web.polar, -right_angle), intensities = planes.transposed();
+        vertical = web.azimuth;
+        horizontal = shifted(web.polar, -right_angle);
+        intensities = planes.transposed();
     } else {
-        if (!is_c) planes.reverse(), vertical = shifted(web.polar, -right_angle);
-        horizontal = planes.angles(), intensities = planes.intensities();
+        if (!is_c) {
+            planes.reverse();
+            vertical = shifted(web.polar, -right_angle);
+        }
+        horizontal = planes.angles();
+        intensities = planes.intensities();
     }
     const V3f size = dimensions(web.opening);
     out << fmt::format("IESNA:LM-63-2002\n[TEST] written by Interflect\nTILT=NONE\n1 {} 1 {} {} {} 2 {} {} {}\n1 1 0\n",

@@ -211,7 +211,7 @@ void RadMaterials::warn_of_pattern(const Modifier& modifier, bool is_of_light) {
                         type),
             modifier);
     else if (role == Role::pattern)
-        warn("unsupported-modifier", fmt::format("{} is left out, and what it modifies is used as it is", type),
+        warn("unsupported-modifier", fmt::format("{} is left out, and its modified primitive is used as it is", type),
              modifier);
     if (role == Role::mixture)
         warn("unsupported-modifier", fmt::format("of {} only the foreground is used", type), modifier);
@@ -300,7 +300,7 @@ void RadMaterials::dielectric(const Modifier& modifier, Material& result) {
     const double root = (inside - outside) / (inside + outside);
     result.specular_reflectance = Rgb(static_cast<float>(root * root));
     result.transmittance = Rgb(static_cast<float>(1 - root * root));
-    warn("refraction", "light goes straight through dielectric and interface, which absorb nothing", modifier);
+    warn("refraction", "light passes straight through dielectric and interface, without absorption", modifier);
 }
 
 void RadMaterials::light(const Modifier& modifier, Material& result) {

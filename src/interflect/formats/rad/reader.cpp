@@ -24,7 +24,7 @@ using Imath::V3d;
 
 namespace {
 
-/// Per file; each takes about 170 bytes.
+/// Limit of copies per file; a copy takes about 170 bytes.
 constexpr std::size_t max_copies = 1 << 20;
 
 V3d point(const std::vector<double>& numbers, std::size_t first) {

@@ -163,7 +163,7 @@ std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<F
             patches += sides * std::max<std::size_t>(1, cut[i].patches.size());
             if (cut[i].reached_limit)
                 warnings.add("contact-cuts", fmt::format("a face was cut into no more than {} pieces: elements may "
-                                                         "still lie on both sides of what stands on it",
+                                                         "still lie on both sides of objects that stand on it",
                                                          options.max_pieces_per_face));
         }
         if (!is_cut) continue;

@@ -50,7 +50,7 @@ std::size_t enough_intersections(std::size_t count) {
     return at_least + per_level * count * (static_cast<std::size_t>(std::bit_width(count)) + more_levels);
 }
 
-/// In [m^2]; areas up to `negligible` [m^2] count as 0.
+/// Returns the covered area [m^2]; areas up to `negligible` [m^2] count as 0.
 /// @param intersections  To be computed at most. Afterwards, only the face with the largest share of a part counts: the
 ///     outlines of a thousand faces that lie in each other divide them into a million parts.
 double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygon*> others, double negligible,

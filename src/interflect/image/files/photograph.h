@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// As read_image(), and JPEG, too lossy for measurements.
+/// Reads the formats of read_image(), and JPEG, which is too lossy for measurements.
 Image read_photograph(const std::filesystem::path& path, std::int64_t max_pixels);
 
 }  // namespace interflect::detail

@@ -72,7 +72,7 @@ class Contour {
     }
 
     const std::vector<Segment>& segments() const { return segments_; }
-    /// Of the whole line [pixels].
+    /// Returns the length of the line that contains the segment [pixels].
     float length(const Segment& segment) const { return lengths_.at(segment.line); }
 
   private:

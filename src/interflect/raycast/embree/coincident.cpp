@@ -88,8 +88,8 @@ CoincidentFaces::CoincidentFaces(const Scene& scene, std::span<const float> tole
     measure_uncovered(scene, tolerance);
 }
 
-/// Hides a face if one of higher priority with the same corners intercepts all its rays. At most three remain: two back
-/// to back, and a two-sided one.
+/// Hides a face if a face of higher priority with the same corners intercepts all its rays. At most three remain: two
+/// back to back, and a two-sided one.
 void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::uint32_t> rank) {
     struct KeyedFace {
         std::uint64_t key;

@@ -80,7 +80,7 @@ class CoincidentFaces {
     std::size_t hidden_count_ = 0;
     std::vector<PriorityFace> priority_faces_;   // by rank
     std::vector<std::size_t> overlap_begin_{0};  // start of each overlapped face in overlaps_, and the end
-    // Per overlapped face: tree of indices into priority_faces_.
+    // One tree for each overlapped face, of indices into priority_faces_.
     std::vector<Boxed> overlaps_;
     RankedBits covered_;  // completely or in part
     std::vector<float> uncovered_share_;

@@ -17,10 +17,18 @@ void set_ray(RTCRayHit& query, std::size_t, const Ray& ray) { query = embree_que
 template <class Packet>
 void set_ray(Packet& packet, std::size_t lane, const Ray& ray) {
     auto& r = packet.ray;
-    r.org_x[lane] = ray.origin.x, r.org_y[lane] = ray.origin.y, r.org_z[lane] = ray.origin.z;
-    r.dir_x[lane] = ray.direction.x, r.dir_y[lane] = ray.direction.y, r.dir_z[lane] = ray.direction.z;
-    r.tnear[lane] = 0, r.tfar[lane] = std::numeric_limits<float>::infinity(), r.time[lane] = 0;
-    r.mask[lane] = ~0u, r.id[lane] = 0, r.flags[lane] = 0;
+    r.org_x[lane] = ray.origin.x;
+    r.org_y[lane] = ray.origin.y;
+    r.org_z[lane] = ray.origin.z;
+    r.dir_x[lane] = ray.direction.x;
+    r.dir_y[lane] = ray.direction.y;
+    r.dir_z[lane] = ray.direction.z;
+    r.tnear[lane] = 0;
+    r.tfar[lane] = std::numeric_limits<float>::infinity();
+    r.time[lane] = 0;
+    r.mask[lane] = ~0u;
+    r.id[lane] = 0;
+    r.flags[lane] = 0;
     packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
 }
 

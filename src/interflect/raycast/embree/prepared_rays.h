@@ -20,7 +20,7 @@ class PreparedRays {
 
     /// Groups have 1024 rays; the last may have fewer.
     std::size_t group_count() const;
-    /// Once per group: Embree overwrites the rays.
+    /// Call it once for each group, because Embree overwrites the rays.
     void trace_group(const RayCaster& ray_caster, std::size_t group);
     std::size_t hit_count() const;
 

@@ -294,7 +294,10 @@ LightTree::Choice LightTree::choose_by(bool is_weighted, const V3f& x, const V3f
             rest -= static_cast<double>(importance[i]);
             if (importance[i] > 0) last = i;
         }
-        if (i == width) i = last, rest = static_cast<double>(importance[i]);  // by rounding
+        if (i == width) {  // by rounding
+            i = last;
+            rest = static_cast<double>(importance[i]);
+        }
         uniform = std::min(rest / static_cast<double>(importance[i]), below_one);
         probability *= by_power.importance[i] / by_power.sum;
         weighted_probability *= by_weight.importance[i] / by_weight.sum;

@@ -58,7 +58,11 @@ class LightTree {
     using Floats = std::array<float, width>;
     struct Vectors {
         Floats x{}, y{}, z{};
-        void set(std::size_t i, const V3f& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+        void set(std::size_t i, const V3f& v) {
+            x[i] = v.x;
+            y[i] = v.y;
+            z[i] = v.z;
+        }
     };
     /// Up to eight lights or nodes; others have no power.
     struct alignas(64) Node {

@@ -34,7 +34,7 @@ class LuminaireChoice {
     };
     /// Chooses a luminaire with a position; a LightTree proposes candidates.
     Chosen choose_lamp(const V3f& x, const V3f& n, const LightSample& sample) const;
-    /// The same among all directional lights.
+    /// Chooses among all directional lights.
     Chosen choose_sun(const V3f& x, const V3f& n, const LightSample& sample) const;
 
   private:

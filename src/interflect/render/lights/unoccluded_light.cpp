@@ -85,7 +85,9 @@ void UnoccludedLight::PatchGroup::add(const Scene& scene, std::uint32_t patch) {
     for (std::size_t c = 0; c < x.size(); ++c) {
         const std::size_t last = static_cast<std::size_t>(p.vertex_count()) - 1;
         const V3f& vertex = scene.vertices[p.vertices[std::min(c, last)]];
-        x[c][count] = vertex.x, y[c][count] = vertex.y, z[c][count] = vertex.z;
+        x[c][count] = vertex.x;
+        y[c][count] = vertex.y;
+        z[c][count] = vertex.z;
     }
     patches[count++] = patch;
 }
@@ -101,7 +103,9 @@ UnoccludedLight::PatchGroup::Irradiance UnoccludedLight::PatchGroup::at(const V3
             const float dx = x[c][i] - p.x, dy = y[c][i] - p.y, dz = z[c][i] - p.z;
             found.is_exact[i] &= n.x * dx + n.y * dy + n.z * dz > 0;
             const float scale = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
-            to_x[c][i] = dx * scale, to_y[c][i] = dy * scale, to_z[c][i] = dz * scale;
+            to_x[c][i] = dx * scale;
+            to_y[c][i] = dy * scale;
+            to_z[c][i] = dz * scale;
         }
     Numbers sum{};
     for (std::size_t c = 0; c < x.size(); ++c) {

@@ -95,9 +95,13 @@ void FirstPoints::add_direct(std::span<PathLight> halves) const {
                 for (const Point& p : points) {
                     if (p.half == point.half) continue;
                     const Source& other = p.sources[k];
-                    all.sampled += other.sampled, all.visible += other.visible, ++all.points;
+                    all.sampled += other.sampled;
+                    all.visible += other.visible;
+                    ++all.points;
                     if (p.normal.dot(point.normal) < similar_cosine) continue;
-                    similar.sampled += other.sampled, similar.visible += other.visible, ++similar.points;
+                    similar.sampled += other.sampled;
+                    similar.visible += other.visible;
+                    ++similar.points;
                 }
                 const bool is_exact = plan_.scene.unoccluded.is_exact(source_kinds[k]);
                 const Rgb c = coefficient(similar, all, is_exact ? source.unoccluded : Rgb(0));

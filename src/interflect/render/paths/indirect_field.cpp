@@ -179,7 +179,8 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
             Record& r = records_[group.record];
             r.gathered.add((group.indirect[0] + group.indirect[1]) * per_path);
             r.difference += mean_channel(group.indirect[0] - group.indirect[1]) * per_path;
-            inverse_length[group.record] += group.inverse_length, hits[group.record] += group.hits;
+            inverse_length[group.record] += group.inverse_length;
+            hits[group.record] += group.hits;
         }
         is_stopped = stop.is_due();
     }
@@ -241,8 +242,10 @@ void IndirectField::pool_variances() {
     parallel_for_ranges(records_.size(), records_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             double sum = 0, count = 0;
-            visit_near(records_[i].position, records_[i].normal, records_[i].patch,
-                       [&](std::uint32_t k, float) { sum += of_group(records_[k]), ++count; });
+            visit_near(records_[i].position, records_[i].normal, records_[i].patch, [&](std::uint32_t k, float) {
+                sum += of_group(records_[k]);
+                ++count;
+            });
             pooled[i] = static_cast<float>(count > 0 ? sum / count : of_group(records_[i]));
         }
     });
@@ -292,8 +295,10 @@ void IndirectField::estimate_bias() {
     });
     for (Record& r : records_) {
         double sum = 0, count = 0;
-        visit_near(r.position, r.normal, r.patch,
-                   [&](std::uint32_t k, float) { sum += static_cast<double>(excess[k]), ++count; });
+        visit_near(r.position, r.normal, r.patch, [&](std::uint32_t k, float) {
+            sum += static_cast<double>(excess[k]);
+            ++count;
+        });
         r.squared_bias = count > 0 ? bias_of_points * std::max(0.0f, static_cast<float>(sum / count)) : 0;
     }
 }
@@ -329,7 +334,10 @@ float IndirectField::mean_irradiance() const {
 float IndirectField::log_mean_irradiance() const {
     double sum = 0, lit = 0;
     for (const Record& r : records_)
-        if (r.irradiance > 0) sum += std::log(static_cast<double>(r.irradiance)), ++lit;
+        if (r.irradiance > 0) {
+            sum += std::log(static_cast<double>(r.irradiance));
+            ++lit;
+        }
     return lit > 0 ? static_cast<float>(std::exp(sum / lit)) : 0;
 }
 
@@ -364,7 +372,10 @@ IndirectField::Fit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32
         const V3f d = r.position - x;
         fit.values.add((1 - distance2) * (1 - distance2), d.dot(frame.s), d.dot(frame.t), Rgb(r.gathered.mean),
                        r.variance());
-        if (distance2 < least) least = distance2, fit.nearest = i;
+        if (distance2 < least) {
+            least = distance2;
+            fit.nearest = i;
+        }
     });
     return fit;
 }

@@ -34,7 +34,7 @@ class IndirectField {
 
     struct Light {
         Rgb irradiance;  ///< [as H]
-        float error;     ///< Of the mean channel: standard error of the records and error of interpolation [as H].
+        float error;     ///< Standard error of the records and error of interpolation, mean of the channels [as H].
         float reach;     ///< Reach of the nearest record [m].
         std::uint32_t record;  ///< The nearest.
     };
@@ -108,11 +108,11 @@ class IndirectField {
     void shorten_reaches(std::size_t first_new);
     void estimate_bias();
     void refine_noisy_records(const PathPlan& plan, const CommonStop& stop);
-    /// Over records, below.
+    /// Returns the mean over the records.
     float mean_irradiance() const;
-    /// Geometric mean, of lit records.
+    /// Returns the logarithm of the geometric mean over the lit records.
     float log_mean_irradiance() const;
-    /// At most max_distance.
+    /// Returns the distance to the nearest contact, at most max_distance [m].
     float distance_to_contact(const V3f& x, float max_distance) const;
 
     std::vector<Contact> contacts_;

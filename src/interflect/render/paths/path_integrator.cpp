@@ -127,13 +127,19 @@ bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
         exitance = exitance_at(s.scene, patch, p);
         reflectance = reflectance_at(s.scene, patch, p);
     }
-    if (is_white) exitance = Rgb(0), reflectance = Rgb(1);
+    if (is_white) {
+        exitance = Rgb(0);
+        reflectance = Rgb(1);
+    }
     FirstHit& first = first_hits_[path.sample];
     // Later paths, behind panes or in mirrors, overwrite it.
     if (vertex_ == 1 && path.sets_first_hit)
         first = {RgbD(reflectance), Imath::V3d(s.geometry[hit.patch].normal()), Imath::V3d(x), distance,
                  plan_.known ? static_cast<double>(plan_.known->level(hit.patch, x)) : 0};
-    if (vertex_ == 2 && !plan_.start.camera) first.inverse_length = 1 / static_cast<double>(distance), first.hits = 1;
+    if (vertex_ == 2 && !plan_.start.camera) {
+        first.inverse_length = 1 / static_cast<double>(distance);
+        first.hits = 1;
+    }
 
     if (channel_sum(exitance) > 0) add_emission(hit, ray.direction, distance, path, exitance);
     if (path.sampling.is_last || end_at_known_light(hit, x, ray.direction, distance, path)) return false;

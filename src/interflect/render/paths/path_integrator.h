@@ -48,7 +48,7 @@ class PathIntegrator {
     void leave_surfaces();
     void store(std::span<SampleBatch> batches) const;
 
-    // At a surface or in the sky:
+    // Contributions of a surface or the sky to a path:
     void add_sky(const Path& path, const V3f& direction);
     void add_emission(const Hit& hit, const V3f& direction, float distance, const Path& path, const Rgb& exitance);
     bool end_at_known_light(const Hit& hit, const V3f& x, const V3f& direction, float distance, const Path& path);

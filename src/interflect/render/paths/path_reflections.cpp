@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// At the first vertex.
+/// Number of shadow rays to virtual lights at the first vertex.
 constexpr std::uint32_t virtual_shadow_rays = 4;
 
 /// Density of directions towards places of KnownLight [1/sr], per path; 0 at its back.

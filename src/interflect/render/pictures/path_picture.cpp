@@ -197,7 +197,10 @@ class PathPicture {
                 present[i] += chunk.back().size;
                 paths += 2 * std::size_t{chunk.back().size};
                 more = has_traced = true;
-                if (paths >= SharedBatches::paths_at_once(monitor_.ranks)) trace_chunk(chunk), paths = 0;
+                if (paths >= SharedBatches::paths_at_once(monitor_.ranks)) {
+                    trace_chunk(chunk);
+                    paths = 0;
+                }
             }
         }
         trace_chunk(chunk);

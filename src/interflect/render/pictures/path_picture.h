@@ -20,7 +20,7 @@ inline constexpr std::size_t path_bytes_per_pixel = 600, path_bytes_per_patch = 
 /// an office.
 inline constexpr std::size_t bytes_per_light_walk = 4000;
 
-/// With virtual lights, for the arguments of trace_picture().
+/// Draws the picture with virtual lights; the arguments are those of trace_picture().
 Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                                 const PictureOptions& options, const Monitor& monitor);
 

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// On both axes [pixels].
+/// Half the width of a pixel's neighbourhood, on both axes [pixels].
 constexpr std::size_t neighbourhood_radius = 3, radius_of_lamps = 1;
 
 std::array<RgbD, 3> parts_of(const PathLight& light) {
@@ -107,8 +107,11 @@ RgbD PixelStatistics::mean() const { return parts_of(light())[0]; }
 FirstHit PixelStatistics::first() const {
     FirstHit mean = first_sum_;
     const double samples = std::max(1.0, 2.0 * samples_);
-    mean.albedo /= samples, mean.normal /= samples, mean.position /= samples;
-    mean.distance /= samples, mean.level /= samples;
+    mean.albedo /= samples;
+    mean.normal /= samples;
+    mean.position /= samples;
+    mean.distance /= samples;
+    mean.level /= samples;
     return mean;
 }
 

@@ -39,12 +39,12 @@ class PixelStatistics {
     RgbD squared_error() const { return sampling_error(0) + record_error(); }
     RgbD direct_squared_error() const { return sampling_error(1); }
     RgbD indirect_squared_error() const { return sampling_error(2) + record_error(); }
-    /// Of all light, without the error of records, which more samples do not reduce.
+    /// Returns the squared error of sampling, without the error of records, which more samples do not reduce.
     /// @param part  0: all light, 1: direct, 2: indirect.
     RgbD sampling_error(std::size_t part = 0) const;
 
   private:
-    /// Of independent parts (Welford 1962).
+    /// Mean and squared deviations of independent parts (Welford 1962).
     struct Spread {
         std::array<RgbD, 3> mean{RgbD(0), RgbD(0), RgbD(0)}, squares{RgbD(0), RgbD(0), RgbD(0)};
         std::uint32_t parts = 0;

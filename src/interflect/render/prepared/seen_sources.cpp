@@ -34,7 +34,10 @@ TestedSources test(const TracedScene& scene, const LightSources& sources, Source
 }
 
 void add(TestedSources& all, const TestedSources& more) {
-    for (std::size_t i = 0; i < all.sent.size(); ++i) all.sent[i] += more.sent[i], all.arrived[i] += more.arrived[i];
+    for (std::size_t i = 0; i < all.sent.size(); ++i) {
+        all.sent[i] += more.sent[i];
+        all.arrived[i] += more.arrived[i];
+    }
 }
 
 /// Visible shares. Sources without test rays have 1.

@@ -37,7 +37,8 @@ TestedSources send_test_rays(const TracedScene& scene, std::size_t sources, std:
         for (std::size_t i = begin; i < end; ++i) {
             const TestRay test = sample(i);
             if (test.source == none) continue;
-            sent[i].source = test.source, sent[i].light = test.light;
+            sent[i].source = test.source;
+            sent[i].light = test.light;
             rays.add(test.ray, test.patch, test.distance);
             number.push_back(i);
         }
@@ -45,11 +46,16 @@ TestedSources send_test_rays(const TracedScene& scene, std::size_t sources, std:
         for (std::size_t k = 0; k < number.size(); ++k) sent[number[k]].arrives = largest_channel(transmittance[k]) > 0;
     });
     TestedSources tested;
-    tested.sent.resize(sources), tested.arrived.resize(sources);
+    tested.sent.resize(sources);
+    tested.arrived.resize(sources);
     for (const Sent& s : sent) {
         if (s.source == none) continue;
-        ++tested.sent[s.source], tested.light_sent += static_cast<double>(s.light);
-        if (s.arrives) ++tested.arrived[s.source], tested.light_arrived += static_cast<double>(s.light);
+        ++tested.sent[s.source];
+        tested.light_sent += static_cast<double>(s.light);
+        if (s.arrives) {
+            ++tested.arrived[s.source];
+            tested.light_arrived += static_cast<double>(s.light);
+        }
     }
     return tested;
 }

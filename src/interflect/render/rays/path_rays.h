@@ -39,7 +39,10 @@ struct PathRays {
     std::vector<Ray> rays;
     std::vector<Hit> hits;
 
-    void add(const Path& path, const Ray& ray) { paths.push_back(path), rays.push_back(ray); }
+    void add(const Path& path, const Ray& ray) {
+        paths.push_back(path);
+        rays.push_back(ray);
+    }
 };
 
 /// Finds the first surface of each path. Adds paths behind panes, and in mirrors for rays from the camera.

@@ -19,8 +19,13 @@ struct FirstHit {
     double hits = 0;            ///< Number of these rays that hit a surface.
 
     FirstHit& operator+=(const FirstHit& o) {
-        albedo += o.albedo, normal += o.normal, position += o.position, distance += o.distance, level += o.level;
-        inverse_length += o.inverse_length, hits += o.hits;
+        albedo += o.albedo;
+        normal += o.normal;
+        position += o.position;
+        distance += o.distance;
+        level += o.level;
+        inverse_length += o.inverse_length;
+        hits += o.hits;
         return *this;
     }
 };
@@ -33,7 +38,10 @@ struct PathLight {
     double record_error = 0;  ///< Standard error of recorded light, mean channel; common to all paths.
 
     PathLight& operator+=(const PathLight& o) {
-        emitted += o.emitted, direct += o.direct, indirect += o.indirect, record_error += o.record_error;
+        emitted += o.emitted;
+        direct += o.direct;
+        indirect += o.indirect;
+        record_error += o.record_error;
         return *this;
     }
     PathLight operator*(double factor) const {
@@ -56,7 +64,9 @@ struct SampleBatch {
 struct RayCounts {
     std::int64_t rays = 0, shadow_rays = 0, escaped_rays = 0;
     RayCounts& operator+=(const RayCounts& o) {
-        rays += o.rays, shadow_rays += o.shadow_rays, escaped_rays += o.escaped_rays;
+        rays += o.rays;
+        shadow_rays += o.shadow_rays;
+        escaped_rays += o.escaped_rays;
         return *this;
     }
 };

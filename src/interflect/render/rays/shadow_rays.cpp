@@ -18,7 +18,8 @@ std::span<const Rgb> ShadowRays::trace(const RayCaster& ray_caster, const Panes&
     if (!panes.empty()) pass_panes(ray_caster, panes, counts);
     for (std::size_t i = 0; i < rays_.size(); ++i)
         if (!targets_[i].is_met(hits_[i])) transmittance_[i] = Rgb(0);
-    rays_.clear(), targets_.clear();
+    rays_.clear();
+    targets_.clear();
     return transmittance_;
 }
 
@@ -27,7 +28,8 @@ void ShadowRays::pass_panes(const RayCaster& ray_caster, const Panes& panes, Ray
     std::vector<Ray> rest;
     std::vector<Hit> behind;
     for (int round = 0; round < Panes::max_consecutive_panes; ++round) {
-        passing.clear(), rest.clear();
+        passing.clear();
+        rest.clear();
         for (std::size_t i = 0; i < rays_.size(); ++i) {
             if (targets_[i].is_met(hits_[i])) continue;
             const Rgb through = panes.transmittance(rays_[i], hits_[i]);

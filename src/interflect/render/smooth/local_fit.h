@@ -16,11 +16,21 @@ class LocalFit {
             most_[c] = weight_ > 0 ? std::max(most_[c], value[c]) : value[c];
         }
         const float ws = w * s, wt = w * t;
-        weight_ += w, s_ += ws, t_ += wt;
-        ss_ += ws * s, st_ += ws * t, tt_ += wt * t;
-        sum_ += w * value, sum_s_ += ws * value, sum_t_ += wt * value;
-        variance_ += w * w * variance, variance_s_ += w * ws * variance, variance_t_ += w * wt * variance;
-        variance_ss_ += ws * ws * variance, variance_st_ += ws * wt * variance, variance_tt_ += wt * wt * variance;
+        weight_ += w;
+        s_ += ws;
+        t_ += wt;
+        ss_ += ws * s;
+        st_ += ws * t;
+        tt_ += wt * t;
+        sum_ += w * value;
+        sum_s_ += ws * value;
+        sum_t_ += wt * value;
+        variance_ += w * w * variance;
+        variance_s_ += w * ws * variance;
+        variance_t_ += w * wt * variance;
+        variance_ss_ += ws * ws * variance;
+        variance_st_ += ws * wt * variance;
+        variance_tt_ += wt * wt * variance;
     }
     float weight() const { return weight_; }
 

@@ -35,7 +35,7 @@ std::string view_fault(const View& view) {
                            text(view.up));
     for (const V3d& x : {view.eye, view.look_at})
         if (!is_within_reach(x))
-            return fmt::format("{} is farther than {:g} m from the origin, beyond which nothing is computed", text(x),
+            return fmt::format("{} is farther than {:g} m from the origin, the limit of the computation", text(x),
                                farthest_coordinate);
     if (!(view.extent >= 0 && view.extent <= farthest_coordinate))
         return fmt::format("its extent is {} m, expected from 0 to {:g}", view.extent, farthest_coordinate);
@@ -43,8 +43,7 @@ std::string view_fault(const View& view) {
         return fmt::format("the vertical field of view is {} degrees, expected between 0 and 180", view.fov);
     const V3d direction = view.look_at - view.eye;
     if (view.eye == view.look_at)
-        return fmt::format("eye and look-at are the same point {}, so there is no direction to look in",
-                           text(view.eye));
+        return fmt::format("eye and look-at are the same point {}, which gives no direction of view", text(view.eye));
     if (direction.length() < smallest_relative_distance * largest_coordinate(view.eye))
         return fmt::format("look-at is only {:.3g} m from the eye {}: their direction is lost to rounding",
                            direction.length(), text(view.eye));

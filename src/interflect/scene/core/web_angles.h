@@ -14,7 +14,7 @@ inline constexpr float right_angle = 90;                   // [degrees]
 inline double radians(double degrees) { return degrees * (std::numbers::pi / half_turn); }
 inline double degrees(double radians) { return radians * (half_turn / std::numbers::pi); }
 
-/// In the luminaire's frame.
+/// Unit vectors of the directions of a web, in the luminaire's frame.
 struct WebAxes {
     V3f pole, zero, quarter;  ///< Azimuths 0 and 90 degrees are `zero` and `quarter`.
     explicit WebAxes(PhotometricWeb::Pole kind) : pole(0, 0, -1), zero(1, 0, 0), quarter(0, 1, 0) {

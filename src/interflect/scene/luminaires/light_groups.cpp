@@ -74,11 +74,14 @@ bool matches(std::string_view pattern, std::string_view name) {
     std::optional<std::size_t> star, resume;  // the last '*', and the text after its match
     while (n < name.size()) {
         if (p < pattern.size() && pattern[p] == '*') {
-            star = p++, resume = n;
+            star = p++;
+            resume = n;
         } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
-            ++p, ++n;
+            ++p;
+            ++n;
         } else if (star) {
-            p = *star + 1, n = ++*resume;
+            p = *star + 1;
+            n = ++*resume;
         } else {
             return false;
         }
@@ -96,7 +99,7 @@ std::size_t SourceGroups::index_of(const std::string& name) const {
     const auto found = std::find(names.begin(), names.end(), name);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
     const std::string known = names.empty() ? ": the light was not kept by groups" : "; there are " + listed(names);
-    throw InputError(Fault{.text = fmt::format("there is no light group '{}'{}", name, known), .object = name});
+    throw InputError(Fault{.text = fmt::format("unknown light group '{}'{}", name, known), .object = name});
 }
 
 SourceGroups source_groups(const Scene& scene) {
@@ -151,7 +154,7 @@ std::vector<LightGroup> groups_by_name(const Scene& scene) {
     if (groups.size() > max_light_groups)
         throw InputError(
             fmt::format("the sources of light have {} names, at most {} light groups are kept: name the "
-                        "groups, with patterns of what is in them",
+                        "groups, with patterns of their members",
                         groups.size(), max_light_groups));
     return groups;
 }

@@ -72,7 +72,7 @@ SkyModel cie_standard_sky(int type) {
         {0, -1, 0, -1, 0, 2},  // 16: traditional overcast
     }};
     if (type < 1 || type > static_cast<int>(types.size()))
-        throw InputError(fmt::format("there is no CIE sky of type {}; expected 1 to {}", type, types.size()));
+        throw InputError(fmt::format("unknown CIE sky {}; expected type 1 to {}", type, types.size()));
     return types[static_cast<std::size_t>(type - 1)];
 }
 
@@ -94,7 +94,7 @@ std::string sky_fault(const SkyModel& m) {
     if (m.b > 0)
         return fmt::format("has b = {}: it would be infinitely bright at the horizon; expected 0 or less", m.b);
     const double all = m.horizontal_integral(1);
-    if (!(all > 0 && std::isfinite(all))) return "has no luminance, or one that is not finite";
+    if (!(all > 0 && std::isfinite(all))) return "has no luminance, or an infinite one";
     return {};
 }
 

@@ -16,7 +16,7 @@ namespace {
 /// the variance that their area and the mean of the cluster suggest: one without any would seem to be exactly black.
 constexpr double contributions_of_half_trust = 8;
 /// Contributions at which a part keeps at least half of its own mean, however it differs from its cluster; with ten
-/// times as many 99%. The signal is that of most parts, and bright faces beside a lamp exceed it.
+/// times as many 99%. Most parts have this signal, and bright faces beside a lamp exceed it.
 constexpr double contributions_of_own_mean = 80;
 /// In a region of the pictures that keeps its mean. Fewer would bring noise of the unreduced light back.
 constexpr double fewest_camera_rays = 1024;

@@ -63,7 +63,7 @@ std::uint32_t GltfImages::image_of_texture(std::uint32_t texture) {
     const std::uint32_t image = owner.index("source", images_.size());
     for (const char* extension : {"KHR_texture_basisu", "EXT_texture_webp", "EXT_texture_avif", "MSFT_texture_dds"}) {
         if (!owner.extension(extension).exists()) continue;
-        if (image == none) owner.fail(fmt::format("it has no image but that of {}, which is not read", extension));
+        if (image == none) owner.fail(fmt::format("its only image is that of {}, which is not read", extension));
         asset_.warn("texture-format", fmt::format("the PNG or JPEG is used in place of the image of {}", extension),
                     owner.place());
     }
@@ -117,7 +117,10 @@ Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
     const auto load = [&](std::uint32_t index, StoredImage& image) {
         if (index == none) return;
         image = decode(index);
-        if (!shape) shape = &image, name = images_[index].place();
+        if (!shape) {
+            shape = &image;
+            name = images_[index].place();
+        }
     };
     load(texels.colour, colour);
     load(texels.metallic, metallic);
@@ -160,10 +163,10 @@ void GltfImages::limit_textures() {
     if (texels_ <= max_texels) return;
     reduce_textures(asset_.model.textures);
     texels_ = texel_count(asset_.model.textures);
-    asset_.warn("textures-reduced",
-                fmt::format("the largest images are halved in width and height, so that all have {} texels at most",
-                            max_texels),
-                "textures");
+    asset_.warn(
+        "textures-reduced",
+        fmt::format("the largest images are halved in width and height, to at most {} texels in all", max_texels),
+        "textures");
 }
 
 const GltfImageMeans& GltfImages::means(std::uint32_t image) {

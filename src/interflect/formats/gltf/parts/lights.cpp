@@ -80,8 +80,7 @@ void GltfLights::add_punctual(const GltfNode& node, std::uint32_t object) {
     const GltfValue use = node.value->extension(punctual_lights);
     const GltfValue& light = punctual_[use.required_index("light", punctual_.size())];
     const Rgb strength = light.colour("color", Rgb(1)) * static_cast<float>(light.amount("intensity", 1));
-    if (light.has("range"))
-        asset_.warn("light-range", "lights reach as far as they shine, whatever their range", light.place());
+    if (light.has("range")) asset_.warn("light-range", "the range of lights is ignored", light.place());
     Luminaire luminaire;
     luminaire.object = object;
     const std::string type = light.text("type");
@@ -95,7 +94,7 @@ void GltfLights::add_punctual(const GltfNode& node, std::uint32_t object) {
     } else if (type == "directional") {
         luminaire.kind = DirectionalLight{.direction = V3f(-axis_of(node, 2)), .irradiance = strength};
     } else {
-        light.fail("its type is none of point, spot and directional");
+        light.fail("its type is not point, spot or directional");
     }
     add_light(std::move(luminaire), node, light.text("name"));
 }

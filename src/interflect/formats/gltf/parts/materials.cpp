@@ -101,7 +101,8 @@ GltfMaterials::Parts GltfMaterials::parts_of(const GltfValue& owner) {
     parts.base_texture = use_of(basis, glossy.exists() ? "diffuseTexture" : "baseColorTexture");
     if (owner.extension("KHR_materials_unlit").exists()) {
         parts.metallic = 0;
-        asset_.warn("unlit", "an unlit material's colour is taken as its reflectance; it emits nothing", owner.place());
+        asset_.warn("unlit", "an unlit material's colour is taken as its reflectance; it emits no light",
+                    owner.place());
         return parts;
     }
     parts.metallic = glossy.exists() ? 0 : static_cast<float>(std::min(rough.amount("metallicFactor", 1), 1.0));
@@ -155,7 +156,7 @@ void GltfMaterials::choose_mapping(const GltfValue& owner, Parts& parts, bool te
         use->image = none;
         asset_.warn("texture-coordinates",
                     textured ? "a texture with other coordinates than the material's first one is replaced by its mean"
-                             : "textures are replaced by their means where there are no coordinates for them",
+                             : "textures without coordinates are replaced by their means",
                     owner.place());
     }
 }
@@ -198,7 +199,7 @@ void GltfMaterials::transmit(const GltfValue& owner, const Parts& parts, Materia
     if (parts.base_texture.image != none) base *= images_.means(parts.base_texture.image).colour;
     if (parts.metallic_texture.image != none) metallic *= images_.means(parts.metallic_texture.image).stored.z;
     if (parts.transmission > 0 && parts.base_texture.image != none)
-        asset_.warn("transmission-texture", "what goes through a surface has the mean of its base colour's texture",
+        asset_.warn("transmission-texture", "transmitted light has the mean colour of the surface's texture",
                     owner.place());
     constexpr float above_rounding = 1 - 0x1p-20f;
     const Rgb through = base * (parts.transmission * (1 - metallic));  // of opaque parts

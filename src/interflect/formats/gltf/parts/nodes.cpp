@@ -104,7 +104,7 @@ std::vector<GltfNode> GltfNodes::in_scene() const {
                       outer};
         if (!node.name.empty()) node.dotted += (outer.empty() ? "" : ".") + node.name;
         if (node.dotted.size() > longest) {
-            asset_.warn("object-name", "a name that would be too long is without those of its ancestors",
+            asset_.warn("object-name", "a name that would be too long lacks the names of its ancestors",
                         values_[i].place());
             node.dotted = node.name;
         }

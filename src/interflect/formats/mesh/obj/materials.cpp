@@ -68,7 +68,7 @@ void ObjMaterials::read(const fs::path& path, const Location& where) {
     require_within(path, model_.file.parent_path(), options_, fmt::format("'{}'", path.string()));
     std::error_code ignored;
     if (!fs::exists(path, ignored)) {
-        warn("missing-file", fmt::format("there is no material library '{}'", path.filename().string()), where);
+        warn("missing-file", fmt::format("the material library '{}' does not exist", path.filename().string()), where);
         return;
     }
     read_text(read_text_file(path), path);
@@ -162,8 +162,7 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
         reduce_textures(model_.textures);
         texels_ = texel_count(model_.textures);
         warn("textures-reduced",
-             fmt::format("the largest images are halved in width and height, so that all have {} texels at most",
-                         max_texels),
+             fmt::format("the largest images are halved in width and height, to at most {} texels in all", max_texels),
              definition.where);
     }
     bool limited = limit_reflectance(result.reflectance);

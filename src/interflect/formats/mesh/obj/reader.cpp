@@ -134,7 +134,7 @@ std::uint32_t ObjReader::resolved(std::string_view text, std::size_t Counts::*of
 
 void ObjReader::vertex(Words words) {
     if (words.size() < 4) throw std::invalid_argument("a vertex needs three coordinates");
-    if (positions_.size() >= none) throw std::invalid_argument("there are more vertices than 32 bits can count");
+    if (positions_.size() >= none) throw std::invalid_argument("more vertices than 32 bits can count");
     positions_.emplace_back(coordinate_value(words[1]), coordinate_value(words[2]), coordinate_value(words[3]));
     uses_.emplace_back();
 }
@@ -142,7 +142,7 @@ void ObjReader::vertex(Words words) {
 /// Exporters write NaN for degenerate faces.
 void ObjReader::coordinate(Words words, const Location& where) {
     if (words.size() < 2) throw std::invalid_argument("texture coordinates need a number");
-    if (coordinates_.size() >= none) throw std::invalid_argument("there are more coordinates than 32 bits can count");
+    if (coordinates_.size() >= none) throw std::invalid_argument("more coordinates than 32 bits can count");
     const auto u = parse_number(words[1]), v = words.size() > 2 ? parse_number(words[2]) : 0;
     if (!u || !v)
         model_.warnings.add("invalid-coordinates", "texture coordinates that are no finite numbers are read as (0, 0)",
@@ -152,7 +152,7 @@ void ObjReader::coordinate(Words words, const Location& where) {
 
 /// Invalid normals count as missing; only shading uses them.
 void ObjReader::normal(Words words) {
-    if (normals_.size() >= none) throw std::invalid_argument("there are more normals than 32 bits can count");
+    if (normals_.size() >= none) throw std::invalid_argument("more normals than 32 bits can count");
     Imath::V3d n(0);
     for (int k = 0; k < 3; ++k) {
         const std::size_t word = static_cast<std::size_t>(k) + 1;

@@ -25,7 +25,7 @@ PlyType ply_type(std::string_view name) {
         {"float64", PlyType::float64}};
     for (const auto& [known, type] : types)
         if (known == name) return type;
-    throw std::invalid_argument(fmt::format("there is no type '{}' in PLY files", name.substr(0, 20)));
+    throw std::invalid_argument(fmt::format("PLY files have no type '{}'", name.substr(0, 20)));
 }
 
 PlyValues::Form ply_form(std::span<const std::string_view> words) {

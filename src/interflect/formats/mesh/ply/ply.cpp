@@ -106,7 +106,7 @@ class PlyReader {
 
     void read_vertices(const PlyElement& element) {
         if (!mesh_.positions.empty()) throw std::invalid_argument("there are two elements 'vertex'");
-        if (element.count >= none) throw std::invalid_argument("there are more vertices than 32 bits can count");
+        if (element.count >= none) throw std::invalid_argument("more vertices than 32 bits can count");
         std::array<std::optional<std::size_t>, 3> place, tint, normal;
         for (std::size_t c = 0; c < 3; ++c) {
             place[c] = element.find(std::array{"x", "y", "z"}[c]);

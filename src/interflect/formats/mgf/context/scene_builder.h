@@ -36,7 +36,7 @@ class MgfSceneBuilder {
     }
     /// Returns linear Rec. 709 in the unit of `luminance`.
     Rgb emitted(const MgfColour& colour, double luminance, const Location& where);
-    /// Also stores the index in `material`.
+    /// Adds the material to the scene, unless it has an index already, and stores the index in it.
     std::uint32_t material(MgfMaterial& material, std::string_view name);
     std::uint32_t object(const std::string& name);
     /// Appends a number to the name: "spot-3".

@@ -72,7 +72,7 @@ RadPrimitive RadStatements::primitive() {
     result.type = word("a type");
     result.name = word("a name");
     if (result.type == "alias") {
-        result.original = word("what the alias stands for");
+        result.original = word("the original of the alias");
         return result;
     }
     const auto arguments = [&](std::string_view what, auto use) {

@@ -1,4 +1,4 @@
-#include "apps/interflect/console/faults.h"
+#include "apps/interflect/values/faults.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -42,7 +42,7 @@ std::string explanation(const std::exception& error) {
     if (!dynamic_cast<const std::bad_alloc*>(&error) && !dynamic_cast<const std::length_error*>(&error))
         return error.what();
     return fmt::format(
-        "there is not enough memory: the limits of this process (its machine, ulimit -v, control groups) leave {} MiB. "
+        "not enough memory: the limits of this process (its machine, ulimit -v, control groups) leave {} MiB. "
         "Less is needed by a smaller picture (--size), a coarser lightmap (--texels-per-metre), fewer elements "
         "(--memory, --mesh-size) and a scene of fewer faces (--curve-divisions, --max-patches)",
         detail::usable_memory() >> 20);
