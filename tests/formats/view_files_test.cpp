@@ -82,7 +82,7 @@ TEST(ViewList, FaultsNameFileViewAndKey) {
     expect_in(list("{" + good + R"(, "up": [0, -2, 0]})"), "parallel to the direction");
     expect_in(list("{" + good + R"(, "up": [0, 0, 0]})"), "up (0, 0, 0) is zero");
     expect_in(list("{" + good + R"(, "fov": 180})"), "between 0 and 180");
-    expect_in(list("{" + good + "}, {" + good + "}"), "view 2: there is another view 'x'");
+    expect_in(list("{" + good + "}, {" + good + "}"), "view 2: a second view 'x'");
 }
 
 // Seen to fail with the parser's own exception, which is not an InputError and has no place.

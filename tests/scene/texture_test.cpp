@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"NoCoordinates", [](Scene& s) { s.texture_coordinates.clear(); },
                   "patch 0 has a texture, but no texture coordinates"},
         FaultCase{"CoordinatesMissing", [](Scene& s) { s.texture_coordinates.pop_back(); },
-                  "there are 4 vertices and 3 texture coordinates"},
+                  "4 vertices, but 3 texture coordinates"},
         FaultCase{"CoordinateNotANumber", [](Scene& s) { s.texture_coordinates[2].x = not_a_number; },
                   "vertex 2 has the texture coordinates (nan"},
         FaultCase{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; },
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
                   [](Scene& s) {
                       s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1}};
                   },
-                  "there are 4 vertices and 3 lightmap coordinates"},
+                  "4 vertices, but 3 lightmap coordinates"},
         FaultCase{"LightmapCoordinateOutside",
                   [](Scene& s) {
                       s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1.001f}, {0, 1}};

@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"EmptyTexture", show_image(png_of_zeros(0, 1, 10)), "cannot read this image"},
         Fault{"CutTexture", show_image(png_of_zeros(1000, 1000, 100)), "cannot read this image"},
         Fault{"LightOfNoType", [](GltfBuilder& f) { f.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}); f.file["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "area"}}}; },
-              "none of point, spot and directional"},
+              "not point, spot or directional"},
         Fault{"ConeTooWide", [](GltfBuilder& f) { f.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}); f.file["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}}; },
               "its cone goes from 0 to 2"},
         Fault{"CameraOfNoWidth", [](GltfBuilder& f) { f.add_node({{"camera", 0}}); f.file["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 4}}}}}; },

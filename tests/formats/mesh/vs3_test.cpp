@@ -106,7 +106,7 @@ TEST(Vs3, RefusesFaultsWithTheirLine) {
     EXPECT_THAT(fault(square + "S 1 1 2 3 4 0 1 1 a\n"), HasSubstr("surface 1 cannot be combined with 1"));
     EXPECT_THAT(fault(square + "S 1 1 2 3 4 0 0 1.5 a\n"), HasSubstr("the emittance of surface 1 is 1.5"));
     EXPECT_THAT(fault(square + "M 1 1 2 3 4 0 0 1 a\n"), HasSubstr("needs an earlier surface as its base, not 0"));
-    EXPECT_THAT(fault("F 3a\nS 1 X 0 0 1 a\n"), HasSubstr("scene.vs3:2: the shape is none of R"));
+    EXPECT_THAT(fault("F 3a\nS 1 X 0 0 1 a\n"), HasSubstr("scene.vs3:2: the shape is not R"));
     EXPECT_THAT(fault("F 3a\nS 1 R 0 0 1 a\n0 0 0 0 90 1\n"), HasSubstr("expected a finite number, not ''"));
     EXPECT_THAT(fault(square + "Q 1\n"), HasSubstr("scene.vs3:9: 'Q' is no entry of a View3D file"));
 }
