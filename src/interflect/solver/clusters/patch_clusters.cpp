@@ -112,7 +112,7 @@ PatchClusters::PatchClusters(const ElementForest& forest, std::span<const std::u
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const Range range = ranges[i];
         if (range.size() == 1) {
-            nodes_.push_back({none, range.front().patch});
+            nodes_.push_back({none, 0, range.front().patch});
             continue;
         }
         const std::size_t before = ranges.size();
@@ -120,7 +120,8 @@ PatchClusters::PatchClusters(const ElementForest& forest, std::span<const std::u
             for (std::size_t k = 0; k < range.size(); ++k) ranges.push_back(range.subspan(k, 1));
         else
             divide(range, range.size() < 2 * std::size_t{most_parts + 1} ? 2 : 3, ranges);
-        nodes_.push_back({static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(ranges.size() - before)});
+        nodes_.push_back(
+            {static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(ranges.size() - before), none});
     }
 }
 

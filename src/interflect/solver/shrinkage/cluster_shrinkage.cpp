@@ -134,8 +134,8 @@ void ClusterShrinkage::measure_parts() {
     parallel_for_ranges(sums.size(), clusters_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<Sample> samples;
         for (std::size_t i = begin; i < end; ++i) {
-            const auto [first, count] = clusters_->nodes()[i];
-            if (first == none) continue;
+            const auto [first, count, patch] = clusters_->nodes()[i];
+            if (patch != none) continue;
             for (std::uint32_t k = first; k < first + count; ++k)
                 parts_[k].share = static_cast<float>(sums[k].area / sums[i].area);
             if (!(sums[i].variance > 0 && sums[i].power > 0)) continue;
@@ -197,18 +197,18 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
     std::vector<Rgb> before(nodes.size(), Rgb(0));
     for (std::size_t i = nodes.size(); i-- > 0;) {
-        const auto [first, count] = nodes[i];
-        if (first == none)
-            before[i] = irradiance_[count];
+        const auto [first, count, patch] = nodes[i];
+        if (patch != none)
+            before[i] = irradiance_[patch];
         else
             for (std::uint32_t k = first; k < first + count; ++k) before[i] += parts_[k].share * before[k];
     }
     std::vector<Rgb> after(nodes.size());
     after[0] = before[0];
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const auto [first, count] = nodes[i];
-        if (first == none) {
-            means[count] = after[i];
+        const auto [first, count, patch] = nodes[i];
+        if (patch != none) {
+            means[patch] = after[i];
             continue;
         }
         const float light = luminance(after[i]);
@@ -237,15 +237,15 @@ void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
     std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
     std::vector<float> uncertainty(means.size());
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
-        const auto [first, count] = nodes[i];
+        const auto [first, count, patch] = nodes[i];
         if (shares[i] >= fewest) region[i] = i;
-        if (first != none) {
+        if (patch == none) {
             std::fill_n(region.begin() + first, count, region[i]);
             continue;
         }
-        region_of_patch[count] = region[i];
-        uncertainty[count] = 1 - parts_[i].kept;
-        regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(count);
+        region_of_patch[patch] = region[i];
+        uncertainty[patch] = 1 - parts_[i].kept;
+        regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(patch);
     }
     for (std::uint32_t p = 0; p < means.size(); ++p)
         regions[region_of_patch[p]].add(seen[p], forest.area(p), uncertainty[p], RgbD(irradiance_[p]), RgbD(means[p]));
