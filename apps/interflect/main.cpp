@@ -9,7 +9,7 @@
 #include "apps/interflect/console/messages.h"
 #include "apps/interflect/console/standard_streams.h"
 #include "apps/interflect/options/shared_options.h"
-#include "apps/interflect/processes/crew.h"
+#include "apps/interflect/processes/shared_run.h"
 #include "apps/interflect/processes/signals.h"
 #include "apps/interflect/values/faults.h"
 #include "interflect/core.h"
@@ -69,17 +69,17 @@ int run(int argc, char** argv) {
 
 struct Dismissal {
     Dismissal() = default;
-    ~Dismissal() { interflect::command::dismiss_crew(); }
+    ~Dismissal() { interflect::command::dismiss_ranks(); }
     Dismissal(const Dismissal&) = delete;
     Dismissal& operator=(const Dismissal&) = delete;
 };
 
 /// Returns the exit code.
 int serve() try {
-    interflect::command::serve_crew();
+    interflect::command::serve_first_rank();
     return interflect::command::done;
 } catch (const std::exception& e) {
-    interflect::command::end_crew_after_fault(e, interflect::command::failed);
+    interflect::command::end_ranks_after_fault(e, interflect::command::failed);
     return interflect::command::failed;
 }
 
@@ -98,8 +98,8 @@ int main(int argc, char** argv) try {
     handle_signals();
     return_large_arrays();
     interflect::command::log_to_stderr();
-    switch (join_crew()) {
-        case Role::helper:
+    switch (connect_ranks()) {
+        case Role::other:
             return serve();
         case Role::refused:
             return failed;

@@ -6,13 +6,13 @@ import time
 import unittest
 
 from command import COMMAND, FAILED, VIEW
-from crew import CrewTest, processes_of, solve, with_checkpoints
+from mpirun import RanksTest, processes_of, solve, with_checkpoints
 
 HOST = os.uname().nodename
 REMEDY = "all processes end; `interflect resume run.h5` goes on from the last checkpoint"
 
 
-class Faults(CrewTest):
+class Faults(RanksTest):
     def messages_after(self, number, victim):
         """Returns the messages after this signal to the process of rank `victim`, of three."""
         process = self.start(3, *with_checkpoints("2M"))

@@ -7,7 +7,7 @@ import subprocess
 import unittest
 
 from command import BAD_INPUT, COMMAND, FAILED, INTERRUPTED, VIEW
-from crew import ENVIRONMENT, CrewTest, solve, with_checkpoints
+from mpirun import ENVIRONMENT, RanksTest, solve, with_checkpoints
 
 SMALL_PICTURE = ("--size", "64x48", "--samples", "16")
 # Commands whose light all processes compute, by the name of their output.
@@ -27,7 +27,7 @@ OF_LIGHT = {
 }
 
 
-class Mpi(CrewTest):
+class Mpi(RanksTest):
     def test_any_number_of_processes_and_threads_gives_the_same_bytes(self):
         self.interflect(*solve("500k"), "-o", "alone.h5")
         for ranks, threads in ((1, 1), (2, 1), (1, 2), (3, 2)):

@@ -20,7 +20,7 @@ std::vector<IterationPlan> all_plans(Schedule& schedule) {
     std::vector<IterationPlan> plans;
     for (IterationPlan plan = schedule.next(0); plan.rays > 0; plan = schedule.next(0)) {
         plans.push_back(plan);
-        schedule.done(plan);
+        schedule.done({plan});
     }
     return plans;
 }
@@ -97,10 +97,9 @@ TEST(Schedule, EndsWithTheFinalIterationEvenIfLightRanOutBeforeTheRaysDid) {
     IterationPlan plan = schedule.next(0);
     for (; !plan.is_final; plan = schedule.next(0)) {
         ASSERT_GT(plan.rays, 0);
-        schedule.done(plan);
+        schedule.done({plan});
     }
-    plan.traced -= 2;
-    schedule.done(plan);
+    schedule.done({.plan = plan, .rays = plan.rays - 2});
     EXPECT_EQ(schedule.rays(), 998);
     EXPECT_EQ(schedule.next(0).rays, 0);
 }
@@ -127,10 +126,10 @@ TEST(Schedule, FitsTheNextIterationIntoTheTimeThatIsLeft) {
     schedule.record_start(1'000'000, 0);
     IterationPlan plan = schedule.next(1);
     EXPECT_EQ(plan.rays, 500'000) << "there is time enough";
-    schedule.done(plan);
+    schedule.done({plan});
     plan = schedule.next(9);
     EXPECT_EQ(plan.rays, 53'125) << "half a million took eight seconds, one is left, and a margin is kept";
-    schedule.done(plan);
+    schedule.done({plan});
     EXPECT_EQ(schedule.next(9.9).rays, 0) << "what fits into the rest is not worth an iteration";
     EXPECT_EQ(schedule.next(10).rays, 0);
     EXPECT_EQ(schedule.next(11).rays, 0);
@@ -157,7 +156,7 @@ TEST(Schedule, FindsOutHowFastItIsBeforeALongIterationUnderALimitOfTime) {
     EXPECT_EQ(schedule.start_rays(), 1 << 18);
     IterationPlan plan = schedule.next(1);
     EXPECT_EQ(plan.rays, 50'000);
-    schedule.done(plan);
+    schedule.done({plan});
     plan = schedule.next(2);
     EXPECT_EQ(plan.rays, 340'000) << "50,000 a second, 8 seconds, 0.85 of them";
 }

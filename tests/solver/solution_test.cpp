@@ -38,7 +38,8 @@ Scene distant_room() {
 
 Solution solved(const Scene& scene) {
     SolveOptions options{.method = find_method("ihsrr"), .views = {{into_the_room}}, .limits = {.rays = 300'000}};
-    options.views[0].view.eye += scene.origin, options.views[0].view.look_at += scene.origin;
+    options.views[0].view.eye += scene.origin;
+    options.views[0].view.look_at += scene.origin;
     return solve(scene, RayCaster(scene), options);
 }
 

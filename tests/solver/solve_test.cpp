@@ -191,7 +191,10 @@ TEST(Solve, IsAsBeforeTheIterationThatWasCutShort) {
             std::jthread timer;
             const auto stop_soon = [&](const Progress& progress) {
                 if (progress.iteration->iteration == 1)
-                    timer = std::jthread([&] { std::this_thread::sleep_for(30ms), stop = true; });
+                    timer = std::jthread([&] {
+                        std::this_thread::sleep_for(30ms);
+                        stop = true;
+                    });
             };
             const Solution cut_short = solve(scene, options, {stop_soon, &stop});
             EXPECT_TRUE(cut_short.interrupted) << name;

@@ -131,8 +131,8 @@ std::vector<std::filesystem::path> write(const std::filesystem::path& path, cons
     const auto export_light = [&] { return export_solution(path, solved.scene, solved.solution, options); };
     if (!traces_rays(path, options)) return export_light();
     std::vector<std::filesystem::path> written;
-    CrewLight crew_light(solved.scene, &solved.solution);
-    with_path_progress(crew_light, [&](const Monitor& monitor) {
+    SharedLight shared_light(solved.scene, &solved.solution);
+    with_path_progress(shared_light, [&](const Monitor& monitor) {
         options.monitor = monitor;
         options.monitor.on_progress = [&](const Progress& progress) {
             stop_on_signal();

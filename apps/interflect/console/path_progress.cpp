@@ -23,8 +23,8 @@ double with_path_progress(const std::function<void(const Monitor&)>& work) {
     return seconds();
 }
 
-double with_path_progress(CrewLight& crew_light, const std::function<void(const Monitor&)>& work) {
-    return with_path_progress([&](const Monitor& monitor) { crew_light.share(monitor, work); });
+double with_path_progress(SharedLight& shared_light, const std::function<void(const Monitor&)>& work) {
+    return with_path_progress([&](const Monitor& monitor) { shared_light.share(monitor, work); });
 }
 
 }  // namespace interflect::command

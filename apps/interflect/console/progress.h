@@ -1,10 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
-
-#include "interflect/solve.h"
 
 namespace interflect::command {
 

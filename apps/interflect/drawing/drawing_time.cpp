@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "apps/interflect/processes/crew_light.h"
+#include "apps/interflect/processes/shared_light.h"
 #include "apps/interflect/processes/signals.h"
 
 namespace interflect::command {
@@ -59,12 +59,12 @@ int DrawingTime::samples_within(double seconds, int most) const {
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, bool filters) {
     constexpr double shortest = 1e-9;  // [s]; ends after least_samples
-    CrewLight crew_light(scene, &solution);
-    const double sending = seconds_of([&] { crew_light.start(); });
+    SharedLight shared_light(scene, &solution);
+    const double sending = seconds_of([&] { shared_light.start(); });
     Rendering traced;
     const auto seconds_to_draw = [&](const PictureOptions& picture) {
         return seconds_of([&] {
-            crew_light.share({{}, &stop_flag()}, [&](const Monitor& monitor) {
+            shared_light.share({{}, &stop_flag()}, [&](const Monitor& monitor) {
                 traced = render(scene, solution, ray_caster, view, picture, monitor);
             });
         });

@@ -135,8 +135,8 @@ Rendering run_path_tracer(const Scene& scene, const Solution* solution, const Ra
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
     Rendering traced;
     stop_on_signal();
-    CrewLight crew_light(scene, solution);
-    const double seconds = with_path_progress(crew_light, [&](const Monitor& monitor) {
+    SharedLight shared_light(scene, solution);
+    const double seconds = with_path_progress(shared_light, [&](const Monitor& monitor) {
         traced = solution ? render(scene, *solution, ray_caster, view, options, monitor)
                           : render(scene, ray_caster, view, options, monitor);
     });

@@ -24,7 +24,10 @@ void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
                     const std::function<bool(std::size_t)>& is_meant) {
     std::size_t count = 0, first = 0;
     for (std::size_t i = points.size(); i-- > 0;)
-        if (is_meant(i)) ++count, first = i;
+        if (is_meant(i)) {
+            ++count;
+            first = i;
+        }
     if (count == 0) return;
     const Imath::V3d& x = points[first].position;
     spdlog::warn("{} of {} measuring points {}, such as ({:.6g}, {:.6g}, {:.6g}); measure at another height or place",
@@ -35,7 +38,7 @@ void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
 constexpr std::size_t max_compared = 256, min_of_grid = 8;
 
 /// Traces paths at evenly spread points of each grid, with the gathering's number of samples.
-void compare_with_paths(CrewLight& crew_light, const Scene& scene, const RayCaster& ray_caster,
+void compare_with_paths(SharedLight& shared_light, const Scene& scene, const RayCaster& ray_caster,
                         const std::vector<MeasuringPoint>& points, const std::vector<MeasuredIrradiance>& measured,
                         MeasuringOptions options, std::vector<MeasuredGrid>& grids) {
     options.shading = Shading::path;
@@ -54,7 +57,7 @@ void compare_with_paths(CrewLight& crew_light, const Scene& scene, const RayCast
         first += size;
     }
     std::vector<MeasuredIrradiance> traced;
-    with_path_progress(crew_light, [&](const Monitor& monitor) {
+    with_path_progress(shared_light, [&](const Monitor& monitor) {
         traced = measure_irradiance(scene, nullptr, ray_caster, compared, options, monitor);
     });
     std::span<const MeasuredIrradiance> gathered = measured, rest = traced;
@@ -87,9 +90,9 @@ void warn_of_misplaced_points(const Scene& scene, const RayCaster& ray_caster, s
 std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                         std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
                                         const MeasuringOptions& options) {
-    CrewLight crew_light(scene, solution);
+    SharedLight shared_light(scene, solution);
     std::vector<MeasuredIrradiance> measured;
-    with_path_progress(crew_light, [&](const Monitor& monitor) {
+    with_path_progress(shared_light, [&](const Monitor& monitor) {
         measured = measure_irradiance(scene, solution, ray_caster, points, options, monitor);
     });
     warn_of_misplaced_points(scene, ray_caster, points, measured);
@@ -97,7 +100,7 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
     result.reserve(grids.size());
     for (MeasuringGrid& grid : grids) result.push_back({std::move(grid), {}, 0, {}});
     if (solution && !result.empty())
-        compare_with_paths(crew_light, scene, ray_caster, points, measured, options, result);
+        compare_with_paths(shared_light, scene, ray_caster, points, measured, options, result);
     std::size_t next = 0, lost = 0;
     for (MeasuredGrid& of_grid : result) {
         MeasuringGrid& grid = of_grid.grid;

@@ -155,8 +155,8 @@ std::vector<RatedGrid> rate_places(const Scene& scene, const Solution* solution,
     }
     warn_of_misplaced_points(scene, ray_caster, eyes, {});
     std::vector<GlareRating> ratings;
-    CrewLight crew_light(scene, solution);
-    with_path_progress(crew_light, [&](const Monitor& monitor) {
+    SharedLight shared_light(scene, solution);
+    with_path_progress(shared_light, [&](const Monitor& monitor) {
         ratings = rate_glare(scene, solution, ray_caster, observers, options, monitor);
     });
     std::size_t next = 0, lost = 0;

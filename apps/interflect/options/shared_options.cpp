@@ -89,7 +89,8 @@ void SceneOptions::add_daylight_to(CLI::App& app) {
     const auto set_sky = [this](const std::string& text) {
         try {
             const Sky sky = parse_sky(text);
-            daylight.cie_sky = sky.cie, daylight.perez_sky = sky.perez;
+            daylight.cie_sky = sky.cie;
+            daylight.perez_sky = sky.perez;
         } catch (const std::invalid_argument& e) {
             throw CLI::ValidationError("--sky", e.what());
         }

@@ -105,8 +105,14 @@ class CellValues {
             float sum = 0, count = 0;
             for (std::size_t r = row - std::min<std::size_t>(row, 1); r < std::min(rows_, row + 2); ++r)
                 for (std::size_t c = column - std::min<std::size_t>(column, 1); c < std::min(columns_, column + 2); ++c)
-                    if (known[r * columns_ + c]) sum += values[r * columns_ + c], ++count;
-            if (count > 0) values_[cell] = sum / count, is_known_[cell] = true;
+                    if (known[r * columns_ + c]) {
+                        sum += values[r * columns_ + c];
+                        ++count;
+                    }
+            if (count > 0) {
+                values_[cell] = sum / count;
+                is_known_[cell] = true;
+            }
         }
     }
     /// Returns the index of the cell at a position, at most half a cell outside of the grid.

@@ -12,7 +12,7 @@
 
 #include "apps/interflect/console/progress.h"
 #include "apps/interflect/leaks/leaks.h"
-#include "apps/interflect/processes/crew.h"
+#include "apps/interflect/processes/shared_run.h"
 #include "apps/interflect/processes/signals.h"
 #include "apps/interflect/values/percent.h"
 #include "interflect/base/memory/machine_memory.h"
@@ -138,7 +138,7 @@ Solution run_to_end(Solver solver, Checkpoints checkpoints, const EarlyLight& ea
         if (!checkpoints.file.empty()) limits.time = checkpoints.every;
         Limits first = limits;
         if (early_light.use) first.time = std::min(first.time, early_light.after);
-        CrewRun run(solver, checkpoints.file);
+        SharedRun run(solver, checkpoints.file);
         AdvanceReport report = run.advance(first, monitor);
         if (early_light.use && !report.is_finished && !report.is_stopped)
             if (const std::optional<Limits> plan = early_light.use(solver.solution())) run.set_plan(*plan);

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "interflect/scene/core/limits.h"
-#include "interflect/solve.h"
+#include "interflect/solve_options.h"
 
 namespace interflect::command {
 

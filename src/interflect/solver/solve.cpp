@@ -77,17 +77,18 @@ void iterate_until(Run& run, const Limits& call_limits) {
     run.is_finished = false;
     while (!(run.error <= target_error) && state.schedule.rays() < requested_rays) {
         if (has_advanced && state.seconds_of_this_call() >= call_limits.time) return;
-        IterationPlan plan = plan_or_extend(run, requested_rays);
+        const IterationPlan plan = plan_or_extend(run, requested_rays);
         run.is_finished = plan.rays == 0;
         if (run.is_finished) return;
         if (state.stop.is_due()) throw Interrupted();
+        TracedIteration iteration{plan};
         run_or_restore(run, [&] {
-            method.update_importance(state, plan);                // Eq. 7, 8
-            const Estimate estimate = method.trace(state, plan);  // Eq. 1; rays by Eq. 3, 9 to 11, mesh by Eq. 14, 15
-            method.merge(state, estimate, plan);                  // Eq. 6
-            method.refine(state);                                 // by variance
+            method.update_importance(state, iteration);                // Eq. 7, 8
+            const Estimate estimate = method.trace(state, iteration);  // Eq. 1; rays: Eq. 3, 9-11, mesh: Eq. 14, 15
+            method.merge(state, estimate, iteration);                  // Eq. 6
+            method.refine(state);                                      // by variance
         });
-        state.schedule.done(plan);
+        state.schedule.done(iteration);
         append_report(state, ++run.iteration);
         run.error = state.solution.iterations.back().error_estimate;
         has_advanced = true;

@@ -81,7 +81,7 @@ class Statistics(CommandTest):
                 list(line),
                 ["iteration", "seconds", "rays", "power_rays", "importance_rays", "escaped_rays", "elements", "leaves"]
                 + ["total_power", "escaped_power", "error_estimate", "noise_estimate", "discretisation_estimate"]
-                + ["largest_quantum", "high_quantum", "discarded_hits"],
+                + ["largest_payload", "high_payload", "discarded_hits"],
             )
             self.assertEqual(line["power_rays"] + line["importance_rays"], line["rays"])
             self.assertEqual(line["escaped_power"], [0, 0, 0])  # closed room

@@ -146,6 +146,17 @@ TEST(SolveReport, HasNullForErrorsThatAreNotKnown) {
     EXPECT_EQ(report_of(json).noise_estimate, std::numeric_limits<double>::infinity());
 }
 
+TEST(SolveReport, ReadsPayloadsUnderTheirFormerNames) {
+    Json json = json_of(IterationReport{.largest_payload = 2.5, .high_payload = 1.5});
+    json["largest_quantum"] = json.at("largest_payload");
+    json["high_quantum"] = json.at("high_payload");
+    json.erase("largest_payload"), json.erase("high_payload");
+    const IterationReport read = report_of(json);
+    EXPECT_EQ(read.largest_payload, 2.5);
+    EXPECT_EQ(read.high_payload, 1.5);
+    EXPECT_EQ(with_present_columns({"rays", "high_quantum"}), (std::vector<std::string>{"rays", "high_payload"}));
+}
+
 TEST(SolveReport, ReadsOptionsUnderTheirFormerNames) {
     Json json = json_of(unusual_options());
     for (const char* name : {"time", "refinement_criterion", "one_bounce", "separate_iterations",

@@ -10,7 +10,7 @@
 #include "interflect/measure.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
-#include "interflect/render/light_help.h"
+#include "interflect/render/shared_light.h"
 #include "interflect/render/sharing/light_order.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes/scenes.h"
@@ -58,9 +58,9 @@ const Lit& lit() {
 /// Calls work(monitor) in rank 0, with which the others help.
 void with_helpers(int count, const std::function<void(const Monitor&)>& work, const std::atomic<bool>* stop = nullptr) {
     ThreadRanks(count).run([&](Ranks& ranks) {
-        if (ranks.rank() != 0) return help_with_light(lit().scene, &lit().solution, lit().ray_caster, ranks);
+        if (ranks.rank() != 0) return share_light(lit().scene, &lit().solution, lit().ray_caster, ranks);
         work({.on_progress = {}, .stop = stop, .ranks = &ranks});
-        end_light_help(&ranks);
+        end_shared_light(&ranks);
     });
 }
 
@@ -165,11 +165,11 @@ TEST(SharedPicture, OfALightGroupHasTheBitsOfOneProcess) {
     with_helpers(2, [&](const Monitor& monitor) {
         give_order(monitor.ranks, {.kind = LightOrder::Kind::group, .group = 0});
         expect_equal(drawn(monitor), alone);
-        end_light_help(monitor.ranks);
+        end_shared_light(monitor.ranks);
     });
 }
 
-/// The helpers wait for the next order afterwards.
+/// The other ranks wait for the next order afterwards.
 TEST(SharedPicture, OfAStoppedFirstRankEnds) {
     const std::atomic<bool> stop{true};
     const auto draw_and_measure = [&](const Monitor& monitor) {

@@ -52,7 +52,11 @@ class Convergence : public testing::Test {
         for (std::int64_t rays = 50'000; rays <= 3'200'000; rays *= 4) {
             const double log_rays = std::log(static_cast<double>(rays));
             const double log_error = std::log(errors_with(points, rays).error);
-            n += 1, x += log_rays, y += log_error, xx += log_rays * log_rays, xy += log_rays * log_error;
+            n += 1;
+            x += log_rays;
+            y += log_error;
+            xx += log_rays * log_rays;
+            xy += log_rays * log_error;
         }
         return (n * xy - x * y) / (n * xx - x * x);
     }

@@ -31,8 +31,10 @@ struct Walls {
     }
     double area_mean(const std::vector<float>& values) const {
         double sum = 0, area = 0;
-        for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
-            sum += static_cast<double>(values[p]) * forest.area(p), area += forest.area(p);
+        for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+            sum += static_cast<double>(values[p]) * forest.area(p);
+            area += forest.area(p);
+        }
         return sum / area;
     }
 };

@@ -63,9 +63,12 @@ std::string room(const Placement& place) {
     };
     const auto box = [&](const char* material, V3d low, V3d s) {
         const V3d x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
-        rectangle(material, low, y, x), rectangle(material, low + z, x, y);
-        rectangle(material, low, x, z), rectangle(material, low + y, z, x);
-        rectangle(material, low, z, y), rectangle(material, low + x, y, z);
+        rectangle(material, low, y, x);
+        rectangle(material, low + z, x, y);
+        rectangle(material, low, x, z);
+        rectangle(material, low + y, z, x);
+        rectangle(material, low, z, y);
+        rectangle(material, low + x, y, z);
     };
     box("paint", {0, 0, 0}, {4, 3, 2.5});
     box("wood", {0.5, 0.6, 0}, {0.8, 0.5, 0.9});

@@ -102,7 +102,8 @@ class Unseen : public testing::Test {
             for (std::size_t i = 0; i < values.size(); ++i) {
                 if (!unseen_[i]) continue;
                 const double error = std::abs(values[i] / reference_[i] - 1);
-                e.root_mean_square += error * error, ++terms;
+                e.root_mean_square += error * error;
+                ++terms;
                 e.largest = std::max(e.largest, error);
             }
         }

@@ -64,7 +64,8 @@ TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
         }
     double sum = 0, expected = 0, squares = 0;
     for (std::size_t i = 0; i < mine.size(); ++i) {
-        sum += mine[i], expected += reference[i];
+        sum += mine[i];
+        expected += reference[i];
         squares += std::pow(mine[i] / reference[i] - 1, 2) / static_cast<double>(mine.size());
     }
     EXPECT_NEAR(sum / expected, 1, 0.01);

@@ -78,12 +78,17 @@ void expect_directions(const PhotometricWeb& web) {
     double rest_expected = 0, rest_observed = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         if (expected[i] < 20) {
-            rest_expected += expected[i], rest_observed += observed[i];
+            rest_expected += expected[i];
+            rest_observed += observed[i];
             continue;
         }
-        some_expected.push_back(expected[i]), some_observed.push_back(observed[i]);
+        some_expected.push_back(expected[i]);
+        some_observed.push_back(observed[i]);
     }
-    if (rest_expected > 20) some_expected.push_back(rest_expected), some_observed.push_back(rest_observed);
+    if (rest_expected > 20) {
+        some_expected.push_back(rest_expected);
+        some_observed.push_back(rest_observed);
+    }
     EXPECT_GT(chi_square_test(some_observed, some_expected), false_alarm);
 }
 
@@ -136,7 +141,9 @@ std::vector<SurfacePoint> surface_of(const LuminousOpening& o) {
                 for (const double side : {-1.0, 1.0}) {
                     const auto [i, j] = axes(k);
                     V3d x, normal(0);
-                    x[k] = side * half[k], x[i] = (2 * u - 1) * half[i], x[j] = (2 * v - 1) * half[j];
+                    x[k] = side * half[k];
+                    x[i] = (2 * u - 1) * half[i];
+                    x[j] = (2 * v - 1) * half[j];
                     normal[k] = side * 4 * half[i] * half[j] / (n * n);
                     add(x, normal);
                 }
@@ -146,13 +153,18 @@ std::vector<SurfacePoint> surface_of(const LuminousOpening& o) {
                 const double t = 2 * pi * u, r = std::sqrt(v);
                 for (const double side : {-1.0, 1.0}) {
                     V3d x, normal(0);
-                    x[k] = side * half[k], x[i] = r * std::cos(t) * half[i], x[j] = r * std::sin(t) * half[j];
+                    x[k] = side * half[k];
+                    x[i] = r * std::cos(t) * half[i];
+                    x[j] = r * std::sin(t) * half[j];
                     normal[k] = side * pi * half[i] * half[j] / (n * n);
                     add(x, normal);
                 }
                 V3d x, normal(0);
-                x[k] = (2 * v - 1) * half[k], x[i] = std::cos(t) * half[i], x[j] = std::sin(t) * half[j];
-                normal[i] = half[j] * std::cos(t), normal[j] = half[i] * std::sin(t);
+                x[k] = (2 * v - 1) * half[k];
+                x[i] = std::cos(t) * half[i];
+                x[j] = std::sin(t) * half[j];
+                normal[i] = half[j] * std::cos(t);
+                normal[j] = half[i] * std::sin(t);
                 add(x, normal * (4 * pi * half[k] / (n * n)));
             }
             if (o.shape == Shape::ellipsoid) {

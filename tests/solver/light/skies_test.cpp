@@ -201,7 +201,8 @@ TEST(Daylight, IsTheSameToSolverAndPathTracer) {
         double sum = 0, squares = 0;
         for (int k = 0; k < places; ++k) {
             const double e = traced[i * places + static_cast<std::size_t>(k)].sum().x;
-            sum += e / places, squares += e * e / places;
+            sum += e / places;
+            squares += e * e / places;
         }
         const double error = std::sqrt((squares - sum * sum) / (places - 1));
         p_values.push_back(t_test(found[chosen[i]], sum, error));

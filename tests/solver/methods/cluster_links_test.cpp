@@ -47,7 +47,8 @@ class RandomTriangles {
             front.vertices = {vertex, vertex + 1, vertex + 2, none};
             back.vertices = {vertex, vertex + 2, vertex + 1, none};
             front.material = back.material = material;
-            front.other_side = patch + 1, back.other_side = patch;
+            front.other_side = patch + 1;
+            back.other_side = patch;
             scene.patches.push_back(front);
             scene.patches.push_back(back);
         }

@@ -332,8 +332,10 @@ void solve_with_links(const Scene& scene, const SolveOptions& options, std::size
     SolverState state(scene, ray_caster, options);
     LinkedElements elements(state, link_limit);
     elements.prepare(state);
-    for (IterationPlan plan = elements.plan(state); plan.rays > 0; plan = elements.plan(state))
-        elements.trace(state, plan);
+    for (IterationPlan plan = elements.plan(state); plan.rays > 0; plan = elements.plan(state)) {
+        TracedIteration iteration{plan};
+        elements.trace(state, iteration);
+    }
 }
 
 TEST(LinkRadiosity, NamesARemedyWhereThereAreTooManyLinks) {

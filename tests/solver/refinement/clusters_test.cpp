@@ -80,12 +80,12 @@ TEST(PatchClusters, ContainEveryPatchOnceInGroupsOfTwoToThirtyOne) {
         for (std::size_t i = 0; i < clusters.nodes().size(); ++i) {
             const PatchClusters::Node& node = clusters.nodes()[i];
             if (node.is_patch()) {
-                found.insert(node.count);
+                found.insert(node.patch);
                 continue;
             }
             EXPECT_GT(node.first_child, i) << "parents come first";
-            EXPECT_GE(node.count, 2u);
-            EXPECT_LE(node.count, PatchClusters::most_parts);
+            EXPECT_GE(node.child_count, 2u);
+            EXPECT_LE(node.child_count, PatchClusters::most_parts);
         }
         ASSERT_EQ(found.size(), 600u);
         EXPECT_EQ(std::set<std::uint32_t>(found.begin(), found.end()).size(), 600u);
@@ -99,9 +99,10 @@ TEST(PatchClusters, SeparateDirections) {
     for (const PatchClusters::Node& node : clusters.nodes()) {
         if (node.is_patch() || !clusters.nodes()[node.first_child].is_patch()) continue;
         std::set<int> walls;
-        for (std::uint32_t k = 0; k < node.count; ++k)
-            walls.insert(box.wall(clusters.nodes()[node.first_child + k].count));
-        ++all, mixed += walls.size() > 1;
+        for (std::uint32_t k = 0; k < node.child_count; ++k)
+            walls.insert(box.wall(clusters.nodes()[node.first_child + k].patch));
+        ++all;
+        mixed += walls.size() > 1;
     }
     EXPECT_LE(mixed, all / 4) << "of the smallest clusters";
 }
@@ -112,7 +113,8 @@ TEST(PatchClusters, AreTheSameInAnyUnitOfLength) {
         const auto a = metres.state.clusters[tree].nodes(), b = kilometres.state.clusters[tree].nodes();
         ASSERT_EQ(a.size(), b.size());
         for (std::size_t i = 0; i < a.size(); ++i)
-            ASSERT_EQ(a[i].count, b[i].count) << "tree " << tree << ", node " << i;
+            ASSERT_EQ(a[i].child_count, b[i].child_count) << "tree " << tree << ", node " << i;
+        ASSERT_EQ(a[i].patch, b[i].patch) << "tree " << tree << ", node " << i;
     }
 }
 

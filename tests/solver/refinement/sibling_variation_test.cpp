@@ -89,10 +89,11 @@ struct Setting {
     template <class Signal>
     void iterate(float rays, const std::vector<float>& factor, float variance, const Signal& signal) {
         const Estimate fresh = iteration(rays, factor, variance, signal);
-        const IterationPlan plan{.rays = static_cast<std::int64_t>(rays), .old_elements = state.forest->size()};
-        estimate_noise(state, fresh, plan.rays);
-        merge_independent(state, state.solution.irradiance, fresh.irradiance, plan);
-        update_history(state, plan);
+        const TracedIteration iteration{
+            {.rays = static_cast<std::int64_t>(rays), .old_elements = state.forest->size()}};
+        estimate_noise(state, fresh, iteration.weight);
+        merge_independent(state, state.solution.irradiance, fresh.irradiance, iteration);
+        update_history(state, iteration);
     }
 };
 
@@ -239,10 +240,10 @@ std::array<std::vector<double>, 4> lone_bright_siblings(float before, int merges
             }
             pull(*s.state.forest, fresh.irradiance);
             pull_variance(*s.state.forest, fresh.variance);
-            const IterationPlan plan{.rays = 100, .old_elements = s.state.forest->size()};
-            estimate_noise(s.state, fresh, plan.rays);
-            merge_one(s.state, mean, fresh.irradiance, plan);
-            update_history(s.state, plan);
+            const TracedIteration iteration{{.rays = 100, .old_elements = s.state.forest->size()}};
+            estimate_noise(s.state, fresh, iteration.weight);
+            merge_one(s.state, mean, fresh.irradiance, iteration);
+            update_history(s.state, iteration);
         }
         for (std::uint32_t k = 0; k < 4; ++k) found[k].push_back(mean[6 + k].x);
     }
@@ -270,7 +271,10 @@ TEST(MergeDetails, DoesNotSpreadTheNoiseOfABrightSiblingToDarkOnes) {
         1e6f, 100, [](const interflect::SolverState& state, auto&&... a) { merge_independent(state, a...); });
     for (std::size_t k = 0; k < 4; ++k) {
         double mean = 0, square = 0;
-        for (const double x : merged[k]) mean += x / 2000, square += x * x / 2000;
+        for (const double x : merged[k]) {
+            mean += x / 2000;
+            square += x * x / 2000;
+        }
         EXPECT_NEAR(mean, k == 0 ? 4 : 0, k == 0 ? 0.1 : 0.04) << k;
         if (k > 0) {
             EXPECT_LT(std::sqrt(square - mean * mean), 0.14) << k;
@@ -283,16 +287,18 @@ TEST(MergeDetails, DoesNotSpreadTheNoiseOfABrightSiblingToDarkOnes) {
 TEST(Shrinkage, LeavesADarkSiblingDark) {
     Setting s(1, 1);
     std::normal_distribution<float> normal(4, 0.4f);
-    const IterationPlan plan{.rays = 100, .old_elements = s.state.forest->size()};
+    const TracedIteration iteration{{.rays = 100, .old_elements = s.state.forest->size()}};
     for (int k = 0; k < 20; ++k) {
         Estimate fresh{std::vector<Rgb>(30, Rgb(0)), std::vector<float>(30, 0.0f)};
-        for (std::uint32_t first = 6; first < 30; first += 4)
-            fresh.irradiance[first] = Rgb(normal(s.random)), fresh.variance[first] = 0.16f;
+        for (std::uint32_t first = 6; first < 30; first += 4) {
+            fresh.irradiance[first] = Rgb(normal(s.random));
+            fresh.variance[first] = 0.16f;
+        }
         pull(*s.state.forest, fresh.irradiance);
         pull_variance(*s.state.forest, fresh.variance);
-        estimate_noise(s.state, fresh, plan.rays);
-        merge_independent(s.state, s.state.solution.irradiance, fresh.irradiance, plan);
-        update_history(s.state, plan);
+        estimate_noise(s.state, fresh, iteration.weight);
+        merge_independent(s.state, s.state.solution.irradiance, fresh.irradiance, iteration);
+        update_history(s.state, iteration);
     }
     finish_solution(s.state);
     for (std::uint32_t e = 6; e < 30; ++e)
@@ -301,17 +307,17 @@ TEST(Shrinkage, LeavesADarkSiblingDark) {
 
 TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
     constexpr std::uint32_t patches = 6;
-    const IterationPlan plan{.rays = 100, .old_elements = patches};
+    const TracedIteration iteration{{.rays = 100, .old_elements = patches}};
     for (const float trust : {0.0f, 0.1f, 1.0f}) {
         Setting s(1, 1);
         s.options.experimental.inherited_weight = trust;
         std::vector<Rgb>& mean = s.state.solution.irradiance;
         mean.assign(mean.size(), Rgb(1));
-        update_history(s.state, plan);  // after one iteration, which created the elements below the patches
+        update_history(s.state, iteration);  // after one iteration, which created the elements below the patches
         std::vector<Rgb> received(mean.size(), Rgb(4.0f / 3));
         for (std::uint32_t e = patches; e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
         pull(*s.state.forest, received);
-        merge(s.state, mean, received, plan);
+        merge(s.state, mean, received, iteration);
         EXPECT_NEAR(mean[0].x, 1, 1e-6) << "of light none is lost";
         const float missed = trust / (1 + trust), others = (trust + 4.0f / 3) / (1 + trust);
         EXPECT_NEAR(mean[patches].x, missed, 1e-5);

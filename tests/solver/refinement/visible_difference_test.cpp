@@ -101,7 +101,8 @@ TEST(VisibleDifference, AdaptsToASquareDegree) {
     const std::uint32_t leaf = s.divide(12, 4), parent = forest.parent(leaf);
     const std::uint32_t degree = forest.parent(forest.parent(parent));  // 118 pixels wide; its children 59
     const float before = s.threshold(leaf);
-    s.set(leaf, 0.1f), s.set(parent, 0.1f);
+    s.set(leaf, 0.1f);
+    s.set(parent, 0.1f);
     EXPECT_NEAR(s.threshold(leaf) / before, 1, 0.001f);
     s.set(degree, 0.1f);
     EXPECT_LT(s.threshold(leaf) / before, 0.5f);
@@ -174,7 +175,8 @@ TEST(VisibleDifference, OfOtherSurfacesIsThatOfASquareDegree) {
     const double contrast = 0.2 * cone_threshold(20) / 20, square_degree = 67.02 * 67.02 / (1280 * 720);
     EXPECT_NEAR(VisibleDifference(Setting().state).share_of_light(), contrast * square_degree, 1e-9);
     WeightedView small = view_of_patches(), large = view_of_patches();
-    small.pixel_rows = 360, large.weight = 8;
+    small.pixel_rows = 360;
+    large.weight = 8;
     const Setting two(cube(), perceptual({small, large}));
     EXPECT_NEAR(VisibleDifference(two.state).share_of_light(), contrast * square_degree * 8 / 9, 1e-9);
 }
@@ -188,9 +190,13 @@ TEST(PerceptualRefinement, SplitsVisibleDifferences) {
     s.state.history.assign(s.state.forest->size(), 1000);
     const auto differ = [&](std::uint32_t first, float signal) {
         const float difference = signal / std::sqrt(0.3f);  // falls to 0.3 of the square within the children
-        for (const std::uint32_t k : {0u, 1u}) s.set(first + k, 1 + difference), s.set(first + 2 + k, 1 - difference);
+        for (const std::uint32_t k : {0u, 1u}) {
+            s.set(first + k, 1 + difference);
+            s.set(first + 2 + k, 1 - difference);
+        }
     };
-    differ(clear, 1.3f * threshold), differ(faint, 0.8f * threshold);
+    differ(clear, 1.3f * threshold);
+    differ(faint, 0.8f * threshold);
     refine_by_variance(s.state);
     for (std::uint32_t k = 0; k < 4; ++k) {
         EXPECT_FALSE(s.state.forest->is_leaf(clear + k));

@@ -99,7 +99,10 @@ std::vector<Variant> extreme_variants() {
     add("beta_1", [](SolveOptions& o) { o.experimental.beta = 1; });
     add("inherited_trust_0", [](SolveOptions& o) { o.experimental.inherited_weight = 0; });
     add("inherited_trust_1", [](SolveOptions& o) { o.experimental.inherited_weight = 1; });
-    add("total_importance", [](SolveOptions& o) { o.experimental.total_importance = true, o.experimental.beta = 0; });
+    add("total_importance", [](SolveOptions& o) {
+        o.experimental.total_importance = true;
+        o.experimental.beta = 0;
+    });
     // Flat mesh: invisible patches have no importance, so they would receive as a whole.
     const auto direct = [](SolveOptions& o) { o.method.importance = ImportanceUse::direct; };
     add("direct_importance", direct, "isrr");

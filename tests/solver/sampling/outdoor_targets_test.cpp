@@ -120,7 +120,8 @@ TEST_P(SmallHole, LetsLightInWithoutBias) {
     double mean = 0, square = 0;
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
         found.push_back(power_on_floor(solve(scene, ray_caster, options(seed))) / expected);
-        mean += found.back() / runs, square += found.back() * found.back() / runs;
+        mean += found.back() / runs;
+        square += found.back() * found.back() / runs;
     }
     constexpr double integration_error = 2e-3;
     EXPECT_GT(t_test(found, 1, integration_error), false_alarm) << mean;
@@ -191,7 +192,8 @@ TEST(KeptRays, SumTheLightOfASmallHoleInAWideLandscape) {
         options.experimental.clusters = false;  // the errors of patches would depend on each other
         const Solution solution = solve(scene, ray_caster, options);
         found.push_back(power_on_floor(solution) / disc.expected());
-        mean += found.back() / runs, square += found.back() * found.back() / runs;
+        mean += found.back() / runs;
+        square += found.back() * found.back() / runs;
         for (std::uint32_t i = 0; i < 20; ++i)
             reported += std::pow(solution.standard_error[i] * solution.forest->area(i) / disc.expected(), 2) / runs;
     }

@@ -135,7 +135,8 @@ double uniformity(const Polygon& polygon, const std::vector<V2d>& points) {
             }
         }
     if (expected[0] < fewest) {
-        observed.back() += observed[0], expected.back() += expected[0];
+        observed.back() += observed[0];
+        expected.back() += expected[0];
         observed.erase(observed.begin()), expected.erase(expected.begin());
     }
     return chi_square_test(observed, expected);
@@ -210,7 +211,9 @@ TEST_P(ShotRays, HaveDirectionsThatDoNotDependOnTheOrigin) {
     std::vector<double> observed(octants * octants, 0.0), from(octants, 0.0), to(octants, 0.0), expected;
     for (const Ray& ray : rays_of(GetParam(), PointSet::random)) {
         const std::size_t a = octant(V3d(ray.origin - centre)), b = octant(V3d(ray.direction));
-        ++observed[a * octants + b], ++from[a], ++to[b];
+        ++observed[a * octants + b];
+        ++from[a];
+        ++to[b];
     }
     for (const double a : from)
         for (const double b : to) expected.push_back(a * b / ray_count);

@@ -214,7 +214,10 @@ TEST(Transport, FindsTheImportanceOfASourceByTheRaysThatLeaveIt) {
     const std::vector<float> found = room.receive(streams, step).importance;
     EXPECT_NEAR(found[7], 0.5, 0.03) << "two thirds of the rays leave it, a few arrive";
     float least = 1, most = 0;
-    for (std::size_t i = 8; i < found.size(); ++i) least = std::min(least, found[i]), most = std::max(most, found[i]);
+    for (std::size_t i = 8; i < found.size(); ++i) {
+        least = std::min(least, found[i]);
+        most = std::max(most, found[i]);
+    }
     EXPECT_LT(least, 0.3) << "one ray leaves it, or none: known from what arrives alone";
     EXPECT_GT(most, 0.7);
 }

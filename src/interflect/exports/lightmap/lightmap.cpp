@@ -19,10 +19,10 @@
 #include "interflect/geometry/search/box_tree.h"
 #include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/measure.h"
-#include "interflect/render/light_help.h"
 #include "interflect/render/pictures/path_picture.h"
 #include "interflect/render/pictures/pixel_statistics.h"
 #include "interflect/render/rays/gauge.h"
+#include "interflect/render/shared_light.h"
 #include "interflect/render/sharing/light_order.h"
 #include "interflect/scene.h"
 
@@ -243,10 +243,10 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
             texels.evaluate(group.scene, BakedLight(group.scene, group.solution, options.bake, texel_sampling),
                             monitor_section(options.monitor, fraction(g), fraction(g + 1)), lightmap.groups.back());
         } catch (const Stopped&) {
-            end_light_help(ranks);
+            end_shared_light(ranks);
             throw;
         }
-        end_light_help(ranks);
+        end_shared_light(ranks);
     }
     for (const std::vector<Image>& images : lightmap.groups) add(images, lightmap.images);
 }

@@ -81,7 +81,8 @@ void read_scene(const Json& json, int format_version, Scene& scene) {
 
 void read_result(const Json& json, int format_version, Solution& solution) {
     IterationReport& last = solution.iterations.emplace_back();
-    if (format_version >= first_with_history && json.at("history").get<std::vector<std::string>>() != report_columns())
+    if (format_version >= first_with_history &&
+        with_present_columns(json.at("history").get<std::vector<std::string>>()) != report_columns())
         throw std::runtime_error("it has other columns of its history than expected");
     if (format_version >= first_with_options) {
         read_options(json.at("options"), solution.options);

@@ -185,6 +185,10 @@ Json with_present_names(Json json) {
     return json;
 }
 
+/// Former and present names of numbers of an iteration.
+constexpr std::array<std::pair<const char*, const char*>, 2> renamed_numbers{
+    {{"largest_quantum", "largest_payload"}, {"high_quantum", "high_payload"}}};
+
 template <class Report, class Access>
 void for_each_number(Report& r, const Access& access) {
     access.field("iteration", r.iteration);
@@ -199,8 +203,8 @@ void for_each_number(Report& r, const Access& access) {
     access.field_or_null("error_estimate", r.error_estimate, infinity);
     access.field_or_null("noise_estimate", r.noise_estimate, infinity);
     access.field_or_null("discretisation_estimate", r.discretisation_estimate, infinity);
-    access.field("largest_quantum", r.largest_payload);
-    access.field("high_quantum", r.high_payload);
+    access.field("largest_payload", r.largest_payload);
+    access.field("high_payload", r.high_payload);
 }
 
 }  // namespace
@@ -234,7 +238,10 @@ Json json_of(const IterationReport& report) {
     return json;
 }
 
-IterationReport report_of(const Json& json) {
+IterationReport report_of(const Json& stored) {
+    Json json = stored;
+    for (const auto& [former, present] : renamed_numbers)
+        if (json.contains(former)) json[present] = json.at(former);
     IterationReport report;
     for_each_number(report, Reader{json});
     if (json.contains("discarded_hits"))
@@ -248,6 +255,12 @@ std::vector<std::string> report_columns() {
     const IterationReport report;
     for_each_number(report, RowWriter{names, row});
     return names;
+}
+
+std::vector<std::string> with_present_columns(std::vector<std::string> columns) {
+    for (const auto& [former, present] : renamed_numbers)
+        std::replace(columns.begin(), columns.end(), std::string(former), std::string(present));
+    return columns;
 }
 
 std::vector<double> report_row(const IterationReport& report) {

@@ -20,11 +20,13 @@ void read_options(const Json& stored, SolveOptions& options, bool may_be_negativ
 /// Omits the duration, so equal input gives equal text. Unknown errors are null.
 Json json_of(const IterationReport& report);
 
-/// Inverse of json_of(). @throws Json::exception
-IterationReport report_of(const Json& json);
+/// Inverse of json_of(), also for former names of numbers. @throws Json::exception
+IterationReport report_of(const Json& stored);
 
 /// Return unknown errors as infinity.
 std::vector<std::string> report_columns();
+/// Replaces former names of columns.
+std::vector<std::string> with_present_columns(std::vector<std::string> columns);
 std::vector<double> report_row(const IterationReport& report);
 /// Inverse of report_row(). @throws std::runtime_error for impossible numbers.
 IterationReport report_of_row(std::span<const double> row);

@@ -9,15 +9,15 @@
 
 namespace interflect::detail {
 
-/// A call of rank 0 for light of the common scene and solution, which the other ranks repeat in help_with_light().
+/// A call of rank 0 for light of the common scene and solution, which the other ranks repeat in share_light().
 struct LightOrder {
     enum class Kind {
         picture,          ///< trace_picture()
         instant_picture,  ///< trace_instant_picture()
         gauges,           ///< hybrid_irradiance()
         direct_gauges,    ///< direct_irradiance()
-        group,            ///< help_with_light() with light_of_group().
-        end,              ///< Ends help_with_light().
+        group,            ///< share_light() with light_of_group().
+        end,              ///< Ends share_light().
     };
     Kind kind = Kind::end;
     PictureOptions options{};      ///< Options of the paths.

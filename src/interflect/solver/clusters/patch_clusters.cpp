@@ -84,8 +84,10 @@ std::vector<Placed> places(const ElementForest& forest, std::span<const std::uin
 void halve(Range patches) {
     Place low = patches.front().place, high = low;
     for (const Placed& p : patches)
-        for (std::size_t i = 0; i < low.size(); ++i)
-            low[i] = std::min(low[i], p.place[i]), high[i] = std::max(high[i], p.place[i]);
+        for (std::size_t i = 0; i < low.size(); ++i) {
+            low[i] = std::min(low[i], p.place[i]);
+            high[i] = std::max(high[i], p.place[i]);
+        }
     std::size_t axis = 0;
     for (std::size_t i = 1; i < low.size(); ++i)
         if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
@@ -112,7 +114,7 @@ PatchClusters::PatchClusters(const ElementForest& forest, std::span<const std::u
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const Range range = ranges[i];
         if (range.size() == 1) {
-            nodes_.push_back({none, range.front().patch});
+            nodes_.push_back({none, 0, range.front().patch});
             continue;
         }
         const std::size_t before = ranges.size();
@@ -120,7 +122,8 @@ PatchClusters::PatchClusters(const ElementForest& forest, std::span<const std::u
             for (std::size_t k = 0; k < range.size(); ++k) ranges.push_back(range.subspan(k, 1));
         else
             divide(range, range.size() < 2 * std::size_t{most_parts + 1} ? 2 : 3, ranges);
-        nodes_.push_back({static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(ranges.size() - before)});
+        nodes_.push_back(
+            {static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(ranges.size() - before), none});
     }
 }
 

@@ -18,10 +18,11 @@ class PatchClusters {
     static constexpr std::uint32_t most_parts = 31;
 
     struct Node {
-        std::uint32_t first_child;  ///< `none`: the node is a patch.
-        std::uint32_t count;        ///< Children; of a patch, its index.
+        std::uint32_t first_child;  ///< none for a patch.
+        std::uint32_t child_count;  ///< 0 for a patch.
+        std::uint32_t patch;        ///< none for a cluster.
 
-        bool is_patch() const { return first_child == none; }
+        bool is_patch() const { return patch != none; }
     };
 
     /// @param patches  To be divided.
@@ -42,9 +43,9 @@ class PatchClusters {
         for (std::size_t i = nodes_.size(); i-- > 0;) {
             const Node& node = nodes_[i];
             if (node.is_patch())
-                sums[i] = T(of_patch(node.count));
+                sums[i] = T(of_patch(node.patch));
             else
-                for (std::uint32_t k = 0; k < node.count; ++k) sums[i] += sums[node.first_child + k];
+                for (std::uint32_t k = 0; k < node.child_count; ++k) sums[i] += sums[node.first_child + k];
         }
         return sums;
     }

@@ -7,8 +7,6 @@
 
 #include "interflect/base/memory/stable_array.h"
 #include "interflect/base/numbers/fixed_point.h"
-#include "interflect/solver/light/materials.h"
-#include "interflect/solver/light/radiosity.h"
 
 namespace interflect::detail {
 

@@ -16,7 +16,11 @@ struct alignas(64) RayPairs {
     using Numbers = std::array<std::uint32_t, lanes>;
     struct Vectors {
         Floats x, y, z;
-        void set(std::size_t i, const V3f& vector) { x[i] = vector.x, y[i] = vector.y, z[i] = vector.z; }
+        void set(std::size_t i, const V3f& vector) {
+            x[i] = vector.x;
+            y[i] = vector.y;
+            z[i] = vector.z;
+        }
         V3f operator[](std::size_t i) const { return {x.data()[i], y.data()[i], z.data()[i]}; }
     };
 

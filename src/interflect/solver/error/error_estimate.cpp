@@ -27,8 +27,11 @@ struct ErrorSums {
     double assumed_bias = 0;  // of undivided patches
 
     ErrorSums& operator+=(const ErrorSums& o) {
-        weight += o.weight, noise += o.noise, bias += o.bias;
-        noise_of_patches += o.noise_of_patches, bias_of_patches += o.bias_of_patches;
+        weight += o.weight;
+        noise += o.noise;
+        bias += o.bias;
+        noise_of_patches += o.noise_of_patches;
+        bias_of_patches += o.bias_of_patches;
         assumed_bias += o.assumed_bias;
         return *this;
     }
@@ -89,8 +92,10 @@ void set_errors_of_clusters(const SolverState& state, ErrorMeasure measure, Elem
     ClusterShrinkage(state, clusters, state.solution.irradiance).measure_errors(of_patches, [&](std::size_t node) {
         return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(pixels[node]);
     });
-    for (std::size_t p = 0; p < of_patches.size(); ++p)
-        errors.noise[p] = of_patches[p].noise, errors.bias[p] = of_patches[p].bias;
+    for (std::size_t p = 0; p < of_patches.size(); ++p) {
+        errors.noise[p] = of_patches[p].noise;
+        errors.bias[p] = of_patches[p].bias;
+    }
 }
 
 void set_errors_of_patches(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {

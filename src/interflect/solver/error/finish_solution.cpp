@@ -79,7 +79,8 @@ void finish_solution(SolverState& state) {
             float area = 0;
             for (std::uint32_t k = 0; k < 4; ++k) {
                 difference[k] = shrinkage.kept[k] * (irradiance[first + k] - irradiance[parent]);
-                sum += forest.area(first + k) * difference[k], area += forest.area(first + k);
+                sum += forest.area(first + k) * difference[k];
+                area += forest.area(first + k);
             }
             for (std::uint32_t k = 0; k < 4; ++k) difference[k] -= shrinkage.noise[k] * sum / area;
             return difference;

@@ -60,7 +60,8 @@ std::array<float, finer_levels> shown_within(const SolverState& state, ErrorMeas
     if (measure == ErrorMeasure::surfaces) return shares;
     Extents extents = extents_in_pixels(state, leaf);
     for (float& of_level : shares) {
-        extents.u /= 2, extents.v /= 2;
+        extents.u /= 2;
+        extents.v /= 2;
         of_level = (shown_of_pairs(extents.u) + shown_of_pairs(extents.v)) / 2;
     }
     return shares;

@@ -27,7 +27,8 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
     std::vector<double> power(boxes.size(), 0.0);
     for (std::size_t i = 0; i < found.size(); ++i) {
         PartImportance& all = boxes[emission.box(i)].all;
-        all.found += found[i].found, all.rays += found[i].rays;
+        all.found += found[i].found;
+        all.rays += found[i].rays;
         power[emission.box(i)] += channel_sum(emission.power(i));
     }
     if (boxes.size() == 1) return boxes;
@@ -53,7 +54,10 @@ void weigh_parts(const Emission& emission, const std::vector<PartImportance>& fo
     for (std::size_t begin = 0; begin < found.size(); begin += alike) {
         const BoxImportance& box = boxes[emission.box(begin)];
         PartImportance group{rays_of_mean * box.mean(), rays_of_mean};
-        for (std::size_t i = begin; i < begin + alike; ++i) group.found += found[i].found, group.rays += found[i].rays;
+        for (std::size_t i = begin; i < begin + alike; ++i) {
+            group.found += found[i].found;
+            group.rays += found[i].rays;
+        }
         const double mean = group.found / group.rays;
         for (std::size_t i = begin; i < begin + alike; ++i) {
             const double own = (found[i].found + rays_of_mean * mean) / (found[i].rays + rays_of_mean);

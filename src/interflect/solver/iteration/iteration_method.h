@@ -20,10 +20,10 @@ class IterationMethod {
     /// Returns 0 rays if the run is over.
     virtual IterationPlan plan(SolverState& state);
     /// With rays that carry importance alone (Eq. 7, 8). @throws Interrupted
-    virtual void update_importance(SolverState&, IterationPlan&) {}
-    /// @param plan  Receives the number of rays. @throws Interrupted
-    virtual Estimate trace(SolverState& state, IterationPlan& plan) = 0;
-    virtual void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) = 0;
+    virtual void update_importance(SolverState&, TracedIteration&) {}
+    /// @param iteration  Receives the number of rays, as in update_importance(). @throws Interrupted
+    virtual Estimate trace(SolverState& state, TracedIteration& iteration) = 0;
+    virtual void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) = 0;
     /// Between iterations; Eq. 14 and 15 refine during trace().
     virtual void refine(SolverState&) {}
     virtual void discard() {}

@@ -36,11 +36,11 @@ struct Earlier {
 
 template <class T>
 void merge_into(const SolverState& state, std::vector<T>& mean, const std::vector<T>& received,
-                const IterationPlan& plan, const Earlier& earlier = {}) {
+                const TracedIteration& iteration, const Earlier& earlier = {}) {
     const ElementForest& forest = *state.forest;
-    const auto rays = static_cast<float>(plan.rays);
+    const auto rays = static_cast<float>(iteration.weight);
     const auto merge_one = [&](std::uint32_t e) {
-        const float tau = plan.warms_up ? 1.0f : rays / (earlier.rays(state.history[e]) + rays);
+        const float tau = iteration.plan.warms_up ? 1.0f : rays / (earlier.rays(state.history[e]) + rays);
         mean[e] += tau * (received[e] - mean[e]);
     };
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
@@ -63,13 +63,13 @@ void merge_into(const SolverState& state, std::vector<T>& mean, const std::vecto
 }  // namespace
 
 void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
-           const IterationPlan& plan) {
-    merge_into(state, mean, received, plan);
+           const TracedIteration& iteration) {
+    merge_into(state, mean, received, iteration);
 }
 void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
-                       const IterationPlan& plan) {
+                       const TracedIteration& iteration) {
     const ElementForest& forest = *state.forest;
-    const auto rays = static_cast<float>(plan.rays);
+    const auto rays = static_cast<float>(iteration.weight);
     const auto merged = [&](std::uint32_t e) {
         return mean[e] + (received[e] - mean[e]) * (rays / (state.history[e] + rays));
     };
@@ -92,39 +92,40 @@ void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const s
 }
 
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
-           const IterationPlan& plan) {
+           const TracedIteration& iteration) {
     Earlier earlier;
     earlier.first = static_cast<float>(state.rays_of_first_importance);
     if (state.rays_of_other_views > 0)
         earlier.most = static_cast<float>(state.schedule.averaged_rays() - state.rays_of_other_views);
-    merge_into(state, mean, received, plan, earlier);
+    merge_into(state, mean, received, iteration, earlier);
 }
 
-void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan) {
+void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const TracedIteration& iteration) {
     for (std::size_t g = 0; g < mean.size(); ++g)
-        if (state.solution.dimming[g] > 0) merge(state, mean[g], received[g], plan);
+        if (state.solution.dimming[g] > 0) merge(state, mean[g], received[g], iteration);
 }
 void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
-                       const IterationPlan& plan) {
+                       const TracedIteration& iteration) {
     const std::vector<float>& dimming = state.solution.dimming;  // empty without groups
     for (std::size_t g = 0; g < mean.size(); ++g)
-        if (dimming.empty() || dimming[g] > 0) merge_independent(state, mean[g], received[g], plan);
+        if (dimming.empty() || dimming[g] > 0) merge_independent(state, mean[g], received[g], iteration);
 }
 
-void merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan) {
-    const auto rays = static_cast<double>(plan.rays);
-    const double tau = plan.warms_up ? 1 : rays / (state.escaped_power_rays + rays);
+void merge_escaped_power(SolverState& state, const RgbD& escaped, const TracedIteration& iteration) {
+    const auto rays = static_cast<double>(iteration.weight);
+    const double tau = iteration.plan.warms_up ? 1 : rays / (state.escaped_power_rays + rays);
     state.escaped_power += (escaped - state.escaped_power) * tau;
-    state.escaped_power_rays = plan.warms_up ? 0 : state.escaped_power_rays + rays;
+    state.escaped_power_rays = iteration.plan.warms_up ? 0 : state.escaped_power_rays + rays;
 }
 
-void update_history(SolverState& state, const IterationPlan& plan) {
-    const auto rays = static_cast<float>(plan.rays),
+void update_history(SolverState& state, const TracedIteration& iteration) {
+    const auto rays = static_cast<float>(iteration.weight),
                inherited = static_cast<float>(state.options.experimental.inherited_weight);
     parallel_for_ranges(state.history.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e)
-            state.history[e] =
-                plan.warms_up ? 0.0f : (state.history[e] + rays) * (e < plan.old_elements ? 1.0f : inherited);
+            state.history[e] = iteration.plan.warms_up
+                                   ? 0.0f
+                                   : (state.history[e] + rays) * (e < iteration.plan.old_elements ? 1.0f : inherited);
     });
 }
 

@@ -10,22 +10,22 @@ namespace interflect::detail {
 /// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) per element. Children with a larger tau
 /// only redistribute their parent's mean, which preserves power.
 void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
-           const IterationPlan& plan);
+           const TracedIteration& iteration);
 void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
-           const IterationPlan& plan);
+           const TracedIteration& iteration);
 
 /// Merges independent estimates (docs/method/method.md, A run); means may be negative.
 void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
-                       const IterationPlan& plan);
+                       const TracedIteration& iteration);
 
 /// Groups dimmed to 0 do not change.
-void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const IterationPlan& plan);
+void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const TracedIteration& iteration);
 void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
-                       const IterationPlan& plan);
+                       const TracedIteration& iteration);
 
-void merge_escaped_power(SolverState& state, const RgbD& escaped, const IterationPlan& plan);
+void merge_escaped_power(SolverState& state, const RgbD& escaped, const TracedIteration& iteration);
 
 /// Adds the rays of an iteration. New elements keep only `inherited_weight` of their history.
-void update_history(SolverState& state, const IterationPlan& plan);
+void update_history(SolverState& state, const TracedIteration& iteration);
 
 }  // namespace interflect::detail

@@ -155,7 +155,10 @@ Imath::Box3f best_half(const std::vector<WeightedLine>& lines, const Imath::Box3
                     part.max[axis] = part.min[axis] + size[axis] / 2;
                 }
                 const double weight = centred_weight(lines, part);
-                if (weight > most) most = weight, best = part;
+                if (weight > most) {
+                    most = weight;
+                    best = part;
+                }
             }
     return best;
 }
@@ -181,7 +184,10 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
         std::vector<WeightedLine> inside = rest;
         for (const Imath::Box3f& target : targets) {
             std::vector<WeightedLine> in_target = crossing(rest, target);
-            if (weight_of(in_target) > weight_of(rest) / 2) box = target, inside = std::move(in_target);
+            if (weight_of(in_target) > weight_of(rest) / 2) {
+                box = target;
+                inside = std::move(in_target);
+            }
         }
         std::vector<Imath::Box3f> halves;
         std::size_t worthwhile = 0;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "interflect/elements/forest.h"
 #include "interflect/solver/error/noise_update.h"
 #include "interflect/solver/iteration/merge.h"
 #include "interflect/solver/iteration/run_step.h"
@@ -20,19 +19,19 @@ std::int64_t share_of_importance(const SolverState& state, std::int64_t rays) {
 
 }  // namespace
 
-void OneBounce::update_importance(SolverState& state, IterationPlan& plan) {
+void OneBounce::update_importance(SolverState& state, TracedIteration& iteration) {
     if (!state.options.experimental.separate_iterations) return;
     Solution& solution = state.solution;
-    plan.importance_rays = share_of_importance(state, plan.rays);
-    if (plan.importance_rays == 0) return;
+    iteration.importance_rays = share_of_importance(state, iteration.plan.rays);
+    if (iteration.importance_rays == 0) return;
     const Received received = run_step(
         state,
-        TransportStep(plan_importance(state.materials, solution, importance_of(solution), plan.importance_rays)));
-    detail::merge(state, solution.indirect_importance, received.importance, plan);
+        TransportStep(plan_importance(state.materials, solution, importance_of(solution), iteration.importance_rays)));
+    detail::merge(state, solution.indirect_importance, received.importance, iteration);
 }
 
-Estimate OneBounce::trace(SolverState& state, IterationPlan& plan) {
-    const std::int64_t rays = plan.rays - plan.importance_rays;
+Estimate OneBounce::trace(SolverState& state, TracedIteration& iteration) {
+    const std::int64_t rays = iteration.plan.rays - iteration.importance_rays;
     if (rays == 0) return {};
     const Solution& solution = state.solution;
     const bool combined =
@@ -43,7 +42,7 @@ Estimate OneBounce::trace(SolverState& state, IterationPlan& plan) {
     PowerPlan power = plan_power(state.materials, state.emission, solution, light, weights, combined, rays);
     TransportStep step(std::move(power.plan));
     step.groups = group_radiosity(state, solution.groups);
-    const bool is_deferred = state.options.experimental.defer_refinement && plan.warms_up;
+    const bool is_deferred = state.options.experimental.defer_refinement && iteration.plan.warms_up;
     if (state.options.method.refines && !is_deferred)
         step.oracle = make_oracle(solution, state.schedule.averaged_rays() + rays, state.floor.default_min_area());
     Received received = run_step(state, std::move(step));
@@ -55,19 +54,20 @@ Estimate OneBounce::trace(SolverState& state, IterationPlan& plan) {
             .escaped_power = received.escaped_power};
 }
 
-void OneBounce::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
+void OneBounce::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
     Solution& solution = state.solution;
     if (!estimate.irradiance.empty()) {
-        if (!plan.warms_up) estimate_noise(state, estimate, plan.rays - plan.importance_rays);
-        detail::merge(state, solution.irradiance, estimate.irradiance, plan);
-        detail::merge(state, solution.groups, estimate.groups, plan);
-        if (!estimate.importance.empty()) detail::merge(state, solution.indirect_importance, estimate.importance, plan);
-        merge_escaped_power(state, estimate.escaped_power, plan);
+        if (!iteration.plan.warms_up) estimate_noise(state, estimate, iteration.weight - iteration.importance_rays);
+        detail::merge(state, solution.irradiance, estimate.irradiance, iteration);
+        detail::merge(state, solution.groups, estimate.groups, iteration);
+        if (!estimate.importance.empty())
+            detail::merge(state, solution.indirect_importance, estimate.importance, iteration);
+        merge_escaped_power(state, estimate.escaped_power, iteration);
     }
-    const std::int64_t for_importance = share_of_importance(state, plan.rays);
+    const std::int64_t for_importance = share_of_importance(state, iteration.weight);
     state.importance_rays += for_importance;
-    state.power_rays += plan.rays - for_importance;
-    update_history(state, plan);
+    state.power_rays += iteration.weight - for_importance;
+    update_history(state, iteration);
 }
 
 }  // namespace interflect::detail

@@ -7,9 +7,9 @@ namespace interflect::detail {
 /// Iterations of one bounce each, as in the paper (Eq. 6).
 class OneBounce : public IterationMethod {
   public:
-    void update_importance(SolverState& state, IterationPlan& plan) override;
-    Estimate trace(SolverState& state, IterationPlan& plan) override;
-    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    void update_importance(SolverState& state, TracedIteration& iteration) override;
+    Estimate trace(SolverState& state, TracedIteration& iteration) override;
+    void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) override;
     void archive(StateArchive&) override {}
 };
 

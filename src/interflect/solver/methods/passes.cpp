@@ -92,46 +92,48 @@ void Passes::prepare(SolverState& state) {
     if (rays_so_far(state) > 0) append_report(state, 0);
 }
 
-void Passes::update_importance(SolverState& state, IterationPlan& plan) {
+void Passes::update_importance(SolverState& state, TracedIteration& iteration) {
     if (importance_use(state.solution) != ImportanceUse::full) return;
     if (needs_importance_) {
         const std::int64_t rays_before = rays_so_far(state);
         transport_importance(state, state.schedule.start_rays());
         const std::vector<OutdoorLine> outdoor_light = aim_outdoor_light(state);
-        if (!view_change_.empty()) plan.history_factor = view_change_.history_factor(state, outdoor_light);
-        plan.rays_for_new_views = rays_so_far(state) - rays_before;
+        if (!view_change_.empty()) iteration.history_factor = view_change_.history_factor(state, outdoor_light);
+        iteration.rays_for_new_views = rays_so_far(state) - rays_before;
     }
     if (!state.options.experimental.separate_iterations) return;
-    plan.importance_rays = std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays));
-    if (plan.importance_rays == 0) return;
+    iteration.importance_rays =
+        std::llround(state.options.experimental.alpha * static_cast<double>(iteration.plan.rays));
+    if (iteration.importance_rays == 0) return;
     const Importance psi = importance_of(state.solution);
-    const Received received =
-        run_step(state, TransportStep(plan_importance(state.materials, state.solution, psi, plan.importance_rays)));
-    detail::merge(state, state.solution.indirect_importance, received.importance, plan);
-    state.importance_rays += plan.importance_rays;
+    const Received received = run_step(
+        state, TransportStep(plan_importance(state.materials, state.solution, psi, iteration.importance_rays)));
+    detail::merge(state, state.solution.indirect_importance, received.importance, iteration);
+    state.importance_rays += iteration.importance_rays;
 }
 
-Estimate Passes::trace(SolverState& state, IterationPlan& plan) {
-    if (plan.rays <= plan.importance_rays) return {};
+Estimate Passes::trace(SolverState& state, TracedIteration& iteration) {
+    if (iteration.plan.rays <= iteration.importance_rays) return {};
     const std::int64_t rays_before = rays_so_far(state);
-    Estimate estimate = trace_pass(state, plan.rays - plan.importance_rays, oracle_refines_passes(state));
-    plan.traced = std::max<std::int64_t>(1, plan.importance_rays + rays_so_far(state) - rays_before);
-    plan.rays = plan.traced;  // the weight in the mean, > 0
+    Estimate estimate =
+        trace_pass(state, iteration.plan.rays - iteration.importance_rays, oracle_refines_passes(state));
+    iteration.rays = std::max<std::int64_t>(1, iteration.importance_rays + rays_so_far(state) - rays_before);
+    iteration.weight = iteration.rays;  // > 0
     return estimate;
 }
 
-void Passes::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
-    state.schedule.count_other_rays(plan.rays_for_new_views);
-    scale_history(state, plan.history_factor);
+void Passes::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
+    state.schedule.count_other_rays(iteration.rays_for_new_views);
+    scale_history(state, iteration.history_factor);
     needs_importance_ = false;  // an interrupted iteration starts over
     view_change_.clear();
     if (estimate.irradiance.empty()) return;
-    estimate_noise(state, estimate, plan.rays);
-    merge_independent(state, state.solution.irradiance, estimate.irradiance, plan);
-    merge_independent(state, state.solution.groups, estimate.groups, plan);
-    merge_independent(state, state.solution.direct, estimate.direct, plan);
-    merge_escaped_power(state, estimate.escaped_power, plan);
-    update_history(state, plan);
+    estimate_noise(state, estimate, iteration.weight);
+    merge_independent(state, state.solution.irradiance, estimate.irradiance, iteration);
+    merge_independent(state, state.solution.groups, estimate.groups, iteration);
+    merge_independent(state, state.solution.direct, estimate.direct, iteration);
+    merge_escaped_power(state, estimate.escaped_power, iteration);
+    update_history(state, iteration);
 }
 
 void Passes::refine(SolverState& state) {
@@ -168,8 +170,10 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     if (sum.irradiance.empty()) sum = zero_estimate(state);  // no power to shoot
     if (!oracle_refines) {
         // Inner elements are still empty.
-        pull(*state.forest, sum.irradiance), pull_variance(*state.forest, sum.variance);
-        pull(*state.forest, sum.groups), pull(*state.forest, sum.direct);
+        pull(*state.forest, sum.irradiance);
+        pull_variance(*state.forest, sum.variance);
+        pull(*state.forest, sum.groups);
+        pull(*state.forest, sum.direct);
     }
     return std::move(sum);
 }
@@ -184,7 +188,10 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     PowerPlan bounce =
         plan_power(state.materials, state.emission, solution, light, pass.weights, carries_importance, /*rays=*/0);
     solution.non_finite += bounce.non_finite_leaves;
-    if (pass.emits) pass.first_power = bounce.power, pass.first_weighted_power = bounce.weighted_power;
+    if (pass.emits) {
+        pass.first_power = bounce.power;
+        pass.first_weighted_power = bounce.weighted_power;
+    }
     const double unshot =
         relative_unshot(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(unshot) : BounceRays();
@@ -207,7 +214,8 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
         pass.sum.direct = received.groups.empty() ? GroupLight{received.irradiance} : received.groups;
     add(pass.sum, received);
     if (carries_importance)  // at once: the oracle uses it in the next bounces
-        detail::merge(state, solution.indirect_importance, received.importance, IterationPlan{.rays = rays.expected});
+        detail::merge(state, solution.indirect_importance, received.importance,
+                      TracedIteration{{.rays = rays.expected}});
     pass.emits = false;
     pass.start_points = std::move(received.start_points);
     pass.unshot = std::move(received.irradiance);

@@ -15,9 +15,9 @@ class Passes : public IterationMethod {
   public:
     /// Estimates importance and makes the initial mesh by two passes (Eq. 14, 15), not averaged.
     void prepare(SolverState& state) override;
-    void update_importance(SolverState& state, IterationPlan& plan) override;
-    Estimate trace(SolverState& state, IterationPlan& plan) override;
-    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    void update_importance(SolverState& state, TracedIteration& iteration) override;
+    Estimate trace(SolverState& state, TracedIteration& iteration) override;
+    void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) override;
     void refine(SolverState& state) override;
     /// Keeps the light; ViewChange adapts its history in the next iteration.
     void change_views(SolverState& state) override;

@@ -33,7 +33,10 @@ void NoiseModel::grow(const ElementForest& forest, std::uint32_t first) {
 std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
                                         float rays) const {
     float variance = 0, area = 0;
-    for (std::uint32_t e = first; e < first + 4; ++e) variance += forest.area(e) * per_ray_[e], area += forest.area(e);
+    for (std::uint32_t e = first; e < first + 4; ++e) {
+        variance += forest.area(e) * per_ray_[e];
+        area += forest.area(e);
+    }
     std::array<float, 4> shares{1, 1, 1, 1};
     if (!(variance > 0) || !(rays > 0)) return shares;
     variance /= area;

@@ -35,8 +35,11 @@ struct RiskCheck {
   private:
     RiskCheck& add(double old, const RiskCheck& o, double share) {
         const auto sum = [&](double& mine, double other) { mine = old * mine + share * other; };
-        sum(weight, o.weight), sum(expected, o.expected), sum(measured, o.measured);
-        sum(signal, o.signal), sum(signal_of_parents, o.signal_of_parents);
+        sum(weight, o.weight);
+        sum(expected, o.expected);
+        sum(measured, o.measured);
+        sum(signal, o.signal);
+        sum(signal_of_parents, o.signal_of_parents);
         for (std::size_t level = 0; level < finer_levels; ++level) sum(within[level], o.within[level]);
         return *this;
     }

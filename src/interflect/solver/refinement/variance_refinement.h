@@ -1,6 +1,5 @@
 #pragma once
 
-#include "interflect/scene.h"
 #include "interflect/solver/state/solver_state.h"
 
 namespace interflect::detail {

@@ -28,7 +28,9 @@ struct Sums {
 
     explicit Sums(double a = 0, double p = 0, double v = 0) : area(a), power(p), variance(v) {}
     Sums& operator+=(const Sums& o) {
-        area += o.area, power += o.power, variance += o.variance;
+        area += o.area;
+        power += o.power;
+        variance += o.variance;
         return *this;
     }
     double mean() const { return power / area; }
@@ -59,12 +61,15 @@ double variance_of_true_values(std::span<const Sample> samples) {
     double signal = 0;
     for (int step = 0; step < most_steps; ++step) {  // Newton's method for 1 / sum, which is nearly linear
         double weights = 0, mean = 0, sum = 0, slope = 0;
-        for (const auto& [value, variance] : samples)
-            weights += 1 / (signal + variance), mean += value / (signal + variance);
+        for (const auto& [value, variance] : samples) {
+            weights += 1 / (signal + variance);
+            mean += value / (signal + variance);
+        }
         mean /= weights;
         for (const auto& [value, variance] : samples) {
             const double weight = 1 / (signal + variance), square = (value - mean) * (value - mean) * weight;
-            sum += square, slope += square * weight;
+            sum += square;
+            slope += square * weight;
         }
         if (signal == 0 && !(sum > expected)) break;
         const double change = (sum - expected) * sum / (expected * slope);
@@ -87,10 +92,13 @@ struct Region {
     /// @param uncertainty  Share of the cluster's mean in the reduced light.
     void add(double seen, double patch_area, double uncertainty, const RgbD& unreduced, const RgbD& reduced) {
         if (!(share > 0)) return;
-        before += seen * patch_area * unreduced, after += seen * patch_area * reduced;
+        before += seen * patch_area * unreduced;
+        after += seen * patch_area * reduced;
         const RgbD uncertain = uncertainty * patch_area * reduced;
-        shown += seen * uncertain, power += uncertain;
-        shown_visible += visibility(seen) * seen * uncertain, power_visible += visibility(seen) * uncertain;
+        shown += seen * uncertain;
+        power += uncertain;
+        shown_visible += visibility(seen) * seen * uncertain;
+        power_visible += visibility(seen) * uncertain;
     }
 
     /// Returns 1 + x uncertainty (visibility - y), which keeps the power and makes `after` equal to `before`. Where
@@ -134,8 +142,8 @@ void ClusterShrinkage::measure_parts() {
     parallel_for_ranges(sums.size(), clusters_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<Sample> samples;
         for (std::size_t i = begin; i < end; ++i) {
-            const auto [first, count] = clusters_->nodes()[i];
-            if (first == none) continue;
+            const auto [first, count, patch] = clusters_->nodes()[i];
+            if (patch != none) continue;
             for (std::uint32_t k = first; k < first + count; ++k)
                 parts_[k].share = static_cast<float>(sums[k].area / sums[i].area);
             if (!(sums[i].variance > 0 && sums[i].power > 0)) continue;
@@ -148,7 +156,8 @@ void ClusterShrinkage::measure_parts() {
             const double signal = variance_of_true_values(samples);
             for (std::uint32_t k = 0; k < count; ++k) {
                 Part& part = parts_[first + k];
-                part.variance = static_cast<float>(samples[k].variance), part.signal = static_cast<float>(signal);
+                part.variance = static_cast<float>(samples[k].variance);
+                part.signal = static_cast<float>(signal);
                 const double own = sums[first + k].contributions() / contributions_of_own_mean;
                 const double by_signal = signal / (signal + samples[k].variance),
                              by_count = own * own / (1 + own * own);
@@ -197,18 +206,18 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
     std::vector<Rgb> before(nodes.size(), Rgb(0));
     for (std::size_t i = nodes.size(); i-- > 0;) {
-        const auto [first, count] = nodes[i];
-        if (first == none)
-            before[i] = irradiance_[count];
+        const auto [first, count, patch] = nodes[i];
+        if (patch != none)
+            before[i] = irradiance_[patch];
         else
             for (std::uint32_t k = first; k < first + count; ++k) before[i] += parts_[k].share * before[k];
     }
     std::vector<Rgb> after(nodes.size());
     after[0] = before[0];
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const auto [first, count] = nodes[i];
-        if (first == none) {
-            means[count] = after[i];
+        const auto [first, count, patch] = nodes[i];
+        if (patch != none) {
+            means[patch] = after[i];
             continue;
         }
         const float light = luminance(after[i]);
@@ -237,15 +246,15 @@ void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
     std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
     std::vector<float> uncertainty(means.size());
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
-        const auto [first, count] = nodes[i];
+        const auto [first, count, patch] = nodes[i];
         if (shares[i] >= fewest) region[i] = i;
-        if (first != none) {
+        if (patch == none) {
             std::fill_n(region.begin() + first, count, region[i]);
             continue;
         }
-        region_of_patch[count] = region[i];
-        uncertainty[count] = 1 - parts_[i].kept;
-        regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(count);
+        region_of_patch[patch] = region[i];
+        uncertainty[patch] = 1 - parts_[i].kept;
+        regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(patch);
     }
     for (std::uint32_t p = 0; p < means.size(); ++p)
         regions[region_of_patch[p]].add(seen[p], forest.area(p), uncertainty[p], RgbD(irradiance_[p]), RgbD(means[p]));

@@ -53,9 +53,9 @@ void ClusterShrinkage::measure_errors(std::span<Errors> of_patches, const Shown&
     std::vector<Errors> errors(parts_.size());
     errors[0] = {shown(0) * parts_[0].variance, 0};
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-        const auto [first, count] = clusters_->nodes()[i];
-        if (first == none) {
-            of_patches[count] = errors[i];
+        const auto [first, count, patch] = clusters_->nodes()[i];
+        if (patch != none) {
+            of_patches[patch] = errors[i];
             continue;
         }
         for (std::uint32_t k = first; k < first + count; ++k) {

@@ -74,7 +74,8 @@ Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first, const Sibl
     for (std::uint32_t k = 0; k < 4; ++k) {
         s.kept[k] = kept > 0 ? kept / (kept + (1 - kept) * s.noise[k]) : 0;
         s.noise[k] = kept > 0 ? s.noise[k] * s.kept[k] : 1;
-        sum += forest.area(first + k) * s.noise[k], area += forest.area(first + k);
+        sum += forest.area(first + k) * s.noise[k];
+        area += forest.area(first + k);
     }
     for (float& noise : s.noise) noise = sum > 0 ? noise * area / sum : 1;
     return s;

@@ -107,7 +107,8 @@ void SolverState::archive(StateArchive& archive) {
         // Halves of the scene's box may exceed it by rounding.
         Imath::Box3f box = emission.scene_box();
         const V3f rounding(1e-5f * box.size().length());
-        box.min -= rounding, box.max += rounding;
+        box.min -= rounding;
+        box.max += rounding;
         const auto is_inside = [&](const Imath::Box3f& target) {
             return is_finite(target.min) && is_finite(target.max) && !target.isEmpty() && box.intersects(target.min) &&
                    box.intersects(target.max);

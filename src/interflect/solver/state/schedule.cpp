@@ -43,7 +43,8 @@ std::int64_t Schedule::affordable_rays(double seconds) {
     constexpr double min_share = 1.0 / 32;  // of the rays averaged before
     const double time_left = options_.limits.time - seconds, took = seconds - planned_at_;
     const std::int64_t traced = rays_ - planned_after_;
-    planned_at_ = seconds, planned_after_ = rays_;
+    planned_at_ = seconds;
+    planned_after_ = rays_;
     if (time_left <= 0) return 0;
     if (traced == 0) return first_rays_;
     const double rays = share_of_time * time_left / took * static_cast<double>(traced);
@@ -72,7 +73,7 @@ IterationPlan Schedule::next(double seconds) {
     if (left < rays + rays / 2) rays = left;
     if (std::isfinite(options_.limits.time)) rays = std::min(rays, affordable_rays(seconds));
     if (rays <= 0) return {};
-    return {.rays = rays, .traced = rays, .warms_up = warming_up, .is_final = rays == left};
+    return {.rays = rays, .warms_up = warming_up, .is_final = rays == left};
 }
 
 void Schedule::set_limits(const Limits& limits) {
@@ -109,11 +110,11 @@ void Schedule::require_consistent() const {
     require(planned_after_ <= rays_, "schedule/planned_after");
 }
 
-void Schedule::done(const IterationPlan& plan) {
-    rays_ += plan.traced;
-    is_over_ = plan.is_final;
+void Schedule::done(const TracedIteration& iteration) {
+    rays_ += iteration.rays;
+    is_over_ = iteration.plan.is_final;
     const bool warming_up = finished_++ < options_.experimental.warm_up;
-    averaged_rays_ = warming_up ? 0 : averaged_rays_ + plan.traced;
+    averaged_rays_ = warming_up ? 0 : averaged_rays_ + iteration.rays;
 }
 
 }  // namespace interflect::detail

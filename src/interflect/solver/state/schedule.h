@@ -9,11 +9,17 @@
 namespace interflect::detail {
 
 struct IterationPlan {
-    std::int64_t rays = 0;                ///< Planned, and the weight in the mean; 0: the run is over.
-    std::int64_t traced = 0;              ///< Initially the planned rays.
-    bool warms_up = false;                ///< Not averaged: the next iteration replaces it.
-    bool is_final = false;                ///< Ends the run, even with fewer traced rays.
-    std::uint32_t old_elements = 0;       ///< Before the iteration.
+    std::int64_t rays = 0;           ///< 0: the run is over.
+    bool warms_up = false;           ///< Not averaged: the next iteration replaces it.
+    bool is_final = false;           ///< Ends the run, even with fewer traced rays.
+    std::uint32_t old_elements = 0;  ///< Before the iteration.
+};
+
+/// Result of an iteration besides its Estimate.
+struct TracedIteration {
+    const IterationPlan plan;
+    std::int64_t rays = plan.rays;        ///< Traced, for any purpose.
+    std::int64_t weight = plan.rays;      ///< Weight in the mean [rays].
     std::int64_t importance_rays = 0;     ///< Rays that carry importance alone.
     std::int64_t rays_for_new_views = 0;  ///< Additional rays after a change of views.
     /// ViewChange::history_factor(); empty: 1.
@@ -32,7 +38,7 @@ class Schedule {
     /// Respects the time limit. @param seconds  Since the run began.
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
-    void done(const IterationPlan& plan);
+    void done(const TracedIteration& iteration);
     /// Makes iterations small again.
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }

@@ -104,11 +104,19 @@ void convert(const ElementForest& forest, const TransportStep& step, const Contr
 
 void push_pull(const ElementForest& forest, const TransportStep& step, Received& received) {
     if (step.carries_power() && !step.leaves_only) {
-        push(forest, received.irradiance), pull(forest, received.irradiance);
-        push(forest, received.variance), pull_variance(forest, received.variance);
-        for (std::vector<Rgb>& of_group : received.groups) push(forest, of_group), pull(forest, of_group);
+        push(forest, received.irradiance);
+        pull(forest, received.irradiance);
+        push(forest, received.variance);
+        pull_variance(forest, received.variance);
+        for (std::vector<Rgb>& of_group : received.groups) {
+            push(forest, of_group);
+            pull(forest, of_group);
+        }
     }
-    if (step.carries_importance()) push(forest, received.importance), pull(forest, received.importance);
+    if (step.carries_importance()) {
+        push(forest, received.importance);
+        pull(forest, received.importance);
+    }
 }
 
 }  // namespace

@@ -103,9 +103,9 @@ std::uint32_t leaf_within(const ElementForest& forest, std::uint32_t e, Place pl
 class KeptRays : public IterationMethod {
   public:
     void prepare(SolverState& state) override;
-    void update_importance(SolverState& state, IterationPlan& plan) override;
-    Estimate trace(SolverState& state, IterationPlan& plan) override;
-    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    void update_importance(SolverState& state, TracedIteration& iteration) override;
+    Estimate trace(SolverState& state, TracedIteration& iteration) override;
+    void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) override;
     void refine(SolverState& state) override;
     void discard() override { set_.resize(merged_); }
     void change_views(SolverState& state) override;
@@ -158,7 +158,10 @@ std::vector<double> raised(std::vector<double> quotas, const std::vector<float>&
         });
     };
     double low = 0, high = 1;
-    while (growth(high) < rays) low = high, high *= 2;
+    while (growth(high) < rays) {
+        low = high;
+        high *= 2;
+    }
     constexpr int bisections = 24;
     for (int i = 0; i < bisections; ++i) {
         const double middle = (low + high) / 2;
@@ -175,25 +178,27 @@ void KeptRays::prepare(SolverState& state) {
     quotas_.assign(elements_ + state.emission.part_count(), 0.0);
 }
 
-void KeptRays::update_importance(SolverState& state, IterationPlan& plan) {
+void KeptRays::update_importance(SolverState& state, TracedIteration& iteration) {
     if (importance_use(state.solution) != ImportanceUse::full) return;
     const std::int64_t before = state.importance_rays;
     if (needs_importance_) {
         transport_importance(state, state.schedule.start_rays());
         aim_outdoor_light(state);
-        plan.rays_for_new_views = state.importance_rays - before;
+        iteration.rays_for_new_views = state.importance_rays - before;
     }
-    plan.importance_rays = std::llround(state.options.experimental.alpha * static_cast<double>(plan.rays));
-    if (plan.importance_rays == 0) return;
+    iteration.importance_rays =
+        std::llround(state.options.experimental.alpha * static_cast<double>(iteration.plan.rays));
+    if (iteration.importance_rays == 0) return;
     const RayPlan rays =
-        plan_importance(state.materials, state.solution, importance_of(state.solution), plan.importance_rays);
-    detail::merge(state, state.solution.indirect_importance, run_step(state, TransportStep(rays)).importance, plan);
-    state.importance_rays += plan.importance_rays;
+        plan_importance(state.materials, state.solution, importance_of(state.solution), iteration.importance_rays);
+    detail::merge(state, state.solution.indirect_importance, run_step(state, TransportStep(rays)).importance,
+                  iteration);
+    state.importance_rays += iteration.importance_rays;
 }
 
-Estimate KeptRays::trace(SolverState& state, IterationPlan& plan) {
+Estimate KeptRays::trace(SolverState& state, TracedIteration& iteration) {
     const ElementForest& forest = *state.forest;
-    const std::int64_t rays = plan.rays - plan.importance_rays;
+    const std::int64_t rays = iteration.plan.rays - iteration.importance_rays;
     if (rays == 0) return {};
     if (state.targets != targets_) drop_rays_of_parts(state);
     follow_forest(forest);
@@ -395,18 +400,19 @@ Estimate KeptRays::collect(SolverState& state, const PayloadUnits& units) {
             estimate.variance[e] = static_cast<float>(units.square(sum) / area / area);
         }
     });
-    pull(forest, estimate.irradiance), pull_variance(forest, estimate.variance);
+    pull(forest, estimate.irradiance);
+    pull_variance(forest, estimate.variance);
     return estimate;
 }
 
-void KeptRays::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
-    state.schedule.count_other_rays(plan.rays_for_new_views);
+void KeptRays::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
+    state.schedule.count_other_rays(iteration.rays_for_new_views);
     needs_importance_ = false;
     if (estimate.irradiance.empty()) return;
-    estimate_noise(state, estimate, plan.rays);
+    estimate_noise(state, estimate, iteration.weight);
     merged_ = set_.size();
     quotas_ = std::move(next_quotas_);
-    all_rays_ += plan.rays;
+    all_rays_ += iteration.weight;
     receive_again(state);
 }
 

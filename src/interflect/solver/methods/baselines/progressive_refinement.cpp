@@ -93,7 +93,10 @@ bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
     choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
     const bool is_last = unshot < negligible_rest || series.budget.is_last(weight, unshot);
-    if (is_last) chosen = step.q, weight = unshot;
+    if (is_last) {
+        chosen = step.q;
+        weight = unshot;
+    }
     step.q = chosen;
     step.rays = is_last ? series.budget.left : series.budget.share(weight, unshot);
     const std::int64_t rays = step.rays;
@@ -112,7 +115,10 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
         plan_power(state.materials, state.emission, state.solution, light, series.weights, false, 0);
     if (!(power > 0)) return false;
     TransportStep step(std::move(plan));
-    if (series.emits) series.first_power = power, series.first_weighted_power = weighted_power;
+    if (series.emits) {
+        series.first_power = power;
+        series.first_weighted_power = weighted_power;
+    }
     const double beta = series.first_weighted_power > 0 ? state.options.experimental.beta : 1;
     const double unshot =
         beta * ratio(power, series.first_power) + (1 - beta) * ratio(weighted_power, series.first_weighted_power);
@@ -125,7 +131,10 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
     // Unimportant power may reach important patches later.
     const bool is_last = power < negligible_rest * series.first_power || series.budget.is_last(weight, unshot);
-    if (is_last) chosen = step.q, weight = unshot * series.budget.expected;
+    if (is_last) {
+        chosen = step.q;
+        weight = unshot * series.budget.expected;
+    }
     step.q = chosen;
     const std::int64_t rays = is_last ? series.budget.left : series.budget.share(weight, unshot);
     step.completes_by_walks = is_last;
@@ -155,9 +164,9 @@ class ProgressiveRefinement final : public IterationMethod {
                          std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
         state.schedule.record_start(0, state.importance_rays);
     }
-    void update_importance(SolverState& state, IterationPlan& plan) override;
-    Estimate trace(SolverState& state, IterationPlan& plan) override;
-    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    void update_importance(SolverState& state, TracedIteration& iteration) override;
+    Estimate trace(SolverState& state, TracedIteration& iteration) override;
+    void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) override;
     void discard() override { current_ = before_; }
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
@@ -192,17 +201,18 @@ void ProgressiveRefinement::shoot_importance(SolverState& state, std::int64_t ra
     for (std::size_t i = 0; i < psi.size(); ++i) psi[i] += tau * (series.fresh[i] - psi[i]);
 }
 
-void ProgressiveRefinement::update_importance(SolverState& state, IterationPlan& plan) {
+void ProgressiveRefinement::update_importance(SolverState& state, TracedIteration& iteration) {
     before_ = current_;
-    plan.importance_rays = std::min(plan.rays, lacking_importance(state, state.schedule.rays() + plan.rays));
+    iteration.importance_rays =
+        std::min(iteration.plan.rays, lacking_importance(state, state.schedule.rays() + iteration.plan.rays));
     const std::int64_t rays_before = state.importance_rays;
-    shoot_importance(state, plan.importance_rays);
-    plan.traced = state.importance_rays - rays_before;
+    shoot_importance(state, iteration.importance_rays);
+    iteration.rays = state.importance_rays - rays_before;
 }
 
-Estimate ProgressiveRefinement::trace(SolverState& state, IterationPlan& plan) {
+Estimate ProgressiveRefinement::trace(SolverState& state, TracedIteration& iteration) {
     const std::vector<Rgb> dark(state.forest->size(), Rgb(0));
-    PowerSeries series{{plan.rays - plan.importance_rays, current_.power_shots},
+    PowerSeries series{{iteration.plan.rays - iteration.importance_rays, current_.power_shots},
                        importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance),
                        dark,
                        {dark, std::vector<float>(dark.size(), 0.0f), {}}};
@@ -212,18 +222,18 @@ Estimate ProgressiveRefinement::trace(SolverState& state, IterationPlan& plan) {
         while (shoot_some_power(state, series)) {
         }
         current_.power_shots = series.budget.measured();
-        plan.traced += state.power_rays - rays_before;
+        iteration.rays += state.power_rays - rays_before;
     }
     // Rays stay unused if no surface reflects importance or light.
-    plan.traced = std::max<std::int64_t>(1, plan.traced);
+    iteration.rays = std::max<std::int64_t>(1, iteration.rays);
     return std::move(series.fresh);
 }
 
-void ProgressiveRefinement::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
-    IterationPlan of_power = plan;
-    of_power.rays -= plan.importance_rays;
-    if (of_power.rays == 0) return;
-    if (!plan.warms_up) estimate_noise(state, estimate, of_power.rays);
+void ProgressiveRefinement::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
+    TracedIteration of_power = iteration;
+    of_power.weight -= iteration.importance_rays;
+    if (of_power.weight == 0) return;
+    if (!iteration.plan.warms_up) estimate_noise(state, estimate, of_power.weight);
     detail::merge(state, state.solution.irradiance, estimate.irradiance, of_power);
     merge_escaped_power(state, estimate.escaped_power, of_power);
     update_history(state, of_power);

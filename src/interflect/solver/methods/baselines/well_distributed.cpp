@@ -62,35 +62,36 @@ void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::in
     plan.rays = std::max<std::int64_t>(1, std::llround(lacking));
 }
 
-Estimate WellDistributedRays::trace(SolverState& state, IterationPlan& plan) {
+Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iteration) {
     const ElementForest& forest = *state.forest;
     const Radiosity light(state.materials, state.solution.irradiance);
-    PowerPlan power = plan_power(state.materials, state.emission, state.solution, light, {}, false, plan.rays);
+    PowerPlan power =
+        plan_power(state.materials, state.emission, state.solution, light, {}, false, iteration.plan.rays);
     TransportStep step(std::move(power.plan));
     step.equal_payloads = true;
     step.groups = group_radiosity(state, state.solution.groups);
     // Without importance, the weights are shares of all power.
     const double all_power = channel_sum(radiated_power(state));
-    keep_lacking_rays(forest, total_ + plan.rays, step);
-    const std::int64_t rays = plan.rays = plan.traced = step.rays;
+    keep_lacking_rays(forest, total_ + iteration.plan.rays, step);
+    const std::int64_t rays = iteration.weight = iteration.rays = step.rays;
     if (state.options.method.refines)
         step.oracle = make_oracle(state.solution, total_ + rays, state.floor.default_min_area());
 
     std::vector<std::uint64_t> used_before = state.streams.used, used_by_parts_before = state.streams.used_by_parts;
     used_by_parts_before.resize(shot_by_parts_.size(), 0);
-    used_before.resize(plan.old_elements, 0);
+    used_before.resize(iteration.plan.old_elements, 0);
     const Received received = run_step(state, std::move(step));
     total_ += rays;
     state.solution.non_finite += power.non_finite_leaves;
-    for (std::uint32_t e = 0; e < plan.old_elements; ++e)
+    for (std::uint32_t e = 0; e < iteration.plan.old_elements; ++e)
         shot_[e] += static_cast<double>(state.streams.used[e] - used_before[e]);
     for (std::size_t i = 0; i < shot_by_parts_.size(); ++i)
         shot_by_parts_[i] += static_cast<double>(state.streams.used_by_parts[i] - used_by_parts_before[i]);
     shot_.resize(forest.size());
-    for (std::uint32_t e = plan.old_elements; e < forest.size(); ++e)
+    for (std::uint32_t e = iteration.plan.old_elements; e < forest.size(); ++e)
         shot_[e] = shot_[forest.parent(e)] * forest.area(e) / forest.area(forest.parent(e));
-    inherit(forest, plan.old_elements, received_);
-    inherit(forest, plan.old_elements, received_groups_);
+    inherit(forest, iteration.plan.old_elements, received_);
+    inherit(forest, iteration.plan.old_elements, received_groups_);
     const auto payload = static_cast<float>(all_power / static_cast<double>(rays));
     Estimate estimate;
     estimate.irradiance.resize(forest.size());
@@ -108,15 +109,15 @@ Estimate WellDistributedRays::trace(SolverState& state, IterationPlan& plan) {
     return estimate;
 }
 
-void WellDistributedRays::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
+void WellDistributedRays::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
     const double power_per_ray = estimate.shot_power / static_cast<double>(total_);
-    estimate_noise(state, estimate, plan.rays);
+    estimate_noise(state, estimate, iteration.weight);
     for (std::size_t e = 0; e < received_.size(); ++e)
         state.solution.irradiance[e] = static_cast<float>(power_per_ray) * received_[e];
     state.solution.groups = received_groups_;
     scale(state.solution.groups, static_cast<float>(power_per_ray));
     state.history.assign(state.forest->size(), static_cast<float>(total_));
-    state.power_rays += plan.rays;
+    state.power_rays += iteration.weight;
     state.escaped_power = escaped_ * power_per_ray;
 }
 

@@ -18,8 +18,8 @@ class WellDistributedRays : public IterationMethod {
     explicit WellDistributedRays(const SolverState& state);
 
     void prepare(SolverState& state) override;
-    Estimate trace(SolverState& state, IterationPlan& plan) override;
-    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    Estimate trace(SolverState& state, TracedIteration& iteration) override;
+    void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) override;
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override {
         const std::size_t elements = state.forest->size(), parts = state.emission.part_count();

@@ -354,7 +354,7 @@ IterationPlan LinkedElements::plan(SolverState& state) {
     return is_fulfilled(state) ? IterationPlan{} : IterationPlan{.rays = 1};
 }
 
-Estimate LinkedElements::trace(SolverState&, IterationPlan& plan) {
+Estimate LinkedElements::trace(SolverState&, TracedIteration& iteration) {
     if (refines_next_) refines_ = refine_links();
     refines_next_ = false;
     state_.escaped_power = gather_light();
@@ -365,7 +365,7 @@ Estimate LinkedElements::trace(SolverState&, IterationPlan& plan) {
         refines_next_ = change <= settled;
     else
         is_settled_ = change <= negligible_change;
-    plan.traced = rays_ - state_.power_rays;
+    iteration.rays = rays_ - state_.power_rays;
     state_.power_rays = rays_;
     return {};
 }

@@ -52,8 +52,8 @@ class LinkedElements : public IterationMethod {
     bool is_fulfilled(const SolverState& state) const override;
     IterationPlan plan(SolverState& state) override;
     /// Refines links if light has settled, then gathers one bounce. @throws InputError as prepare().
-    Estimate trace(SolverState& state, IterationPlan& plan) override;
-    void merge(SolverState&, const Estimate&, const IterationPlan&) override {}  // a sweep replaces the light
+    Estimate trace(SolverState& state, TracedIteration& iteration) override;
+    void merge(SolverState&, const Estimate&, const TracedIteration&) override {}  // a sweep replaces the light
     void finish(SolverState& state) const override;
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;

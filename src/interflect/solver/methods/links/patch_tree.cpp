@@ -56,7 +56,9 @@ Sphere sphere_around(const ElementForest& forest, std::uint32_t element) {
     const auto include = [&](float s, float t) {
         sphere.radius = std::max(sphere.radius, (geometry.point(cell.at(s, t)) - sphere.centre).length());
     };
-    include(0, 0), include(1, 0), include(0, 1);
+    include(0, 0);
+    include(1, 0);
+    include(0, 1);
     if (!geometry.is_triangle()) include(1, 1);
     return sphere;
 }

@@ -61,7 +61,8 @@ class HitSum {
         add_concurrently(squares_, std::llround(share * share / unit));
     }
     HitSum& operator+=(const HitSum& other) {
-        sum_ += other.sum_, squares_ += other.squares_;
+        sum_ += other.sum_;
+        squares_ += other.squares_;
         return *this;
     }
     double sum() const { return static_cast<double>(sum_) * unit; }

@@ -40,9 +40,9 @@ class PhotonMesh final : public IterationMethod {
         : current_{sub_key(state.options.seed, WalkPurpose::light)}, hits_(state.forest->size()) {}
 
     void prepare(SolverState& state) override;
-    void update_importance(SolverState&, IterationPlan&) override { before_ = current_; }
-    Estimate trace(SolverState& state, IterationPlan& plan) override;
-    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    void update_importance(SolverState&, TracedIteration&) override { before_ = current_; }
+    Estimate trace(SolverState& state, TracedIteration& iteration) override;
+    void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) override;
     void refine(SolverState& state) override;
     void discard() override { current_ = before_; }
     void archive(StateArchive& archive) override;
@@ -79,12 +79,12 @@ void PhotonMesh::prepare(SolverState& state) {
     hits_.assign(state.forest->size(), {});
 }
 
-Estimate PhotonMesh::trace(SolverState& state, IterationPlan& plan) {
+Estimate PhotonMesh::trace(SolverState& state, TracedIteration& iteration) {
     WalkSource light = light_source(state);
     light.starts_at_hits = true;
-    BatchResult batch = walk(state, light, plan.rays, current_);
+    BatchResult batch = walk(state, light, iteration.plan.rays, current_);
     state.power_rays += batch.rays;
-    if (batch.rays > 0) plan.traced = batch.rays;
+    if (batch.rays > 0) iteration.rays = batch.rays;
     fresh_hits_ = std::move(batch.hits);
     const ElementForest& forest = *state.forest;
     Estimate estimate{.irradiance = std::move(batch.irradiance), .escaped_power = batch.escaped};
@@ -99,12 +99,12 @@ Estimate PhotonMesh::trace(SolverState& state, IterationPlan& plan) {
 }
 
 /// Weighted by planned rays, as in RandomWalks.
-void PhotonMesh::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
-    const bool shows_error = plan.rays >= state.schedule.start_rays();  // a remainder is too small
-    if (shows_error) estimate_noise(state, estimate, plan.rays);
-    merge_independent(state, state.solution.irradiance, estimate.irradiance, plan);
-    merge_escaped_power(state, estimate.escaped_power, plan);
-    update_history(state, plan);
+void PhotonMesh::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
+    const bool shows_error = iteration.weight >= state.schedule.start_rays();  // a remainder is too small
+    if (shows_error) estimate_noise(state, estimate, iteration.weight);
+    merge_independent(state, state.solution.irradiance, estimate.irradiance, iteration);
+    merge_escaped_power(state, estimate.escaped_power, iteration);
+    update_history(state, iteration);
     for (std::size_t e = 0; e < hits_.size(); ++e) hits_[e] += fresh_hits_[e];
 }
 
@@ -116,7 +116,8 @@ bool PhotonMesh::has_quarters_to_divide(const SolverState& state, std::uint32_t 
     std::array<float, 4> areas{};
     for (std::uint32_t k = 0; k < 4; ++k) {
         const std::uint32_t quarter = first + k;
-        hits[k] = hits_[quarter], areas[k] = forest.area(quarter);
+        hits[k] = hits_[quarter];
+        areas[k] = forest.area(quarter);
         if (!forest.is_leaf(quarter) || areas[k] < 4 * min_area(state, quarter)) return false;
     }
     return quarters_differ(hits, areas);
@@ -157,7 +158,10 @@ void PhotonMesh::archive(StateArchive& archive) {
 bool quarters_differ(const std::array<HitSum, 4>& hits, const std::array<float, 4>& areas) {
     double area = 0;
     HitSum all;
-    for (std::size_t k = 0; k < 4; ++k) area += areas[k], all += hits[k];
+    for (std::size_t k = 0; k < 4; ++k) {
+        area += areas[k];
+        all += hits[k];
+    }
     if (!(all.sum() > 0)) return false;
     const double effective_hits = all.sum() * all.sum() / all.squares();  // equal ones with the same relative noise
     if (effective_hits * *std::min_element(areas.begin(), areas.end()) < fewest_hits_of_quarter * area) return false;

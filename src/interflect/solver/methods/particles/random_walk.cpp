@@ -80,7 +80,9 @@ RandomWalks::RandomWalks(const SolverState& state)
 
 void RandomWalks::prepare(SolverState& state) {
     before_ = current_;
-    current_.importance.batches = 0, current_.importance.pilot_rays = 0, current_.importance_history = 0;
+    current_.importance.batches = 0;
+    current_.importance.pilot_rays = 0;
+    current_.importance_history = 0;
     walk_importance(state, std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
     state.schedule.record_start(0, state.importance_rays);
 }
@@ -101,37 +103,39 @@ void RandomWalks::walk_importance(SolverState& state, std::int64_t rays) {
     for (std::size_t i = 0; i < psi.size(); ++i) psi[i] += tau * (arrived.irradiance[i].x - psi[i]);
 }
 
-void RandomWalks::update_importance(SolverState& state, IterationPlan& plan) {
+void RandomWalks::update_importance(SolverState& state, TracedIteration& iteration) {
     before_ = current_;
-    plan.importance_rays = std::min(plan.rays, lacking_importance(state, state.schedule.rays() + plan.rays));
+    iteration.importance_rays =
+        std::min(iteration.plan.rays, lacking_importance(state, state.schedule.rays() + iteration.plan.rays));
     const std::int64_t rays_before = state.importance_rays;
-    walk_importance(state, plan.importance_rays);
-    plan.traced = state.importance_rays - rays_before;
+    walk_importance(state, iteration.importance_rays);
+    iteration.rays = state.importance_rays - rays_before;
 }
 
-Estimate RandomWalks::trace(SolverState& state, IterationPlan& plan) {
+Estimate RandomWalks::trace(SolverState& state, TracedIteration& iteration) {
     Estimate estimate;
-    if (plan.rays > plan.importance_rays) {
-        const BatchResult batch = walk(state, light(state), plan.rays - plan.importance_rays, current_.light);
+    if (iteration.plan.rays > iteration.importance_rays) {
+        const BatchResult batch =
+            walk(state, light(state), iteration.plan.rays - iteration.importance_rays, current_.light);
         state.power_rays += batch.rays;
-        plan.traced += batch.rays;
+        iteration.rays += batch.rays;
         estimate = independent_contributions(state, batch);
     }
-    if (plan.traced == 0) plan.traced = plan.rays;  // no visible surface reflects
+    if (iteration.rays == 0) iteration.rays = iteration.plan.rays;  // no visible surface reflects
     return estimate;
 }
 
-void RandomWalks::merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) {
+void RandomWalks::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
     if (estimate.irradiance.empty()) return;
-    const bool shows_error = plan.rays >= state.schedule.start_rays();  // a remainder is too small
-    if (shows_error) estimate_noise(state, estimate, plan.rays);
-    const double before = state.history[0], now = before + static_cast<double>(plan.rays);
-    const double tau = plan.warms_up ? 1 : static_cast<double>(plan.rays) / now;  // Eq. 6
+    const bool shows_error = iteration.weight >= state.schedule.start_rays();  // a remainder is too small
+    if (shows_error) estimate_noise(state, estimate, iteration.weight);
+    const double before = state.history[0], now = before + static_cast<double>(iteration.weight);
+    const double tau = iteration.plan.warms_up ? 1 : static_cast<double>(iteration.weight) / now;  // Eq. 6
     for (std::uint32_t i = 0; i < state.forest->size(); ++i)
         state.solution.irradiance[i] +=
             static_cast<float>(tau) * (estimate.irradiance[i] - state.solution.irradiance[i]);
     state.escaped_power += tau * (estimate.escaped_power - state.escaped_power);
-    std::fill(state.history.begin(), state.history.end(), plan.warms_up ? 0.0f : static_cast<float>(now));
+    std::fill(state.history.begin(), state.history.end(), iteration.plan.warms_up ? 0.0f : static_cast<float>(now));
 }
 
 void RandomWalks::change_views(SolverState& state) {

@@ -21,10 +21,10 @@ class RandomWalks : public IterationMethod {
 
     void prepare(SolverState& state) override;
 
-    void update_importance(SolverState& state, IterationPlan& plan) override;
-    Estimate trace(SolverState& state, IterationPlan& plan) override;
+    void update_importance(SolverState& state, TracedIteration& iteration) override;
+    Estimate trace(SolverState& state, TracedIteration& iteration) override;
     /// Merges by Eq. 6, weighted by planned rays. Traced rays would cause a bias, because long paths also deposit more.
-    void merge(SolverState& state, const Estimate& estimate, const IterationPlan& plan) override;
+    void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) override;
     void discard() override { current_ = before_; }
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;

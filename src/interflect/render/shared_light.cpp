@@ -1,4 +1,4 @@
-#include "interflect/render/light_help.h"
+#include "interflect/render/shared_light.h"
 
 #include <optional>
 #include <utility>
@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-void help_with_light(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, Ranks& ranks) {
+void share_light(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, Ranks& ranks) {
     const Monitor monitor{.on_progress = {}, .ranks = &ranks};
     std::optional<KnownIrradiance> known;
     if (solution) known.emplace(known_irradiance(scene, *solution->forest, solution->irradiance));
@@ -42,7 +42,7 @@ void help_with_light(const Scene& scene, const Solution* solution, const RayCast
                     break;
                 case LightOrder::Kind::group: {
                     const LightOfGroup group = light_of_group(scene, *solution, order.group);
-                    help_with_light(group.scene, &group.solution, RayCaster(group.scene), ranks);
+                    share_light(group.scene, &group.solution, RayCaster(group.scene), ranks);
                     break;
                 }
                 case LightOrder::Kind::end:
@@ -64,6 +64,6 @@ LightOfGroup light_of_group(const Scene& scene, const Solution& solution, std::s
     return light;
 }
 
-void end_light_help(Ranks* ranks) { give_order(ranks, {}); }
+void end_shared_light(Ranks* ranks) { give_order(ranks, {}); }
 
 }  // namespace interflect::detail

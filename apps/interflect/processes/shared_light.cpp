@@ -1,12 +1,12 @@
-#include "apps/interflect/processes/crew_light.h"
+#include "apps/interflect/processes/shared_light.h"
 
 #include <memory>
 
 #include "apps/interflect/commands/commands.h"
-#include "apps/interflect/processes/crew.h"
+#include "apps/interflect/processes/shared_run.h"
 #include "interflect/elements/forest.h"
 #include "interflect/exports/saved_run.h"
-#include "interflect/render/light_help.h"
+#include "interflect/render/shared_light.h"
 
 namespace interflect::command {
 
@@ -28,25 +28,25 @@ Solution dark_solution(const Scene& scene) {
 
 }  // namespace
 
-CrewLight::~CrewLight() { end_light_help(ranks_); }
+SharedLight::~SharedLight() { end_shared_light(ranks_); }
 
-void CrewLight::start() {
+void SharedLight::start() {
     if (ranks_) return;
-    ranks_ = start_light_help(
+    ranks_ = start_shared_light(
         [this] { return solution_image(scene_, solution_ ? *solution_ : dark_solution(scene_), nullptr); });
 }
 
-void CrewLight::share(Monitor monitor, const std::function<void(const Monitor&)>& work) try {
+void SharedLight::share(Monitor monitor, const std::function<void(const Monitor&)>& work) try {
     start();
     monitor.ranks = ranks_;
     work(monitor);
 } catch (const Stopped&) {
     throw;
 } catch (const InputError& e) {
-    if (ranks_) end_crew_after_fault(e, bad_input);
+    if (ranks_) end_ranks_after_fault(e, bad_input);
     throw;
 } catch (const std::exception& e) {
-    if (ranks_) end_crew_after_fault(e, failed);
+    if (ranks_) end_ranks_after_fault(e, failed);
     throw;
 }
 

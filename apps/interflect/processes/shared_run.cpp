@@ -1,4 +1,4 @@
-#include "apps/interflect/processes/crew.h"
+#include "apps/interflect/processes/shared_run.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -23,14 +23,14 @@
 #include "interflect/exports/saved_run.h"
 #include "interflect/ranks.h"
 #include "interflect/ray_caster.h"
-#include "interflect/render/light_help.h"
+#include "interflect/render/shared_light.h"
 #include "interflect/solution.h"
 
 namespace interflect::command {
 
 namespace {
 
-std::shared_ptr<Ranks> crew;
+std::shared_ptr<Ranks> ranks;
 
 /// mpirun kills all processes two seconds after one has called for the end.
 constexpr std::chrono::milliseconds time_to_end_processes{2500};
@@ -51,20 +51,20 @@ std::span<std::byte> bytes_of(T& value) {
 }
 
 void give(Order order) {
-    if (crew) crew->broadcast(bytes_of(order));
+    if (ranks) ranks->broadcast(bytes_of(order));
 }
 
 Order receive_order() {
     Order order{};
-    crew->broadcast(bytes_of(order));
+    ranks->broadcast(bytes_of(order));
     return order;
 }
 
-void give_text(std::string& text) { crew->broadcast(std::as_writable_bytes(std::span(text))); }
+void give_text(std::string& text) { ranks->broadcast(std::as_writable_bytes(std::span(text))); }
 
 std::string receive_text(std::size_t size) {
     std::string text(size, '\0');
-    crew->broadcast(std::as_writable_bytes(std::span(text)));
+    ranks->broadcast(std::as_writable_bytes(std::span(text)));
     return text;
 }
 
@@ -79,7 +79,7 @@ void serve_light(const Order& order) {
     const ThreadLimit threads(order.threads);
     const SolvedScene solved = detail::read_solution_image(receive_text(order.bytes));
     const RayCaster ray_caster(solved.scene);
-    detail::help_with_light(solved.scene, &solved.solution, ray_caster, *crew);
+    detail::share_light(solved.scene, &solved.solution, ray_caster, *ranks);
 }
 
 void serve_run(const Order& order) {
@@ -89,7 +89,7 @@ void serve_run(const Order& order) {
     for (Order next = receive_order(); next.kind != Order::Kind::end_of_run; next = receive_order()) {
         if (next.kind == Order::Kind::advance) {
             set_last_checkpoint(next.has_checkpoint ? checkpoint : "");
-            solver.advance(next.limits, {.on_progress = {}, .ranks = crew.get()});
+            solver.advance(next.limits, {.on_progress = {}, .ranks = ranks.get()});
         } else if (next.kind == Order::Kind::light) {
             serve_light(next);
         } else {
@@ -98,85 +98,86 @@ void serve_run(const Order& order) {
     }
 }
 
-std::string difference_within_crew() try {
-    return detail::difference_among(*crew, detail::Fingerprint::of_this_process());
+std::string difference_among_ranks() try {
+    return detail::difference_among(*ranks, detail::Fingerprint::of_this_process());
 } catch (const std::exception& e) {
-    end_crew_after_fault(e, failed);
+    end_ranks_after_fault(e, failed);
     throw;
 }
 
 }  // namespace
 
-Role join_crew() {
+Role connect_ranks() {
     if (launched_rank().value_or(0) > 0) ignore_stop_signals();
-    crew = join_ranks(report_fault);
-    if (!crew) return Role::first;
-    const bool is_first = crew->rank() == 0;
+    ranks = join_ranks(report_fault);
+    if (!ranks) return Role::first;
+    const bool is_first = ranks->rank() == 0;
     if (!is_first) ignore_stop_signals();
-    const std::string difference = difference_within_crew();
-    if (difference.empty()) return is_first ? Role::first : Role::helper;
+    const std::string difference = difference_among_ranks();
+    if (difference.empty()) return is_first ? Role::first : Role::other;
     if (is_first) {
         spdlog::error("{}", difference);  // before the others end, upon which mpirun ends this process
         ignore_stop_signals();
     }
-    crew.reset();
+    ranks.reset();
     return Role::refused;
 }
 
-void end_crew_after_fault(const std::exception& error, int exit_code) {
-    if (!crew || crew->count() == 1) return;
+void end_ranks_after_fault(const std::exception& error, int exit_code) {
+    if (!ranks || ranks->count() == 1) return;
     // An error of all processes is reported by the first, which then ends the others.
-    if (crew->rank() > 0) std::this_thread::sleep_for(time_to_end_processes);
-    report_fault(fmt::format("{}: {}", name_of_process(crew->rank()), explanation(error)));
-    crew->abort(exit_code);
+    if (ranks->rank() > 0) std::this_thread::sleep_for(time_to_end_processes);
+    report_fault(fmt::format("{}: {}", name_of_process(ranks->rank()), explanation(error)));
+    ranks->abort(exit_code);
 }
 
-void serve_crew() {
+void serve_first_rank() {
     for (Order order = receive_order(); order.kind != Order::Kind::dismiss; order = receive_order())
         order.kind == Order::Kind::light ? serve_light(order) : serve_run(order);
-    crew.reset();
+    ranks.reset();
 }
 
-void dismiss_crew() {
+void dismiss_ranks() {
     give({.kind = Order::Kind::dismiss});
-    crew.reset();
+    ranks.reset();
 }
 
-Ranks* start_light_help(const std::function<std::string()>& make_image) {
-    if (!crew || crew->count() == 1) return nullptr;
+Ranks* start_shared_light(const std::function<std::string()>& make_image) {
+    if (!ranks || ranks->count() == 1) return nullptr;
     std::string image = make_image();
     give({.kind = Order::Kind::light, .bytes = image.size(), .threads = limit_of_threads()});
     give_text(image);
-    return crew.get();
+    return ranks.get();
 }
 
-CrewRun::CrewRun(Solver& solver, std::filesystem::path checkpoint)
+SharedRun::SharedRun(Solver& solver, std::filesystem::path checkpoint)
     : solver_(solver), checkpoint_(std::move(checkpoint)) {
-    if (!crew) return;
-    if (const Method& method = solver.options().method; crew->count() > 1 && !method.shares_rays)
+    if (!ranks) return;
+    if (const Method& method = solver.options().method; ranks->count() > 1 && !method.shares_rays)
         spdlog::warn("{} does not divide its rays: each of the {} processes does all the work", method.name,
-                     crew->count());
+                     ranks->count());
     std::string run = solver.image(), name = checkpoint_.string();
     give({.kind = Order::Kind::solve, .name_bytes = name.size(), .bytes = run.size(), .threads = limit_of_threads()});
-    give_text(name), give_text(run);
+    give_text(name);
+    give_text(run);
 }
 
-CrewRun::~CrewRun() { give({.kind = Order::Kind::end_of_run}); }
+SharedRun::~SharedRun() { give({.kind = Order::Kind::end_of_run}); }
 
-AdvanceReport CrewRun::advance(const Limits& limits, Monitor monitor) try {
+AdvanceReport SharedRun::advance(const Limits& limits, Monitor monitor) try {
     std::error_code ignored;
     const bool has_checkpoint = has_advanced_ && std::filesystem::exists(checkpoint_, ignored);
     has_advanced_ = true;
     set_last_checkpoint(has_checkpoint ? checkpoint_ : "");
     give({.kind = Order::Kind::advance, .limits = limits, .has_checkpoint = has_checkpoint});
-    monitor.ranks = crew.get();
+    monitor.ranks = ranks.get();
     return solver_.advance(limits, monitor);
 } catch (const std::exception& e) {
-    end_crew_after_fault(e, failed);  // the others wait for this process in the midst of their work
+    end_ranks_after_fault(e, failed);  // the others wait for this process in the midst of their work
     throw;
 }
 
-void CrewRun::set_plan(const Limits& limits) {
+void SharedRun::set_plan(const Limits& limits) {
     solver_.set_plan(limits);  // first: it may throw
     give({.kind = Order::Kind::plan, .limits = limits});
 }

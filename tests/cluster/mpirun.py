@@ -44,7 +44,7 @@ def processes_of(launcher: subprocess.Popen) -> dict[int, int]:
     return {rank: process for process in map(int, found) if (rank := rank_of(process)) is not None}
 
 
-class CrewTest(CommandTest):
+class RanksTest(CommandTest):
     def setUp(self):
         super().setUp()
         self.write("room.mgf", room())

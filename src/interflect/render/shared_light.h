@@ -9,10 +9,10 @@
 namespace interflect::detail {
 
 /// Traces the share of this rank in the pictures, measurements and exports for which rank 0 passes Monitor::ranks,
-/// until rank 0 calls end_light_help(). For the other ranks.
+/// until rank 0 calls end_shared_light(). For the other ranks.
 /// @param scene     With the bits of rank 0, as `solution`.
 /// @param solution  Null: rank 0 does not draw solutions.
-void help_with_light(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, Ranks& ranks);
+void share_light(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, Ranks& ranks);
 
 struct LightOfGroup {
     Scene scene;  ///< Other groups do not emit.
@@ -23,7 +23,7 @@ struct LightOfGroup {
 /// @param group  Index into solution.group_names.
 LightOfGroup light_of_group(const Scene& scene, const Solution& solution, std::size_t group);
 
-/// Rank 0 ends help_with_light() in all other ranks. No effect for null.
-void end_light_help(Ranks* ranks);
+/// Rank 0 ends share_light() in all other ranks. No effect for null.
+void end_shared_light(Ranks* ranks);
 
 }  // namespace interflect::detail

@@ -8,15 +8,15 @@
 
 namespace interflect::command {
 
-/// Light of a scene that the whole crew computes: paths of pictures, measuring points, texels, vertices and probes.
-/// Without a crew it has no effect.
-class CrewLight {
+/// Light of a scene that all ranks compute: paths of pictures, measuring points, texels, vertices and probes.
+/// Without other ranks it has no effect.
+class SharedLight {
   public:
     /// Keeps references. @param solution  Null: light is computed from the scene alone.
-    CrewLight(const Scene& scene, const Solution* solution) : scene_(scene), solution_(solution) {}
-    ~CrewLight();
-    CrewLight(const CrewLight&) = delete;
-    CrewLight& operator=(const CrewLight&) = delete;
+    SharedLight(const Scene& scene, const Solution* solution) : scene_(scene), solution_(solution) {}
+    ~SharedLight();
+    SharedLight(const SharedLight&) = delete;
+    SharedLight& operator=(const SharedLight&) = delete;
 
     /// Sends scene and solution to the others, unless they have them.
     void start();
