@@ -112,9 +112,10 @@ TEST(PatchClusters, AreTheSameInAnyUnitOfLength) {
     for (std::size_t tree = 0; tree < metres.state.clusters.size(); ++tree) {
         const auto a = metres.state.clusters[tree].nodes(), b = kilometres.state.clusters[tree].nodes();
         ASSERT_EQ(a.size(), b.size());
-        for (std::size_t i = 0; i < a.size(); ++i)
+        for (std::size_t i = 0; i < a.size(); ++i) {
             ASSERT_EQ(a[i].child_count, b[i].child_count) << "tree " << tree << ", node " << i;
-        ASSERT_EQ(a[i].patch, b[i].patch) << "tree " << tree << ", node " << i;
+            ASSERT_EQ(a[i].patch, b[i].patch) << "tree " << tree << ", node " << i;
+        }
     }
 }
 
