@@ -9,6 +9,7 @@
 ///     options.views = {{scene.views[0]}};
 ///     const Solution solution = solve(scene, ray_caster, options);    // solve.h; step by step: Solver in solver.h
 ///     for (const Leaf& leaf : leaves(scene, solution)) ... // solution.h: irradiance and errors of the mesh; files
+///     find_escapes(scene, ray_caster, solution);           // leaks.h: light that leaves the scene through gaps
 ///     render(scene, solution, ray_caster, scene.views[0]); // render.h, shading.h; image.h writes files
 ///     compare(image, reference).flip;                      // metrics.h: differences of pictures
 ///     measure_irradiance(...);                             // measure.h: lux at points and grids, glare, probes
@@ -23,6 +24,7 @@
 #include "interflect/core.h"
 #include "interflect/export.h"
 #include "interflect/image.h"
+#include "interflect/leaks.h"
 #include "interflect/light_sources.h"
 #include "interflect/load.h"
 #include "interflect/measure.h"

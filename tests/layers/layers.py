@@ -7,7 +7,7 @@ from pathlib import Path
 # A folder of src/interflect uses only those before it; the programs in apps/ may use them all.
 LAYERS = [
     "base", "scene", "geometry", "image", "generators", "formats", "raycast", "luminaires", "checks", "view_factors",
-    "elements", "solver", "render", "photometry", "metrics", "exports", "cluster",
+    "elements", "solver", "render", "audit", "photometry", "metrics", "exports", "cluster",
 ]
 
 # Their own folders, in the same order; files beside these come last.
@@ -31,6 +31,7 @@ INNER_LAYERS = {
         "refinement", "iteration", "methods", "methods/baselines", "methods/links", "methods/particles", ".",
     ],
     "render": ["smooth", "lights", "reflections", "rays", "paths", "prepared", "sharing", "pictures", "gauges", "."],
+    "audit": ["."],
     "photometry": ["."],
     "metrics": ["."],
     "exports": ["hdf5", "records", "mesh", "lightmap", "vertices", "files", "gltf", "foreign", "."],
