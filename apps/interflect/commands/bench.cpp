@@ -171,12 +171,11 @@ void run(const BenchArguments& options, const CLI::App& command) {
         throw UsageError("--view", "a picture has one view, but several were given");
     if (is_picture) require_memory_for_paths(options.picture.size);
     Scene scene = options.scene.load();
-    SolveOptions solve_options;
-    solve_options.limits.rays = options.rays;
-    for (const View& view : options.view.views(scene)) solve_options.views.push_back({view});
-    if (is_picture && solve_options.views.empty())
-        solve_options.views.push_back({scene.views.empty() ? overview(scene) : scene.views.front()});
-    solve_options.method = options.method.value_or(default_method(!solve_options.views.empty()));
+    GivenSettings given{.method = options.method, .limits = {.rays = options.rays}};
+    for (const View& view : options.view.views(scene)) given.others.views.push_back({view});
+    if (is_picture && given.others.views.empty())
+        given.others.views.push_back({scene.views.empty() ? overview(scene) : scene.views.front()});
+    const SolveOptions solve_options = resolved(given);
     scene = options.mesh.divide(std::move(scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(scene);
 

@@ -307,39 +307,34 @@ void add_method(CLI::App& app, std::optional<Method>& method) {
         ->group(solver_group);
 }
 
-void LimitOptions::add_to(CLI::App& app) {
+void add_limits(CLI::App& app, GivenLimits& limits) {
     const auto group = [](CLI::Option* option) { option->group(limits_group); };
-    group(add_parsed(app, "--rays", rays, parse_count,
+    group(add_parsed(app, "--rays", limits.rays, parse_count,
                      "Most rays to trace in all, such as 20M (default 20M, unless --time or --until is given)")
               ->type_name("COUNT"));
     group(
-        app.add_option("--time", time,
+        app.add_option("--time", limits.time,
                        "Most seconds to solve, besides reading, cutting and writing; in render: for the whole command")
             ->type_name("SECONDS")
             ->check(number_between(1e-3, 1e9)));
-    group(add_parsed(app, "--until", until, parse_share,
+    group(add_parsed(app, "--until", limits.until, parse_share,
                      "Stop at this estimated relative error, such as 2%; with a view: of what it shows")
               ->type_name("SHARE"));
 }
 
-Limits LimitOptions::resolved() const {
-    const Limits unlimited;
-    return {rays.value_or(unlimited.rays), time.value_or(unlimited.time), until.value_or(unlimited.until)};
-}
-
 void SolverOptions::add_to(CLI::App& app) {
-    add_method(app, method_);
-    add_parsed(app, "--seed", solve_.seed, parse_seed, "Same seed, same bits")
+    add_method(app, given_.method);
+    add_parsed(app, "--seed", given_.others.seed, parse_seed, "Same seed, same bits")
         ->type_name("NUMBER")
         ->default_str("1")
         ->group(solver_group);
-    app.add_flag("--keep-direct", solve_.keep_direct,
+    app.add_flag("--keep-direct", given_.others.keep_direct,
                  "Keep the light that comes straight from sources apart, in the solution file")
         ->group(solver_group);
     app.add_option("--stats", stats, "Write what each iteration did to this file, as JSON lines")
         ->type_name("FILE")
         ->group(solver_group);
-    limits_.add_to(app);
+    add_limits(app, given_.limits);
     add_refinement(app);
     add_importance(app);
     add_schedule(app);
@@ -350,7 +345,7 @@ void SolverOptions::add_to(CLI::App& app) {
 
 void SolverOptions::add_refinement(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(refinement_group); };
-    RefinementOptions& refinement = solve_.refinement;
+    RefinementOptions& refinement = given_.others.refinement;
     group(add_choice<RefinementCriterion>(
               app, "--refinement-criterion", refinement.criterion,
               {{"variance", RefinementCriterion::variance},
@@ -377,10 +372,10 @@ void SolverOptions::add_refinement(CLI::App& app) {
 void SolverOptions::add_importance(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(importance_group); };
     group(add_choice<ImportanceUse>(
-        app, "--importance", importance_,
+        app, "--importance", given_.importance,
         {{"off", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}},
         "What a view steers by: nothing, what it shows, or that and all that lights it (default: the method's)"));
-    ImportanceOptions& importance = solve_.importance;
+    ImportanceOptions& importance = given_.others.importance;
     group(app.add_option("--camera-rays", importance.camera_rays,
                          "Rays that find what a view shows at first, per view; more follow as rays are averaged")
               ->capture_default_str()
@@ -400,14 +395,13 @@ void SolverOptions::add_importance(CLI::App& app) {
 
 void SolverOptions::add_schedule(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(experimental_group); };
-    ExperimentalOptions& o = solve_.experimental;
+    ExperimentalOptions& o = given_.others.experimental;
     // Takes effect while the command line is parsed, before the options that replace its settings.
     group(app.add_option_function<std::string>(
                  "--preset",
                  [this](const std::string&) {
-                     use_published_algorithm(solve_);
-                     solve_.experimental.rays_per_iteration = 0;  // depends on --rays
-                     is_published_ = true;
+                     use_published_algorithm(given_.others);
+                     given_.is_published = true;
                  },
                  "paper: the algorithm as published in 2000, in 10 iterations that warm up and 100 that are averaged; "
                  "other options replace its settings")
@@ -425,14 +419,14 @@ void SolverOptions::add_schedule(CLI::App& app) {
     group(app.add_option("--iterations", o.iterations, "Averaged iterations; 0: as many as the limits allow")
               ->capture_default_str()
               ->check(CLI::Range(0, 1'000'000'000)));
-    group(add_parsed(app, "--rays-per-iteration", o.rays_per_iteration, parse_iteration_size,
+    group(add_parsed(app, "--rays-per-iteration", given_.rays_per_iteration, parse_iteration_size,
                      "Rays of each iteration; default: small at first, then growing")
               ->type_name("COUNT"));
 }
 
 void SolverOptions::add_paper_refinement(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(experimental_group); };
-    ExperimentalOptions& o = solve_.experimental;
+    ExperimentalOptions& o = given_.others.experimental;
     group(app.add_flag("--shrinkage,!--no-shrinkage", o.shrinkage,
                        "Reduce differences of neighbouring elements that are mostly noise "
                        "(with --refinement-criterion variance)"));
@@ -462,7 +456,7 @@ void SolverOptions::add_paper_refinement(CLI::App& app) {
 
 void SolverOptions::add_paper_importance(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(experimental_group); };
-    ExperimentalOptions& o = solve_.experimental;
+    ExperimentalOptions& o = given_.others.experimental;
     group(app.add_flag("--separate-iterations", o.separate_iterations,
                        "Importance and power in steps of their own ('si'), instead of in one ('ci')"));
     group(app.add_flag("--importance-at-patches", o.importance_at_patches,
@@ -480,17 +474,9 @@ void SolverOptions::add_paper_importance(CLI::App& app) {
 }
 
 SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect, int pixel_rows) const {
-    SolveOptions options = solve_;
-    options.method = method_.value_or(default_method(!views.empty()));
-    options.method.importance = importance_.value_or(options.method.importance);
-    for (const View& view : views) options.views.push_back({view, 1, aspect, pixel_rows});
-    if (limits_.any()) options.limits = limits_.resolved();
-    if (is_published_ && options.experimental.rays_per_iteration == 0) {
-        SolveOptions published = options;
-        use_published_algorithm(published);
-        options.experimental.rays_per_iteration = published.experimental.rays_per_iteration;
-    }
-    return options;
+    GivenSettings given = given_;
+    for (const View& view : views) given.others.views.push_back({view, 1, aspect, pixel_rows});
+    return interflect::resolved(given);
 }
 
 }  // namespace interflect::command
