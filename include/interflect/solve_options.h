@@ -167,9 +167,9 @@ struct GivenSettings {
     std::optional<Method> method = {};             ///< Default: default_method() for the views.
     std::optional<ImportanceUse> importance = {};  ///< Default: as the method.
     GivenLimits limits = {};                       ///< Without any: those of SolveOptions.
-    /// Preset "paper": use_published_algorithm(). `others` must begin with it, so that given settings replace its own.
+    /// Whether the preset of the paper applies. `others` then starts from use_published_algorithm().
     bool is_published = false;
-    /// ExperimentalOptions::rays_per_iteration. Default: that of the preset for the limits, or growing.
+    /// ExperimentalOptions::rays_per_iteration. Default: 1/110 of the rays with the preset, otherwise 0.
     std::optional<std::int64_t> rays_per_iteration = {};
     SolveOptions others = {};  ///< Views and all other settings; those above are ignored.
 };

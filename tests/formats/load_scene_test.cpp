@@ -6,7 +6,7 @@
 #include <string>
 
 #include "interflect/core.h"
-#include "interflect/generators/maze.h"
+#include "interflect/generate.h"
 #include "tests/support/refusals.h"
 
 namespace interflect {

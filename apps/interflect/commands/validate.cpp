@@ -10,7 +10,6 @@
 #include "apps/interflect/processes/long_work.h"
 #include "apps/interflect/processes/threads.h"
 #include "apps/interflect/solving/setup_warnings.h"
-#include "interflect/checks/memory_need.h"
 #include "interflect/exports/records/json_text.h"
 #include "interflect/exports/records/solve_report.h"
 #include "interflect/prepare.h"

@@ -12,12 +12,9 @@
 #include "apps/interflect/processes/long_work.h"
 #include "interflect/base/memory/machine_memory.h"
 #include "interflect/core.h"
-#include "interflect/formats/text/extension.h"
-#include "interflect/formats/view_files.h"
-#include "interflect/geometry/surfaces/split.h"
+#include "interflect/load.h"
 #include "interflect/prepare.h"
-#include "interflect/raycast/camera.h"
-#include "interflect/scene/core/view.h"
+#include "interflect/scene.h"
 
 namespace interflect::command {
 
@@ -264,7 +261,7 @@ void ViewOptions::add_without_up(CLI::App& app) {
 
 void ViewOptions::check() const {
     if (!(up.length() > 0)) throw UsageError("--up", "0,0,0 is no direction");
-    if (eye) check_option("--eye", [&] { Camera(view_of_eye(), 1, 1, *eye); });
+    if (eye) check_option("--eye", [&] { require_picture(view_of_eye(), 1, 1, *eye); });
 }
 
 std::vector<View> ViewOptions::views(const Scene& scene) const {
@@ -275,7 +272,7 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
     for (const std::string& name : names) views.push_back(find_view(scene, name));
     for (const auto& file : files) views.push_back(read_radiance_view(file));
     if (eye) views.push_back(view_of_eye());
-    for (const View& view : views) Camera(view, 1, 1, scene.origin);  // refuses views without a picture
+    for (const View& view : views) require_picture(view, 1, 1, scene.origin);
     return views;
 }
 

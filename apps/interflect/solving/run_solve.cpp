@@ -15,11 +15,11 @@
 #include "apps/interflect/processes/signals.h"
 #include "apps/interflect/values/percent.h"
 #include "interflect/base/memory/machine_memory.h"
-#include "interflect/checks/memory_need.h"
 #include "interflect/core.h"
 #include "interflect/leaks.h"
+#include "interflect/prepare.h"
 #include "interflect/solution.h"
-#include "interflect/solver/light/materials.h"
+#include "interflect/summary.h"
 
 namespace interflect::command {
 

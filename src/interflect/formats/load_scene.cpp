@@ -23,7 +23,7 @@
 #include "interflect/formats/text/number.h"
 #include "interflect/formats/text/text_file.h"
 #include "interflect/formats/view_files.h"
-#include "interflect/generators/maze.h"
+#include "interflect/generate.h"
 #include "interflect/scene/core/core.h"
 
 namespace interflect {

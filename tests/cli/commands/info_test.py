@@ -189,7 +189,7 @@ class Solution(CommandTest):
         self.assertNotIn("alpha", text, "only what differs from the defaults")
 
     def test_of_version_3_tells_what_it_knows(self):
-        report = self.json("info", ROOT / "tests" / "exports" / "version-3.h5")
+        report = self.json("info", ROOT / "tests" / "exports" / "hdf5" / "version-3.h5")
         self.assertEqual((report["format_version"], report["method"], report["patches"]), (3, "isrr", 13))
         self.assertEqual((report["result"]["rays"], report["result"]["elements"]), (1000, 13))
         for key in ("version", "options", "files"):
