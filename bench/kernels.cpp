@@ -9,7 +9,7 @@
 
 #include "interflect/base/numbers/points.h"
 #include "interflect/elements/forest.h"
-#include "interflect/generators/maze.h"
+#include "interflect/generate.h"
 #include "interflect/ray_caster.h"
 #include "interflect/solve.h"
 #include "interflect/solver/deposit/contributions.h"

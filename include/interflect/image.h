@@ -2,6 +2,7 @@
 /// Images, their files, tone mapping and exposure.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -143,5 +144,14 @@ float automatic_exposure(const Image& image);
 /// @throws InputError for an exposure that is not finite, and a display luminance that is not finite and > 0.
 Image tone_map(const Image& image, float exposure, Tonemap curve = Tonemap::srgb,
                float display_luminance = usual_display_luminance);
+
+/// Encodes a tone-mapped image as the bytes of a PNG file. @throws InputError as require_pixels() does.
+std::string encode_png(const Image& image);
+
+/// Whether files of this format can hold an image of this size: PNG takes at most 2^30 bytes before compression.
+bool can_hold(ImageFormat format, int width, int height);
+
+/// Display values of a linear Rec. 709 colour: 8-bit sRGB of each channel, clamped. No channel may be NaN.
+std::array<std::uint8_t, 3> srgb_bytes(const Rgb& linear);
 
 }  // namespace interflect

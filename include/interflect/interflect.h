@@ -9,6 +9,7 @@
 ///     options.views = {{scene.views[0]}};
 ///     const Solution solution = solve(scene, ray_caster, options);    // solve.h; step by step: Solver in solver.h
 ///     for (const Leaf& leaf : leaves(scene, solution)) ... // solution.h: irradiance and errors of the mesh; files
+///     find_escapes(scene, ray_caster, solution);           // leaks.h: light that leaves the scene through gaps
 ///     render(scene, solution, ray_caster, scene.views[0]); // render.h, shading.h; image.h writes files
 ///     compare(image, reference).flip;                      // metrics.h: differences of pictures
 ///     measure_irradiance(...);                             // measure.h: lux at points and grids, glare, probes
@@ -22,12 +23,16 @@
 
 #include "interflect/core.h"
 #include "interflect/export.h"
+#include "interflect/generate.h"
 #include "interflect/image.h"
+#include "interflect/leaks.h"
 #include "interflect/light_sources.h"
 #include "interflect/load.h"
 #include "interflect/measure.h"
 #include "interflect/metrics.h"
+#include "interflect/plots.h"
 #include "interflect/prepare.h"
+#include "interflect/rates.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/scene.h"
@@ -36,4 +41,5 @@
 #include "interflect/solve.h"
 #include "interflect/solve_options.h"
 #include "interflect/solver.h"
+#include "interflect/summary.h"
 #include "interflect/view_factors.h"

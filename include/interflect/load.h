@@ -118,4 +118,12 @@ void add_daylight(Scene& scene, const Daylight& added);
 Scene load_scene(const std::filesystem::path& path, const ReadOptions& options = {},
                  std::span<const PlacedLuminaire> luminaires = {}, const Daylight& added = {});
 
+/// Path of the optional file with the views of a scene: /a/office.views.json for /a/office.mgf.
+std::filesystem::path view_list_path(const std::filesystem::path& scene_path);
+
+/// Reads a Radiance view (rvu options), named after the file, with Radiance's defaults; later lines override. Ignores
+/// -vh, which follows from the picture's shape.
+/// @throws InputError, also for projections other than -vtv, shift, lift or clipping planes.
+View read_radiance_view(const std::filesystem::path& path);
+
 }  // namespace interflect

@@ -304,4 +304,16 @@ inline constexpr std::int64_t max_probes = 1'000'000;
 ProbeGrid irradiance_probes(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                             const ProbeOptions& options = {}, const Monitor& monitor = {});
 
+/// Fault of the place of a measuring point.
+enum class PointFault {
+    sound,    ///< No fault.
+    outside,  ///< A quarter of its front directions leave a closed room.
+    behind    ///< Inside a solid: most rays first pass the back of a one-sided face.
+};
+
+/// Finds points outside of the scene and inside solids. Traces 32 rays and their reversed rays for at most 2048 evenly
+/// spaced points.
+std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_caster,
+                                     std::span<const MeasuringPoint> points);
+
 }  // namespace interflect

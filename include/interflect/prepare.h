@@ -1,14 +1,16 @@
 /// @file
-/// Before solving: cuts faces at contacts, and finds faults that would spoil the light.
+/// Before solving: cuts faces at contacts, divides them, finds faults that would spoil the light, predicts the memory.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
+#include "interflect/solve_options.h"
 
 namespace interflect {
 
@@ -99,5 +101,63 @@ std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, c
 /// @return  In this order, the same for any number of threads. @throws InputError as validate() does.
 std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_caster,
                                     const ValidateOptions& options = {});
+
+/// Divides patches into grids, for methods without refinement. Triangles become n^2 triangles.
+/// @param largest_edge  Maximum edge of the pieces [m], > 0.
+/// @throws InputError above `max_patches`, for an invalid edge and a scene with faults.
+Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_patches);
+
+/// Returns an edge length [m]: 1/48 of the diagonal of the scene, or more for at most about 200,000 patches.
+float default_mesh_size(const Scene& scene);
+
+/// Returns a minimum element side [m]: 5 mm, at most a thousandth of the area-weighted median patch side.
+double default_element_size(const Scene& scene);
+
+/// Axis that points up in a scene.
+struct UpAxis {
+    const char* axis;      ///< "x", "-x", "y", ...
+    const char* evidence;  ///< "views": nearly certain; "light": a guess.
+
+    V3f direction() const;  ///< Unit vector.
+};
+
+/// Returns the common up axis of the views, or opposite to most emitted light, since most lamps hang.
+/// @return  nullopt if neither exists.
+std::optional<UpAxis> find_up_axis(const Scene& scene);
+
+/// Peak memory of a run [bytes].
+struct MemoryNeed {
+    std::size_t scene = 0;
+    std::size_t ray_tracer = 0;  ///< Includes coincident faces.
+    std::size_t patches = 0;     ///< Without elements.
+    std::size_t rest = 0;        ///< Program, threads, hits of camera rays.
+
+    /// Arrays of the solver [bytes]. Measured: 98 to 109 for 0.7 to 3 million elements.
+    std::size_t per_element = 128;
+
+    /// Sum of the parts but for elements [bytes].
+    std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
+    /// For a number of elements, at least one per patch [bytes].
+    std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
+};
+
+/// Predicts the memory of a run. Excludes links of method hr, 24 bytes each.
+MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
+/// Includes SolveOptions::keep_direct.
+MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options);
+
+/// Returns the number of elements that fit into a memory. @param bytes  [bytes].
+/// @throws InputError with the required memory if the patches do not fit.
+std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Scene& scene);
+
+/// First hits of a view's rays, as shares of the picture.
+struct ViewCoverage {
+    double nothing = 0;  ///< No face.
+    double backs = 0;    ///< The back of a one-sided face; the rays pass through it.
+};
+
+/// Traces a view's rays through 36 rows of pixels. From outside of a scene, most rays meet nothing or backs.
+/// @param aspect  Width over height of the picture. @throws InputError for a view that defines no picture.
+ViewCoverage view_coverage(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect);
 
 }  // namespace interflect

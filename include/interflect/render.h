@@ -3,11 +3,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "interflect/image.h"
+#include "interflect/plots.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
 #include "interflect/shading.h"
@@ -129,5 +132,45 @@ Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& vi
 /// biased where the light varies by less than its noise.
 /// @return  The picture, in the same unit.
 Image denoise(const PictureLayers& layers);
+
+/// Number of each element of a solution.
+enum class ElementQuantity {
+    irradiance,         ///< Luminance of H [lm/m^2 or W/m^2].
+    importance,         ///< Importance psi [1/m^2].
+    direct_importance,  ///< Its part v directly from the cameras [1/m^2].
+    level,              ///< Number of divisions of the patch.
+    rays,               ///< Number of rays started, per area [1/m^2].
+    error,              ///< Relative standard error of the luminance of H.
+};
+
+/// Name and unit: "irradiance [lm/m^2]".
+std::string label(ElementQuantity quantity);
+
+/// A picture of numbers.
+struct QuantityPicture {
+    Image values;  ///< Means over visible surfaces; 0 without surfaces.
+    Image shown;   ///< False colours; escaped rays are black.
+    ColourScale scale;
+    std::int64_t non_finite_pixels = 0;  ///< In either image.
+    bool interrupted = false;            ///< The remaining pixels are 0.
+};
+
+/// Draws a number of the visible elements, without shading, in false colours. The scale is fitted to the visible
+/// values, and logarithmic but for levels.
+/// @param options  Its size, `samples` >= 1 and `seed`.
+/// @throws InputError as render() does, and for importance of a solution without views.
+QuantityPicture draw_quantity(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
+                              const View& view, ElementQuantity quantity, const PictureOptions& options,
+                              const Monitor& monitor = {});
+
+/// Draws the borders and silhouettes of visible elements over a tone-mapped picture.
+/// @param picture  Drawn from `view`. @param samples  Rays per pixel for the lines, >= 1.
+/// @throws InputError as render() does.
+Image draw_mesh(const Image& picture, const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
+                const View& view, int samples, std::uint64_t seed = 1, const Monitor& monitor = {});
+
+/// Predicts the peak memory of tracing the paths of a picture [bytes], in addition to scene, ray caster and solution.
+/// Measured with 1.4 million emitting patches.
+std::size_t path_memory(std::size_t patches, const PictureOptions& options);
 
 }  // namespace interflect

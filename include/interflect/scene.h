@@ -189,4 +189,36 @@ std::vector<Fault> scene_faults(const Scene& scene);
 /// @throws InputError that lists the faults, if any: "cannot solve 'room.mgf':" and a line each.
 void require_no_faults(const std::vector<Fault>& faults, const std::string& purpose, const Scene& scene);
 
+/// Largest coordinate of faces and views, in the world and from the scene's origin [m]; a double resolves 1/8 m there.
+inline constexpr double farthest_coordinate = 1e15;
+
+/// Whether no coordinate of a point exceeds farthest_coordinate or is NaN.
+bool is_within_reach(const Imath::V3d& point);
+
+/// Area of a patch [m^2].
+float patch_area(const Scene& scene, const Patch& patch);
+
+/// Unit normal of a patch, towards its lit side; of a warped quadrilateral the mean over its area.
+V3f patch_normal(const Scene& scene, const Patch& patch);
+
+/// Whether a patch or a luminaire emits light.
+bool emits_light(const Scene& scene);
+
+/// Returns the view of that name. @throws InputError that lists the views.
+const View& find_view(const Scene& scene, const std::string& name);
+
+/// Returns the default view from inside an upper corner of the scene to its middle.
+View overview(const Scene& scene);
+
+/// Returns an orthographic view of the scene beyond a plane, with a margin; z up, or y in views along z.
+/// @param point  On the plane, in world coordinates [m].
+/// @param direction  Normal to the plane; not 0.
+/// @param aspect  Width over height.
+View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& direction, float aspect);
+
+/// @throws InputError for a view that defines no picture of this size: without a direction, with pixels finer than
+///         coordinates or directions of rays, or with too many pixels.
+/// @param origin  Scene::origin.
+void require_picture(const View& view, int width, int height, const Imath::V3d& origin);
+
 }  // namespace interflect

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -149,5 +150,32 @@ struct SolveOptions {
 /// without smoothing; no shrinkage. Iterations have 1/110 of Limits::rays, or grow if those are unlimited. This is the
 /// variant ci+hi; ExperimentalOptions has the others.
 void use_published_algorithm(SolveOptions& options);
+
+/// Limits as a user gives them. With any of them, the others are infinite.
+struct GivenLimits {
+    std::optional<std::int64_t> rays = {};
+    std::optional<double> time = {}, until = {};
+
+    bool any() const { return rays || time || until; }
+    /// Limits that are not given are infinite.
+    Limits limits() const;
+};
+
+/// Settings as a user gives them on the command line or as keyword arguments of Python. resolved() computes the
+/// defaults that depend on other settings.
+struct GivenSettings {
+    std::optional<Method> method = {};             ///< Default: default_method() for the views.
+    std::optional<ImportanceUse> importance = {};  ///< Default: as the method.
+    GivenLimits limits = {};                       ///< Without any: those of SolveOptions.
+    /// Whether the preset of the paper applies. `others` then starts from use_published_algorithm().
+    bool is_published = false;
+    /// ExperimentalOptions::rays_per_iteration. Default: 1/110 of the rays with the preset, otherwise 0.
+    std::optional<std::int64_t> rays_per_iteration = {};
+    SolveOptions others = {};  ///< Views and all other settings; those above are ignored.
+};
+
+/// Computes the plan of a run from the settings that a user gives.
+/// @return  Not checked for ranges, as solve() does that.
+SolveOptions resolved(const GivenSettings& given);
 
 }  // namespace interflect

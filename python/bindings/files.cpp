@@ -3,10 +3,7 @@
 #include "argument.h"
 #include "bindings.h"
 #include "fields.h"
-#include "interflect/checks/faces/up_axis.h"
 #include "interflect/export.h"
-#include "interflect/formats/view_files.h"
-#include "interflect/geometry/surfaces/split.h"
 #include "interflect/load.h"
 #include "interflect/prepare.h"
 #include "long_work.h"
@@ -126,15 +123,9 @@ void take(py::dict& left, const char* name, Value& value) {
 
 /// Up axis as `interflect export` chooses it.
 V3f up_of(const Scene& scene, Warnings& warnings) {
-    const auto found = detail::find_up_axis(scene);
-    if (!found) {
-        warnings.add("up", "the up axis is unknown: taking z; the option up chooses another");
-        return {0, 0, 1};
-    }
-    const std::string axis = found->axis;
-    V3f up(0);
-    up[axis.back() - 'x'] = axis.front() == '-' ? -1.0f : 1.0f;
-    return up;
+    if (const std::optional<UpAxis> found = find_up_axis(scene)) return found->direction();
+    warnings.add("up", "the up axis is unknown: taking z; the option up chooses another");
+    return {0, 0, 1};
 }
 
 std::vector<std::filesystem::path> export_light(const SharedLight& light, const std::filesystem::path& path,
@@ -199,7 +190,7 @@ void bind_files(py::module_& m) {
           py::arg("max_patches"), py::arg("outside_files"), py::arg("further_files"), py::arg("luminaires"),
           py::arg("daylight"), Documented("For interflect.load()."));
     m.def(
-        "read_radiance_view", &detail::read_radiance_view, py::arg("path"),
+        "read_radiance_view", &read_radiance_view, py::arg("path"),
         Documented("Reads a view file of Radiance (.vf), with Radiance's defaults; it is named after the file.")
             .raises(
                 "InputError: for an invalid file, for projections other than -vtv, shift, lift and clipping planes."));
@@ -217,7 +208,7 @@ void bind_files(py::module_& m) {
         [](const std::shared_ptr<Scene>& scene, const std::optional<float>& min_extent) {
             if (min_extent && !(*min_extent >= 0)) throw InputError("min_extent: expected 0 m or more");
             return pure_work(0, [&] {
-                const float usual = static_cast<float>(2 * detail::default_element_size(*scene));
+                const float usual = static_cast<float>(2 * default_element_size(*scene));
                 return std::make_shared<Scene>(cut_at_contacts(*scene, {.min_extent = min_extent.value_or(usual)}));
             });
         },

@@ -3,7 +3,8 @@
 #include "argument.h"
 #include "bindings.h"
 #include "fields.h"
-#include "interflect/scene/core/view.h"
+#include "interflect/scene.h"
+#include "long_work.h"
 #include "scene_arrays.h"
 
 namespace interflect::python {
@@ -42,14 +43,47 @@ std::string describe(const Scene& s) {
                        s.materials.size(), s.luminaires.size(), s.views.size());
 }
 
+void bind_summary(py::module_& m) {
+    py::class_<MaterialSummary>(m, "MaterialSummary", docs::MaterialSummary)
+        .def_readonly("material", &MaterialSummary::material, docs::MaterialSummary_material)
+        .def_readonly("area", &MaterialSummary::area, docs::MaterialSummary_area)
+        .def_readonly("reflectance", &MaterialSummary::reflectance, docs::MaterialSummary_reflectance)
+        .def_readonly("emitting_patches", &MaterialSummary::emitting_patches, docs::MaterialSummary_emitting_patches)
+        .def_readonly("emitting_objects", &MaterialSummary::emitting_objects, docs::MaterialSummary_emitting_objects)
+        .def_readonly("emitting_area", &MaterialSummary::emitting_area, docs::MaterialSummary_emitting_area)
+        .def_readonly("power", &MaterialSummary::power, docs::MaterialSummary_power)
+        .def("__repr__", [](const MaterialSummary& s) {
+            return fmt::format("<MaterialSummary {}: {:.4g} m^2, {:.4g} lm or W>", s.material, s.area,
+                               luminance(s.power));
+        });
+    py::class_<SceneSummary>(m, "SceneSummary", docs::SceneSummary)
+        .def_property_readonly(
+            "bounds", [](const SceneSummary& s) { return std::pair(s.bounds.min, s.bounds.max); },
+            "Lowest and highest corner, in world coordinates [m].")
+        .def_readonly("triangles", &SceneSummary::triangles, docs::SceneSummary_triangles)
+        .def_readonly("two_sided", &SceneSummary::two_sided, docs::SceneSummary_two_sided)
+        .def_readonly("area", &SceneSummary::area, docs::SceneSummary_area)
+        .def_readonly("emitted_power", &SceneSummary::emitted_power, docs::SceneSummary_emitted_power)
+        .def_readonly("materials", &SceneSummary::materials, docs::SceneSummary_materials)
+        .def_readonly("luminaires", &SceneSummary::luminaires, docs::SceneSummary_luminaires)
+        .def("__repr__", [](const SceneSummary& s) {
+            return fmt::format("<SceneSummary: {} materials, {:.4g} m^2, {:.4g} lm or W>", s.materials.size(), s.area,
+                               luminance(s.emitted_power));
+        });
+    m.def(
+        "summarise",
+        [](const SharedScene& scene) { return pure_work(0, [&] { return summarise(*scene, RayCaster(*scene)); }); },
+        py::arg("scene"), Documented(docs::summarise).raises("InputError: for a scene with faults."));
+}
+
 }  // namespace
 
 View view_of(const Scene& scene, const py::object& view) {
     if (py::isinstance<View>(view)) return py::cast<View>(view);
-    if (py::isinstance<py::str>(view)) return detail::find_view(scene, argument<std::string>(view, "view"));
+    if (py::isinstance<py::str>(view)) return find_view(scene, argument<std::string>(view, "view"));
     if (!view.is_none())
         throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " + found(view));
-    return scene.views.empty() ? detail::overview(scene) : scene.views.front();
+    return scene.views.empty() ? overview(scene) : scene.views.front();
 }
 
 void bind_scene_parts(py::module_& m) {
@@ -212,8 +246,9 @@ void bind_scene(py::module_& m) {
     m.def(
         "groups_by_name", [](const SharedScene& s) { return groups_by_name(*s); }, py::arg("scene"),
         Documented(docs::groups_by_name));
+    bind_summary(m);
     m.def(
-        "overview", [](const SharedScene& s) { return detail::overview(*s); }, py::arg("scene"),
+        "overview", [](const SharedScene& s) { return overview(*s); }, py::arg("scene"),
         Documented("Returns a view from inside an upper corner of the scene to its middle."));
 }
 

@@ -156,6 +156,26 @@ void bind_elements(py::module_& m) {
         });
 }
 
+void bind_leaks(py::module_& m) {
+    py::class_<Escapes>(m, "Escapes", docs::Escapes)
+        .def_readonly("rays", &Escapes::rays, docs::Escapes_rays)
+        .def_readonly("escaped", &Escapes::escaped, docs::Escapes_escaped)
+        .def_readonly("through_gaps", &Escapes::through_gaps, docs::Escapes_through_gaps)
+        .def_property_readonly("share", &Escapes::share, docs::Escapes_share.text)
+        .def_property_readonly("is_leak", &Escapes::is_leak, docs::Escapes_is_leak.text)
+        .def("__repr__", [](const Escapes& e) {
+            return fmt::format("<Escapes: {} of {} rays, {} through gaps>", e.escaped, e.rays, e.through_gaps);
+        });
+    py::class_<OneWayLight>(m, "OneWayLight", docs::OneWayLight)
+        .def_readonly("share", &OneWayLight::share, docs::OneWayLight_share)
+        .def_readonly("reflected_share", &OneWayLight::reflected_share, docs::OneWayLight_reflected_share)
+        .def_readonly("object", &OneWayLight::object, docs::OneWayLight_object)
+        .def_readonly("material", &OneWayLight::material, docs::OneWayLight_material)
+        .def("__repr__", [](const OneWayLight& l) {
+            return fmt::format("<OneWayLight: {:.3g}, reflected {:.3g}>", l.share, l.reflected_share);
+        });
+}
+
 }  // namespace
 
 void bind_solution(py::module_& m) {
@@ -170,6 +190,7 @@ void bind_solution(py::module_& m) {
             return fmt::format("<PowerBalance: emitted {:.4g}, absorbed {:.4g}, escaped {:.4g}>", luminance(b.emitted),
                                luminance(b.absorbed), luminance(b.escaped));
         });
+    bind_leaks(m);
     py::class_<Light, SharedLight>(
         m, "Solution",
         "Light of a scene. Its arrays have one row per leaf of the mesh, a patch or a piece of one. They are read-only "
@@ -230,6 +251,19 @@ void bind_solution(py::module_& m) {
         .def(
             "power_balance", [](const Light& light) { return power_balance(*light.scene, *light.solution); },
             Documented(docs::power_balance))
+        .def(
+            "find_escapes",
+            [](const Light& light) {
+                return pure_work(0, [&] { return find_escapes(*light.scene, *light.ray_caster, *light.solution); });
+            },
+            Documented(docs::find_escapes).raises(""))
+        .def(
+            "find_one_way_light",
+            [](const Light& light) {
+                return pure_work(0,
+                                 [&] { return find_one_way_light(*light.scene, *light.ray_caster, *light.solution); });
+            },
+            Documented(docs::find_one_way_light).raises(""))
         .def(
             "dim", &dimmed_light, py::arg("group"), py::arg("factor") = py::none(),
             Documented("Copies the solution, with the sources of light groups and all of their light scaled, without "

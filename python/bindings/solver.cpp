@@ -8,8 +8,6 @@
 #include "bindings.h"
 #include "fields.h"
 #include "interflect/base/memory/machine_memory.h"
-#include "interflect/checks/memory_need.h"
-#include "interflect/geometry/surfaces/split.h"
 #include "interflect/prepare.h"
 #include "interflect/solver.h"
 #include "long_work.h"
@@ -85,21 +83,18 @@ class PythonSolver {
 using Use = PythonSolver::Use;
 
 Scene prepared(const Scene& scene, bool contact_cuts, const std::optional<float>& mesh_size, bool refines) {
-    Scene result =
-        contact_cuts
-            ? cut_at_contacts(scene, {.min_extent = static_cast<float>(2 * detail::default_element_size(scene))})
-            : scene;
+    Scene result = contact_cuts
+                       ? cut_at_contacts(scene, {.min_extent = static_cast<float>(2 * default_element_size(scene))})
+                       : scene;
     if (!mesh_size && refines) return result;
-    return detail::split_patches(result, mesh_size.value_or(detail::default_mesh_size(result)),
-                                 ReadOptions().max_patches);
+    return split_patches(result, mesh_size.value_or(default_mesh_size(result)), ReadOptions().max_patches);
 }
 
 /// Ends refinement before the memory of the machine does, as the command does.
 SolveOptions within_memory(const Scene& scene, const RayCaster& ray_caster, SolveOptions options) {
-    const detail::MemoryNeed need = detail::memory_need(scene, ray_caster, options);
+    const MemoryNeed need = memory_need(scene, ray_caster, options);
     const std::size_t bytes = detail::usable_memory();
-    options.refinement.max_elements =
-        std::min(options.refinement.max_elements, detail::elements_within(need, bytes, scene));
+    options.refinement.max_elements = std::min(options.refinement.max_elements, elements_within(need, bytes, scene));
     if (options.method.bytes_per_ray > 0) {
         constexpr std::size_t share = 2;  // the other half is for elements
         const auto most = static_cast<std::int64_t>(bytes / share / options.method.bytes_per_ray);

@@ -16,13 +16,13 @@ ends them.
 
 from interflect._core import (
     AdvanceReport, BlockDifference, CieSky, Consistency, Daylight, Deviation, DirectionalLight, Elements, Environment,
-    EnvironmentMap, Finding,
-    FindingPlace, GlareRating, GlareSource, IlluminanceSummary, ImageDifference, LightGroup, Luminaire, Material,
-    MeasuredLight, MeasuringGrid, Measurement, PerezSky, PhotometricWeb, PlacedLuminaire, PlanarArea,
-    PointLight, PowerBalance, Progress, Reconciliation, Rendering, Scene, SkyDome, SkyModel, Solution, SpotLight, Sun, Texture, UniformSky, View,
+    EnvironmentMap, Escapes, Finding,
+    FindingPlace, GlareRating, GlareSource, IlluminanceSummary, ImageDifference, LightGroup, Luminaire, Material, MaterialSummary,
+    MeasuredLight, MeasuringGrid, Measurement, OneWayLight, PerezSky, PhotometricWeb, PlacedLuminaire, PlanarArea,
+    PointLight, PowerBalance, Progress, Reconciliation, Rendering, Scene, SceneSummary, SkyDome, SkyModel, Solution, SpotLight, Sun, Texture, UniformSky, View,
     ViewFactors, WeightedView, area_grid, automatic_exposure, cie_standard_sky, compare, cut_at_contacts, export_scene, find_floor,
     find_surface, find_top, grid_spacing, groups_by_name, line_grid, load_photometric_web, none, overview, read_image,
-    read_radiance_view, validate, write_image,
+    read_radiance_view, summarise, validate, write_image,
 )
 from interflect._core import version as __version__
 from interflect._errors import Error, Fault, InputError, Stopped, TooManyPatches, Warning
@@ -33,14 +33,14 @@ from interflect._view_factors import view_factors
 
 __all__ = [
     "AdvanceReport", "BlockDifference", "CieSky", "Consistency", "Daylight", "Deviation", "DirectionalLight", "Elements", "Environment",
-    "EnvironmentMap", "Error", "Fault", "Finding", "FindingPlace", "GlareRating", "GlareSource", "IlluminanceSummary",
-    "ImageDifference", "InputError", "LightGroup", "Luminaire", "Material", "MeasuredLight", "MeasuringGrid", "Measurement",
+    "EnvironmentMap", "Error", "Escapes", "Fault", "Finding", "FindingPlace", "GlareRating", "GlareSource", "IlluminanceSummary",
+    "ImageDifference", "InputError", "LightGroup", "Luminaire", "Material", "MaterialSummary", "MeasuredLight", "MeasuringGrid", "Measurement", "OneWayLight",
     "PerezSky", "PhotometricWeb", "PlacedLuminaire", "PlanarArea", "PointLight", "PowerBalance", "Progress",
-    "Reconciliation", "Rendering", "Scene", "SkyDome", "SkyModel", "Solution", "Solver", "SpotLight", "Stopped", "Sun", "Texture", "TooManyPatches",
+    "Reconciliation", "Rendering", "Scene", "SceneSummary", "SkyDome", "SkyModel", "Solution", "Solver", "SpotLight", "Stopped", "Sun", "Texture", "TooManyPatches",
     "UniformSky", "View", "ViewFactors", "Warning", "WeightedView", "__version__", "area_grid", "automatic_exposure", "cie_standard_sky",
     "compare", "cut_at_contacts", "export", "export_scene", "find_floor", "find_surface", "find_top", "grid_spacing",
     "groups_by_name", "line_grid", "load", "load_photometric_web", "none", "open_solution", "overview", "probe",
-    "rate_glare", "read_image", "read_radiance_view", "render", "solve", "tonemap", "trace", "validate",
+    "rate_glare", "read_image", "read_radiance_view", "render", "solve", "summarise", "tonemap", "trace", "validate",
     "view_factors", "write_image",
 ]
 

@@ -4,10 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "interflect/generators/boxes.h"
-#include "interflect/generators/maze.h"
-#include "interflect/generators/office.h"
-#include "interflect/generators/two_rooms.h"
+#include "interflect/generate.h"
 #include "interflect/prepare.h"
 #include "tests/checks/rooms.h"
 #include "tests/support/scenes/scenes.h"

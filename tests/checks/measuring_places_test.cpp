@@ -1,5 +1,5 @@
 // Measuring points at invalid places.
-#include "interflect/checks/faces/measuring_places.h"
+#include "interflect/measure.h"
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ class MeasuringPlaces : public testing::Test {
 TEST_F(MeasuringPlaces, InTheRoomAndOnItsSurfaces) {
     for (const Imath::V3d& position : {Imath::V3d(3, 3, 0.75), Imath::V3d(3, 3, 0), Imath::V3d(1.5, 1.5, 0.8),
                                        Imath::V3d(0.01, 0.01, 0.01), Imath::V3d(0.99, 1.5, 0.4)})
-        EXPECT_EQ(fault_at(position), PointFault::none) << position;
-    EXPECT_EQ(fault_at({1, 1.5, 0.4}, {-1, 0, 0}), PointFault::none);
+        EXPECT_EQ(fault_at(position), PointFault::sound) << position;
+    EXPECT_EQ(fault_at({1, 1.5, 0.4}, {-1, 0, 0}), PointFault::sound);
 }
 
 TEST_F(MeasuringPlaces, OutsideOfTheRoom) {
@@ -40,12 +40,12 @@ TEST_F(MeasuringPlaces, OutsideOfTheRoom) {
 TEST_F(MeasuringPlaces, InsideASolid) {
     for (const Imath::V3d& position : {Imath::V3d(1.5, 1.5, 0.75), Imath::V3d(1.01, 1.01, 0.79)})
         EXPECT_EQ(fault_at(position), PointFault::behind) << position;
-    EXPECT_EQ(fault_at({1.5, 1.5, 0.81}), PointFault::none);
+    EXPECT_EQ(fault_at({1.5, 1.5, 0.81}), PointFault::sound);
 }
 
 TEST_F(MeasuringPlaces, OpenScenesHaveNoOutside) {
     open_ceiling(scene_, {0, 0}, {4, 5});
-    EXPECT_EQ(fault_at({-1, 3, 1}), PointFault::none);
+    EXPECT_EQ(fault_at({-1, 3, 1}), PointFault::sound);
 }
 
 /// A lit room of 4 x 5 x 3 m with a grid of 8 x 10 points at 0.4 m. Cupboards cover whole cells of 0.5 m.

@@ -8,10 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/generators/boxes.h"
-#include "interflect/generators/maze.h"
-#include "interflect/generators/office.h"
-#include "interflect/generators/two_rooms.h"
+#include "interflect/generate.h"
 #include "interflect/load.h"
 #include "interflect/prepare.h"
 #include "tests/checks/rooms.h"

@@ -14,9 +14,7 @@
 #include <utility>
 
 #include "interflect/base/numbers/random.h"
-#include "interflect/generators/boxes.h"
-#include "interflect/generators/maze.h"
-#include "interflect/generators/office.h"
+#include "interflect/generate.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/ray_caster.h"
 

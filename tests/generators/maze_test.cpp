@@ -1,5 +1,5 @@
 // Properties of mazes: size, connections between rooms, and visibility.
-#include "interflect/generators/maze.h"
+#include "interflect/generate.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/ray_caster.h"
 #include "interflect/raycast/camera.h"
-#include "interflect/scene/core/view.h"
+#include "interflect/scene.h"
 
 namespace interflect {
 

@@ -11,7 +11,6 @@
 
 #include "interflect/base/numbers/random.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
-#include "interflect/geometry/surfaces/split.h"
 #include "tests/support/scenes/scenes.h"
 
 namespace interflect {

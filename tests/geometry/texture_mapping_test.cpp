@@ -15,7 +15,6 @@
 #include "interflect/geometry/polygons/polygon.h"
 #include "interflect/geometry/search/vertex_weld.h"
 #include "interflect/geometry/surfaces/flat_surfaces.h"
-#include "interflect/geometry/surfaces/split.h"
 #include "interflect/prepare.h"
 #include "tests/support/scenes/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "interflect/image/plots/false_colour.h"
+#include "interflect/plots.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "interflect/image/plots/isolines.h"
+#include "interflect/plots.h"
 
 #include <gtest/gtest.h>
 

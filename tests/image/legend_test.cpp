@@ -1,4 +1,4 @@
-#include "interflect/image/plots/legend.h"
+#include "interflect/plots.h"
 
 #include <gtest/gtest.h>
 

@@ -4,10 +4,10 @@ the library's messages."""
 import re
 from pathlib import Path
 
-# A folder of src/interflect uses only those before it; the programs in apps/ may use them all.
+# A folder of src/interflect uses only those before it; the programs in apps/ use FOR_PROGRAMS.
 LAYERS = [
     "base", "scene", "geometry", "image", "generators", "formats", "raycast", "luminaires", "checks", "view_factors",
-    "elements", "solver", "render", "photometry", "metrics", "exports", "cluster",
+    "elements", "solver", "render", "audit", "rates", "photometry", "metrics", "exports", "cluster",
 ]
 
 # Their own folders, in the same order; files beside these come last.
@@ -31,11 +31,20 @@ INNER_LAYERS = {
         "refinement", "iteration", "methods", "methods/baselines", "methods/links", "methods/particles", ".",
     ],
     "render": ["smooth", "lights", "reflections", "rays", "paths", "prepared", "sharing", "pictures", "gauges", "."],
+    "audit": ["."],
+    "rates": ["."],
     "photometry": ["."],
     "metrics": ["."],
     "exports": ["hdf5", "records", "mesh", "lightmap", "vertices", "files", "gltf", "foreign", "."],
     "cluster": ["."],
 }
+# Headers of src/interflect that programs in apps/ may include: services of a program, records of files and processes.
+# Estimators, geometry, the state of the solver and light sources are behind public headers.
+FOR_PROGRAMS = [
+    "base/files/escapes.h", "base/files/input_file.h", "base/files/pending_file.h", "base/memory/machine_memory.h",
+    "cluster/fingerprint.h", "exports/records/json_text.h", "exports/records/solve_report.h", "exports/saved_run.h",
+    "formats/scene_files.h", "image/files/pending_image.h", "render/light_help.h", "view_factors/write_npz.h",
+]
 # A folder has at most so many files, but for these: the public headers are one list, and data are not read one by one.
 MOST_FILES = 12
 PARTS = [
@@ -44,6 +53,7 @@ PARTS = [
 WRITTEN = {"node_modules", "__pycache__"}  # by programs
 UNLIMITED = ["include/interflect", "tests/fuzz/seeds", "experiments/results", "docs/figures", "docs/pictures"]
 
+PRIVATE_INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+/[^"]+)"', re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s*"interflect/(\w+)/', re.MULTILINE)
 USING_NAMESPACE = re.compile(r"^\s*using\s+namespace\b", re.MULTILINE)
 PRAGMA_ONCE = re.compile(r"^#pragma once$", re.MULTILINE)
@@ -67,6 +77,7 @@ def faults(root: Path) -> list[str]:
     for name in INNER_LAYERS:
         found += inner_faults(library / name)
     found += size_faults(root)
+    found += program_faults(root / "apps")
     public = sorted((root / "include").rglob("*.h"))
     for header in public:
         found += [f"{header}: includes interflect/{folder}/, which is not installed"
@@ -85,6 +96,13 @@ def faults(root: Path) -> list[str]:
     for header in sorted([*public, *library.rglob("*.h"), *(root / "apps").rglob("*.h")]):
         found += header_faults(header)
     return found
+
+
+def program_faults(apps: Path) -> list[str]:
+    """Finds includes of programs that are neither public nor in FOR_PROGRAMS."""
+    return [f"{source}: includes interflect/{header}, which is not for programs: expected a public header"
+            for source in sorted([*apps.rglob("*.h"), *apps.rglob("*.cpp")])
+            for header in PRIVATE_INCLUDE.findall(source.read_text()) if header not in FOR_PROGRAMS]
 
 
 def layer_faults(folder: Path) -> list[str]:

@@ -53,6 +53,12 @@ class Checker(unittest.TestCase):
         self.write("../../include/interflect/scene.h", '#pragma once\n#include "interflect/scene/core/core.h"\n')
         self.assert_only_fault("include/interflect/scene.h", "not installed")
 
+    def test_private_header_in_a_program(self):
+        self.write("../../apps/viewer/main.cpp", '#include "interflect/base/files/escapes.h"\n#include "interflect/scene.h"\n')
+        self.assertEqual(faults(self.root), [])
+        self.write("../../apps/viewer/main.cpp", '#include "interflect/solver/light/materials.h"\n')
+        self.assert_only_fault("apps/viewer/main.cpp", "interflect/solver/light/materials.h, which is not for programs")
+
     def test_use_of_a_later_layer(self):
         self.write("base/CMakeLists.txt", "interflect_folder(base SOURCES colour.cpp USES scene)")
         self.assert_only_fault("base/CMakeLists.txt", "USES scene")

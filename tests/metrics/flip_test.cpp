@@ -4,9 +4,8 @@
 #include <limits>
 
 #include "interflect/core.h"
-#include "interflect/image/plots/false_colour.h"
-#include "interflect/image/plots/legend.h"
 #include "interflect/metrics.h"
+#include "interflect/plots.h"
 
 namespace interflect {
 

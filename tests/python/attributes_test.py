@@ -36,6 +36,7 @@ def examples() -> Iterator[object]:
     yield solver.advance(progress=(progress := []).append)
     solution = solver.solution
     yield from (progress[-1], solution, solution.elements, solution.power_balance(), *solution.views)
+    yield from (solution.find_escapes(), solution.find_one_way_light(), ifl.summarise(scene), *ifl.summarise(scene).materials)
     area = ifl.find_top(scene, "floor")
     grid = ifl.area_grid(scene, area)
     measurement = ifl.probe(solution, grid, samples=16)

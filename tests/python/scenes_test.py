@@ -22,6 +22,16 @@ class FromArrays(unittest.TestCase):
         self.assertEqual([m.name for m in scene.materials], ["paint", "light"])
         self.assertEqual(scene.origin, (0, 0, 0))
 
+    def test_is_summarised(self):
+        """A room of 2 x 3 x 2.5 m with a one-sided lamp of 1 m2, 1000 lm."""
+        summary = ifl.summarise(room(two_sided=False))
+        paint, light = summary.materials
+        self.assertAlmostEqual(summary.area, 38, places=4)
+        self.assertEqual(summary.bounds, ((0, 0, 0), (2, 3, 2.5)))
+        self.assertAlmostEqual(paint.reflectance[1], 0.6, places=6)
+        self.assertAlmostEqual(light.power[1], 1000, places=2)
+        self.assertEqual((light.material, light.emitting_patches, light.emitting_objects), (1, 1, 1))
+
     def test_takes_what_numpy_converts(self):
         """Lists, other types and orders, strided and read-only arrays give the same scene."""
         vertices = np.vstack([CORNERS, LAMP])

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import interflect as ifl
-from scenes import VIEW, furnace, room
+from scenes import CORNERS, LAMP, LIGHT, PAINT, VIEW, WALLS, furnace, room
 
 RAYS = 200_000
 
@@ -21,6 +21,26 @@ class Light(unittest.TestCase):
         mean = np.average(solution.irradiance[:, 1], weights=solution.area)
         self.assertAlmostEqual(mean, 200, delta=5 * np.sqrt(np.sum((solution.standard_error * solution.area) ** 2)) / 6)
         self.assertLess(5 * np.sqrt(np.sum((solution.standard_error * solution.area) ** 2)) / 6, 2)  # 1%: a lost rho is 50%
+
+    def test_escapes_through_the_missing_faces_alone(self):
+        """The open side of a black cube receives 20% of the light of each wall; 5 standard errors are 0.008."""
+        closed = ifl.solve(furnace(0, 100), rays=1000).find_escapes()
+        self.assertEqual((closed.rays, closed.escaped, closed.share, closed.is_leak), (65536, 0, 0, False))
+        cube = furnace(0, 100)
+        open_cube = ifl.Scene(cube.vertices, cube.faces[:5], cube.materials, name="open cube")
+        self.assertAlmostEqual(ifl.solve(open_cube, rays=1000).find_escapes().share, 0.2, delta=0.008)
+
+    def test_one_way_light_is_that_of_a_one_sided_sheet(self):
+        """The front of a sheet below the lamp stops its light, although the floor sees the lamp through the back."""
+        corners = np.vstack([CORNERS, LAMP, LAMP - (0, 0, 0.5)])
+        faces = np.vstack([WALLS, [(8, 9, 10, 11), (15, 14, 13, 12)]])
+
+        def light(two_sided):
+            scene = ifl.Scene(corners, faces, [PAINT, LIGHT], face_materials=[0] * 6 + [1, 0], two_sided=two_sided)
+            return ifl.solve(scene, rays=RAYS).find_one_way_light()
+
+        self.assertLess(light(False).share, -0.1)
+        self.assertEqual(light(True).share, 0)
 
     def test_same_seed_same_bits(self):
         one = ifl.solve(room(), view="door", rays=RAYS, threads=1)

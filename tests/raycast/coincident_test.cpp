@@ -11,7 +11,7 @@
 #include <cmath>
 #include <random>
 
-#include "interflect/geometry/surfaces/split.h"
+#include "interflect/prepare.h"
 #include "interflect/ray_caster.h"
 #include "tests/support/parameter_names.h"
 #include "tests/support/scenes/scenes.h"

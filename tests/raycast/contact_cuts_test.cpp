@@ -9,11 +9,7 @@
 #include <vector>
 
 #include "interflect/base/numbers/random.h"
-#include "interflect/generators/boxes.h"
-#include "interflect/generators/maze.h"
-#include "interflect/generators/office.h"
-#include "interflect/generators/two_rooms.h"
-#include "interflect/geometry/surfaces/split.h"
+#include "interflect/generate.h"
 #include "interflect/load.h"
 #include "interflect/prepare.h"
 #include "interflect/ray_caster.h"

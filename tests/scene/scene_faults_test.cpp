@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/formats/view_files.h"
-#include "interflect/geometry/surfaces/split.h"
+#include "interflect/load.h"
 #include "interflect/prepare.h"
 #include "interflect/scene.h"
 #include "tests/support/scenes/scenes.h"

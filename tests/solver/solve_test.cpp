@@ -17,6 +17,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solver.h"
 #include "interflect/solver/light/materials.h"
+#include "interflect/summary.h"
 #include "tests/solver/rooms/reference_rooms.h"
 #include "tests/solver/rooms/variants.h"
 #include "tests/support/parameter_names.h"

@@ -21,12 +21,11 @@
 #include "apps/interflect/solving/read_light.h"
 #include "apps/interflect/values/distinct_files.h"
 #include "apps/interflect/values/parse.h"
-#include "interflect/checks/faces/up_axis.h"
 #include "interflect/core.h"
-#include "interflect/formats/text/extension.h"
 #include "interflect/image.h"
+#include "interflect/prepare.h"
 #include "interflect/render.h"
-#include "interflect/scene/core/view.h"
+#include "interflect/scene.h"
 #include "interflect/solution.h"
 
 namespace interflect::command {
@@ -88,15 +87,9 @@ float automatic_exposure_of(const SolvedScene& solved) {
 }
 
 V3f up_of(const Scene& scene) {
-    const std::optional<UpAxis> found = find_up_axis(scene);
-    if (!found) {
-        spdlog::warn("{}: the up direction is unknown: taking z (--up chooses another)", scene.name);
-        return {0, 0, 1};
-    }
-    const std::string axis = found->axis;
-    V3f up(0);
-    up[axis.back() - 'x'] = axis.front() == '-' ? -1.0f : 1.0f;
-    return up;
+    if (const std::optional<UpAxis> found = find_up_axis(scene)) return found->direction();
+    spdlog::warn("{}: the up direction is unknown: taking z (--up chooses another)", scene.name);
+    return {0, 0, 1};
 }
 
 SolvedScene read_dimmed(const ExportArguments& arguments) {

@@ -15,14 +15,11 @@
 #include "apps/interflect/processes/long_work.h"
 #include "apps/interflect/solving/run_solve.h"
 #include "apps/interflect/solving/solution_info.h"
-#include "interflect/checks/faces/up_axis.h"
-#include "interflect/checks/memory_need.h"
 #include "interflect/exports/records/solve_report.h"
-#include "interflect/geometry/polygons/patch_geometry.h"
-#include "interflect/luminaires/emission.h"
 #include "interflect/measure.h"
+#include "interflect/prepare.h"
 #include "interflect/solution.h"
-#include "interflect/solver/light/materials.h"
+#include "interflect/summary.h"
 
 namespace interflect::command {
 
@@ -32,44 +29,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Emitter {
-    std::size_t patches = 0;
-    double area = 0;         // [m^2]
-    RgbD power = {0, 0, 0};  // [lm]
-};
-
-struct Summary {
-    std::size_t triangles = 0, two_sided = 0;
-    Imath::Box3d bounds;  // in the world [m]
-    double area = 0;      // of faces, one side of each [m^2]
-    RgbD emitted_power{0, 0, 0};
-    std::map<std::uint32_t, Emitter> emitters;  // by material
-    std::map<std::string, int> lights;          // luminaires, by kind
-};
-
-Summary summarise(const Scene& scene, const RayCaster& ray_caster) {
-    Summary s;
-    const Materials materials(scene, ray_caster);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
-        const Patch& patch = scene.patches[i];
-        const double area = patch_area(scene, patch);
-        const bool is_back = patch.other_side != none && patch.other_side < i;
-        if (!is_back) s.area += area;
-        for (int k = 0; k < patch.vertex_count(); ++k)
-            s.bounds.extendBy(scene.origin + Imath::V3d(scene.vertices[patch.vertices[k]]));
-        s.triangles += patch.is_triangle();
-        s.two_sided += patch.other_side != none;
-        const Rgb& exitance = materials.exitance(i);
-        if (!(channel_sum(exitance) > 0)) continue;
-        Emitter& emitter = s.emitters[patch.material];
-        ++emitter.patches;
-        emitter.area += area;
-        emitter.power += RgbD(exitance) * area;
-        s.emitted_power += RgbD(exitance) * area;
-    }
-    for (const Luminaire& luminaire : scene.luminaires) ++s.lights[kind_name(luminaire)];
-    s.emitted_power += Emission(scene).total_power();
-    return s;
+/// Counts luminaires by kind.
+std::map<std::string, int> lights_of(const Scene& scene) {
+    std::map<std::string, int> lights;
+    for (const Luminaire& luminaire : scene.luminaires) ++lights[kind_name(luminaire)];
+    return lights;
 }
 
 std::vector<std::string> outside_files(const Scene& scene, const fs::path& scene_path) {
@@ -80,7 +44,8 @@ std::vector<std::string> outside_files(const Scene& scene, const fs::path& scene
     return outside;
 }
 
-Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string>& outside, const MemoryNeed& need) {
+Json to_json(const Scene& scene, const SceneSummary& s, const std::vector<std::string>& outside,
+             const MemoryNeed& need) {
     const Json memory{{"scene", need.scene},
                       {"ray_tracer", need.ray_tracer},
                       {"patches", need.patches},
@@ -90,11 +55,12 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
     for (const View& v : scene.views) views.push_back(json_of(v));
     for (const Warnings::Entry& w : scene.warnings.entries())
         warnings.push_back({{"kind", w.kind}, {"message", w.message}, {"where", w.where}, {"count", w.count}});
-    for (const auto& [material, e] : s.emitters)
-        emitters.push_back({{"material", scene.materials[material].name},
-                            {"patches", e.patches},
-                            {"area", e.area},
-                            {"power", json_of(e.power)}});
+    for (const MaterialSummary& m : s.materials)
+        if (m.emitting_patches > 0)
+            emitters.push_back({{"material", scene.materials[m.material].name},
+                                {"patches", m.emitting_patches},
+                                {"area", m.emitting_area},
+                                {"power", json_of(m.power)}});
     const std::optional<UpAxis> up = find_up_axis(scene);
     const std::optional<double> of_sky = exterior_illuminance(scene);
     const Json bounds{{"min", json_of(s.bounds.min)}, {"max", json_of(s.bounds.max)}};
@@ -107,7 +73,7 @@ Json to_json(const Scene& scene, const Summary& s, const std::vector<std::string
             {"area", s.area},
             {"emitted_power", json_of(s.emitted_power)},
             {"emitters", emitters},
-            {"lights", s.lights},
+            {"lights", lights_of(scene)},
             {"sky_illuminance", of_sky ? Json(*of_sky) : Json(nullptr)},
             {"views", views},
             {"memory", memory},
@@ -131,7 +97,8 @@ std::string interval(double low, double high, double scene_size) {
 /// [MiB], rounded up.
 std::size_t mebibytes(std::size_t bytes) { return (bytes + (1 << 20) - 1) >> 20; }
 
-void print_text(const Scene& scene, const Summary& s, const std::vector<std::string>& outside, const MemoryNeed& need) {
+void print_text(const Scene& scene, const SceneSummary& s, const std::vector<std::string>& outside,
+                const MemoryNeed& need) {
     print_line("{}", scene.name);
     print_line("  patches   {} ({} triangles; {} on two-sided faces)", scene.patches.size(), s.triangles, s.two_sided);
     const Imath::V3d low = s.bounds.min, high = s.bounds.max;
@@ -142,10 +109,11 @@ void print_text(const Scene& scene, const Summary& s, const std::vector<std::str
     print_line("  up        {}", up ? fmt::format("{}, from {}", up->axis, up->evidence) : "not known");
     print_line("  area      {:.6g} m2", s.area);
     print_line("  emitted   {:.6g} lm (RGB {})", luminance(s.emitted_power), text_of(s.emitted_power));
-    for (const auto& [material, e] : s.emitters)
-        print_line("  emitter   {}: {} patches, {:.4g} m2, {:.6g} lm", scene.materials[material].name, e.patches,
-                   e.area, luminance(e.power));
-    for (const auto& [kind, count] : s.lights) print_line("  lights    {}: {}", kind, count);
+    for (const MaterialSummary& m : s.materials)
+        if (m.emitting_patches > 0)
+            print_line("  emitter   {}: {} patches, {:.4g} m2, {:.6g} lm", scene.materials[m.material].name,
+                       m.emitting_patches, m.emitting_area, luminance(m.power));
+    for (const auto& [kind, count] : lights_of(scene)) print_line("  lights    {}: {}", kind, count);
     if (const auto of_sky = exterior_illuminance(scene))
         print_line("  sky       {:.6g} lx on an unobstructed horizontal surface", *of_sky);
     print_views(scene.views);
@@ -173,7 +141,7 @@ void add_info(CLI::App& app) {
         const Scene scene = options->scene.load();
         const RayCaster ray_caster = make_ray_caster(scene);
         warn_of_covered_emission(scene, ray_caster);
-        const Summary summary = summarise(scene, ray_caster);
+        const SceneSummary summary = summarise(scene, ray_caster);
         const std::vector<std::string> outside = outside_files(scene, options->scene.path);
         const MemoryNeed need = memory_need(scene, ray_caster);
         if (options->json)

@@ -1,24 +1,15 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "apps/interflect/commands/commands.h"
 #include "apps/interflect/values/parse.h"
-#include "interflect/base/files/pending_file.h"
 #include "interflect/core.h"
-#include "interflect/formats/build/texture_files.h"
-#include "interflect/formats/mgf/write_mgf.h"
-#include "interflect/formats/view_files.h"
-#include "interflect/generators/boxes.h"
-#include "interflect/generators/maze.h"
-#include "interflect/generators/office.h"
-#include "interflect/generators/two_rooms.h"
+#include "interflect/formats/scene_files.h"
+#include "interflect/generate.h"
 
 namespace interflect::command {
 
@@ -33,49 +24,20 @@ struct OutputOptions {
     bool force = false;  // replaces views and images that differ
 };
 
-std::string file_content(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// Refuses to replace files that the command line did not name: they may be the user's own.
-/// @param content  Kind of content.
-void require_replaceable(const PendingFile& file, bool force, const std::string& content) {
-    const fs::path& existing = file.final_path();
-    if (force || !fs::exists(existing) ||
-        (fs::is_regular_file(existing) && file_content(existing) == file_content(file.temporary_path())))
-        return;
-    throw InputError(file.final_path(), 0,
-                     "has other " + content + " than the scene's: expected --force to replace them");
-}
-
-/// @return  Files of the images, to be committed.
-std::vector<PendingFile> write_textures(const Scene& scene, const OutputOptions& output,
-                                        const std::vector<std::string>& names) {
-    std::vector<PendingFile> files;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        PendingFile& file = files.emplace_back(output.path.parent_path() / names[i]);
-        file.write_by([&](const fs::path& temporary) { write_texture(temporary, scene.textures[i]); });
-        require_replaceable(file, output.force, "texels");
-    }
-    return files;
-}
-
 /// Writes a scene with its views and textures. Opens the files before the work.
 void write(const OutputOptions& output, const std::function<Scene()>& make) {
     const fs::path& path = output.path;
     if (path.extension() != ".mgf")
         throw UsageError("--output", fmt::format("scenes are written as .mgf, found '{}'", path.string()));
-    PendingFile scene_file(path), view_file(view_list_path(path));
+    SceneFiles files(path);
     const Scene scene = make();
-    const std::vector<std::string> textures = texture_files(scene, path);
-    scene_file.write_by([&](const fs::path& temporary) { write_mgf(scene, temporary, textures); });
-    view_file.write_by([&](const fs::path& temporary) { write_view_list(scene.views, temporary); });
-    require_replaceable(view_file, output.force, "views");
-    for (PendingFile& file : write_textures(scene, output, textures)) file.commit();
-    scene_file.commit();
-    view_file.commit();
-    spdlog::info("{}: {} patches; {}: {} views", path.string(), scene.patches.size(), view_file.final_path().string(),
+    files.write(scene);
+    if (const auto other = files.find_difference(); other && !output.force)
+        throw InputError(
+            other->file, 0,
+            fmt::format("has other {} than the scene's: expected --force to replace them", other->content));
+    files.commit();
+    spdlog::info("{}: {} patches; {}: {} views", path.string(), scene.patches.size(), files.views().string(),
                  scene.views.size());
 }
 

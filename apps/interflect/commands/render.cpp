@@ -32,14 +32,10 @@
 #include "interflect/base/memory/machine_memory.h"
 #include "interflect/core.h"
 #include "interflect/image.h"
-#include "interflect/image/codecs/image_codecs.h"
 #include "interflect/image/files/pending_image.h"
-#include "interflect/image/plots/legend.h"
-#include "interflect/raycast/camera.h"
+#include "interflect/plots.h"
 #include "interflect/render.h"
-#include "interflect/render/pictures/camera_samples.h"
-#include "interflect/render/pictures/outlines.h"
-#include "interflect/scene/core/view.h"
+#include "interflect/scene.h"
 #include "interflect/solution.h"
 
 namespace interflect::command {
@@ -160,8 +156,8 @@ Picture draw_light(const SolvedScene& solved, const RayCaster& ray_caster, const
         interflect::render(solved.scene, solved.solution, ray_caster, view, options.picture, progress.monitor());
     Picture picture = picture_of(rendering.image, rendering.non_finite_pixels, options);
     if (options.shown == Shown::mesh)
-        picture.image = draw_outlines(picture.image, solved.scene, *solved.solution.forest, ray_caster, view,
-                                      options.picture.samples, options.picture.seed, {}, progress.monitor());
+        picture.image = draw_mesh(picture.image, solved.scene, solved.solution, ray_caster, view,
+                                  options.picture.samples, options.picture.seed, progress.monitor());
     return picture;
 }
 
@@ -181,10 +177,8 @@ int legend_rows(const RenderArguments& options) {
 /// Uses false colours for display formats only.
 Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                       const RenderArguments& options) {
-    const PictureOptions& picture = options.picture;
-    const CameraSampling sampling{picture.width, picture.height, picture.samples, picture.seed};
     DrawingProgress progress;
-    QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, sampling, progress.monitor());
+    QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, options.picture, progress.monitor());
     if (options.legend_rows > 0) drawn.shown = with_legend(drawn.shown, drawn.scale, label(options));
     Image& image = is_for_people(options) ? drawn.shown : drawn.values;
     return {std::move(image), label(options), {}, drawn.non_finite_pixels};
@@ -281,7 +275,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
     require_no_scene_files(solved.scene, outputs_of(options));
     const View view = view_to_draw(solved.scene, options);
-    Camera(view, options.size.width, options.size.height, solved.scene.origin);  // refuses views without a picture
+    require_picture(view, options.size.width, options.size.height, solved.scene.origin);
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     // A plan shows the whole scene equally: importance has no benefit.
     const std::vector<View> important = options.cut.is_given() ? std::vector<View>() : std::vector{view};
@@ -396,8 +390,7 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
         throw UsageError("--light-walks", "only --shading instant takes it");
     if (options.path.layers && require_image_format(options.output) != ImageFormat::exr)
         throw UsageError("--layers", "layers need a picture in OpenEXR: expected an --output that ends in .exr");
-    if (require_image_format(options.output) == ImageFormat::png &&
-        codecs::png_bytes(options.size.width, options.size.height) > codecs::max_png_bytes)
+    if (!can_hold(require_image_format(options.output), options.size.width, options.size.height))
         throw UsageError("--size",
                          fmt::format("{} x {} pixels are too many for a PNG: expected fewer, or another format",
                                      options.size.width, options.size.height));

@@ -21,10 +21,9 @@
 #include "apps/interflect/values/parse.h"
 #include "interflect/base/files/pending_file.h"
 #include "interflect/core.h"
-#include "interflect/formats/text/extension.h"
 #include "interflect/image.h"
 #include "interflect/render.h"
-#include "interflect/scene/core/view.h"
+#include "interflect/scene.h"
 
 namespace interflect::command {
 

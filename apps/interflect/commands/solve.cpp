@@ -108,7 +108,7 @@ void add_solve(CLI::App& app, int& exit_code) {
 void add_resume(CLI::App& app, int& exit_code) {
     struct Options {
         std::filesystem::path input, output, stats;
-        LimitOptions limits;
+        GivenLimits limits;
         Checkpoints checkpoints;
         int threads = 0;
     };
@@ -116,7 +116,7 @@ void add_resume(CLI::App& app, int& exit_code) {
     CLI::App& command = *app.add_subcommand("resume", "Continue a saved run, with the bits of an uninterrupted one");
     command.add_option("FILE", options->input, "What --checkpoint wrote")->required();
     command.add_option("-o,--output", options->output, "Solution file to write (.h5)")->required()->type_name("FILE");
-    options->limits.add_to(command);
+    add_limits(command, options->limits);
     options->checkpoints.add_to(command, "Save the run to this file now and then (default: FILE itself)");
     command.add_option("--stats", options->stats, "File for statistics of each iteration, as JSON lines")
         ->type_name("FILE");
@@ -139,7 +139,7 @@ void add_resume(CLI::App& app, int& exit_code) {
         options->checkpoints.require_writable();
         PendingFile output(options->output);
         Solver solver = Solver::open(options->input);
-        if (options->limits.any()) solver.set_plan(options->limits.resolved());
+        if (options->limits.any()) solver.set_plan(options->limits.limits());
         const std::shared_ptr<const Scene> scene = solver.shared_scene();
         require_no_scene_files(*scene, outputs);
         options->checkpoints.require_own_previous(*scene);

@@ -10,7 +10,6 @@
 #include "apps/interflect/processes/long_work.h"
 #include "apps/interflect/processes/threads.h"
 #include "apps/interflect/solving/setup_warnings.h"
-#include "interflect/checks/memory_need.h"
 #include "interflect/exports/records/json_text.h"
 #include "interflect/exports/records/solve_report.h"
 #include "interflect/prepare.h"
@@ -42,11 +41,9 @@ Prediction predict(const Scene& scene, const RayCaster& ray_caster) {
     Prediction result;
     result.memory = memory_need(scene, ray_caster).with(scene.patches.size());
     result.rays = static_cast<double>(SolveOptions().limits.rays);
-    SolveOptions options;
-    options.method = default_method(!scene.views.empty());
-    if (!scene.views.empty()) options.views.push_back({scene.views.front()});
-    options.limits = {.time = 1};
-    const Solution solution = solve(scene, ray_caster, options);
+    GivenSettings given{.limits = {.time = 1}};
+    if (!scene.views.empty()) given.others.views.push_back({scene.views.front()});
+    const Solution solution = solve(scene, ray_caster, resolved(given));
     if (!(channel_sum(solution.emitted_power) > 0) || solution.iterations.empty()) return result;
     const auto& last = solution.iterations.back();
     result.rays_per_second = static_cast<double>(last.rays) / std::max(last.seconds, 1e-3);

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "apps/interflect/console/progress.h"
-#include "interflect/render/pictures/camera_samples.h"
+#include "interflect/core.h"
 
 namespace interflect::command {
 

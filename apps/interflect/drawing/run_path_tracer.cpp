@@ -18,7 +18,6 @@
 #include "interflect/image.h"
 #include "interflect/image/files/pending_image.h"
 #include "interflect/render.h"
-#include "interflect/render/pictures/path_picture.h"
 
 namespace interflect::command {
 
@@ -119,18 +118,14 @@ std::vector<ImageLayer> layers_of(const Rendering& traced) {
 }
 
 void require_memory_for_paths(Size size) {
-    require_free_memory(size.pixels() * path_bytes_per_pixel,
+    require_free_memory(path_memory(0, {.width = size.width, .height = size.height}),
                         fmt::format("a picture of {} x {} pixels", size.width, size.height),
                         "a smaller --size, and --shading smooth, need less");
 }
 
 Rendering run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                           const PictureOptions& options, const PathTracerArguments& arguments) {
-    const std::size_t walks = options.shading == Shading::instant ? static_cast<std::size_t>(options.light_walks) : 0;
-    require_free_memory(scene.patches.size() * path_bytes_per_patch +
-                            Size{options.width, options.height}.pixels() * path_bytes_per_pixel +
-                            walks * bytes_per_light_walk,
-                        fmt::format("tracing paths in {}", scene.name),
+    require_free_memory(path_memory(scene.patches.size(), options), fmt::format("tracing paths in {}", scene.name),
                         "a smaller --size, fewer --light-walks, and a scene of fewer faces, need less");
     std::optional<PendingFile> error_image;
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);

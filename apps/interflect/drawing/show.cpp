@@ -1,67 +1,28 @@
 #include "apps/interflect/drawing/show.h"
 
-#include <vector>
-
 #include "apps/interflect/values/parse.h"
 #include "interflect/core.h"
-#include "interflect/elements/forest.h"
-#include "interflect/render/pictures/camera_samples.h"
 
 namespace interflect::command {
 
-using namespace detail;
-
 namespace {
 
-Quantity described(Shown shown) {
+/// @param shown  is_quantity().
+ElementQuantity quantity_of(Shown shown) {
     switch (shown) {
         case Shown::irradiance:
-            return {"irradiance", "lm/m^2", {}, Spacing::logarithmic};
+            return ElementQuantity::irradiance;
         case Shown::importance:
-            return {"importance", "1/m^2", {}, Spacing::logarithmic};
+            return ElementQuantity::importance;
         case Shown::direct_importance:
-            return {"direct importance", "1/m^2", {}, Spacing::logarithmic};
+            return ElementQuantity::direct_importance;
         case Shown::level:
-            return {"level of subdivision", "", {}, Spacing::linear};
+            return ElementQuantity::level;
         case Shown::rays:
-            return {"rays that started", "1/m^2", {}, Spacing::logarithmic};
+            return ElementQuantity::rays;
         default:
-            return {"relative standard error of irradiance", "", {}, Spacing::logarithmic};
+            return ElementQuantity::error;
     }
-}
-
-std::vector<float> values_of(Shown shown, const Solution& solution) {
-    const ElementForest& forest = *solution.forest;
-    std::vector<float> values(forest.size(), 0.0f);
-    const auto fill = [&](const auto& value) {
-        for (std::uint32_t e = 0; e < forest.size(); ++e) values[e] = static_cast<float>(value(e));
-    };
-    const bool needs_importance = shown == Shown::importance || shown == Shown::direct_importance;
-    if (needs_importance && solution.view_importance.empty())
-        throw InputError("the solution has no importance: the scene was solved without a view (solve --view NAME)");
-    switch (shown) {
-        case Shown::irradiance:
-            fill([&](std::uint32_t e) { return luminance(solution.irradiance[e]); });
-            break;
-        case Shown::importance:
-            fill([&](std::uint32_t e) { return solution.view_importance[e] + solution.indirect_importance[e]; });
-            break;
-        case Shown::direct_importance:
-            values = solution.view_importance;
-            break;
-        case Shown::level:
-            fill([&](std::uint32_t e) { return forest.level(e); });
-            break;
-        case Shown::rays:
-            fill([&](std::uint32_t e) { return solution.rays[e] / forest.area(e); });
-            break;
-        default:
-            fill([&](std::uint32_t e) {
-                const float h = luminance(solution.irradiance[e]);
-                return h > 0 ? solution.standard_error[e] / h : 0;
-            });
-    }
-    return values;
 }
 
 }  // namespace
@@ -82,13 +43,13 @@ void add_show(CLI::App& app, Shown& shown) {
 }
 
 QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                              const CameraSampling& sampling, const Monitor& monitor) {
-    const std::vector<float> values = values_of(shown, solved.solution);
-    Quantity quantity = described(shown);
-    quantity.values = values;
-    return render_quantity(solved.scene, *solved.solution.forest, ray_caster, view, quantity, sampling, monitor);
+                              const PictureOptions& options, const Monitor& monitor) {
+    const bool needs_importance = shown == Shown::importance || shown == Shown::direct_importance;
+    if (needs_importance && solved.solution.view_importance.empty())
+        throw InputError("the solution has no importance: the scene was solved without a view (solve --view NAME)");
+    return draw_quantity(solved.scene, solved.solution, ray_caster, view, quantity_of(shown), options, monitor);
 }
 
-std::string label_of(Shown shown) { return described(shown).label(); }
+std::string label_of(Shown shown) { return label(quantity_of(shown)); }
 
 }  // namespace interflect::command

@@ -2,8 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "interflect/render/pictures/camera_samples.h"
-#include "interflect/render/pictures/quantity_picture.h"
+#include "interflect/render.h"
 #include "interflect/solution.h"
 
 namespace interflect::command {
@@ -25,8 +24,8 @@ void add_show(CLI::App& app, Shown& shown);
 constexpr bool is_quantity(Shown shown) { return shown != Shown::light && shown != Shown::mesh; }
 
 /// @throws InputError if the solution lacks the quantity.
-detail::QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster,
-                                      const View& view, const detail::CameraSampling& sampling, const Monitor& monitor);
+QuantityPicture show_quantity(Shown shown, const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
+                              const PictureOptions& options, const Monitor& monitor);
 
 /// Returns name and unit for metadata.
 std::string label_of(Shown shown);

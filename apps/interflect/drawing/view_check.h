@@ -5,15 +5,6 @@
 
 namespace interflect::command {
 
-/// First hits of a view's rays, as shares of the picture.
-struct FirstMet {
-    double nothing = 0;  ///< No face.
-    double backs = 0;    ///< Back of a one-sided face, which lets rays through to other faces.
-};
-
-/// Traces 64 x 36 rays. @param aspect  Width over height of the picture.
-FirstMet first_met(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect);
-
 /// Warns if a camera seems to be outside the scene: most rays miss, or meet a back first. For plans and sections, all
 /// rays must miss.
 void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect);

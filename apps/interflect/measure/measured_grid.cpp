@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "apps/interflect/console/path_progress.h"
-#include "interflect/checks/faces/measuring_places.h"
 #include "interflect/core.h"
 #include "interflect/measure.h"
 
@@ -80,7 +79,7 @@ void warn_of_misplaced_points(const Scene& scene, const RayCaster& ray_caster, s
                    [&](std::size_t i) { return faults[i] == PointFault::behind; });
     if (measured.empty()) return;
     const auto is_dark = [&](std::size_t i) {
-        return faults[i] == PointFault::none && measured[i].is_measured() && measured[i].sum() == Rgb(0);
+        return faults[i] == PointFault::sound && measured[i].is_measured() && measured[i].sum() == Rgb(0);
     };
     warn_of_points(points,
                    "receive no light at all: they are in a room without light, inside a solid, or outside of the scene",

@@ -3,7 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "interflect/core.h"
-#include "interflect/scene/core/view.h"
+#include "interflect/scene.h"
 
 namespace interflect::command {
 

@@ -1,9 +1,7 @@
 #include "apps/interflect/options/false_colour_options.h"
 
 #include "interflect/core.h"
-#include "interflect/image/plots/false_colour.h"
-#include "interflect/image/plots/isolines.h"
-#include "interflect/image/plots/legend.h"
+#include "interflect/plots.h"
 
 namespace interflect::command {
 

@@ -12,12 +12,9 @@
 #include "apps/interflect/processes/long_work.h"
 #include "interflect/base/memory/machine_memory.h"
 #include "interflect/core.h"
-#include "interflect/formats/text/extension.h"
-#include "interflect/formats/view_files.h"
-#include "interflect/geometry/surfaces/split.h"
+#include "interflect/load.h"
 #include "interflect/prepare.h"
-#include "interflect/raycast/camera.h"
-#include "interflect/scene/core/view.h"
+#include "interflect/scene.h"
 
 namespace interflect::command {
 
@@ -264,7 +261,7 @@ void ViewOptions::add_without_up(CLI::App& app) {
 
 void ViewOptions::check() const {
     if (!(up.length() > 0)) throw UsageError("--up", "0,0,0 is no direction");
-    if (eye) check_option("--eye", [&] { Camera(view_of_eye(), 1, 1, *eye); });
+    if (eye) check_option("--eye", [&] { require_picture(view_of_eye(), 1, 1, *eye); });
 }
 
 std::vector<View> ViewOptions::views(const Scene& scene) const {
@@ -276,7 +273,7 @@ std::vector<View> ViewOptions::views(const Scene& scene) const {
     for (const std::string& name : names) views.push_back(find_view(scene, name));
     for (const auto& file : files) views.push_back(read_radiance_view(file));
     if (eye) views.push_back(view_of_eye());
-    for (const View& view : views) Camera(view, 1, 1, scene.origin);  // refuses views without a picture
+    for (const View& view : views) require_picture(view, 1, 1, scene.origin);
     return views;
 }
 
@@ -307,38 +304,33 @@ void add_method(CLI::App& app, std::optional<Method>& method) {
         ->group(solver_group);
 }
 
-void LimitOptions::add_to(CLI::App& app) {
+void add_limits(CLI::App& app, GivenLimits& limits) {
     const auto group = [](CLI::Option* option) { option->group(limits_group); };
-    group(add_parsed(app, "--rays", rays, parse_count,
+    group(add_parsed(app, "--rays", limits.rays, parse_count,
                      "Maximum number of rays, such as 20M (default 20M, unless --time or --until is given)")
               ->type_name("COUNT"));
     group(app.add_option(
-                 "--time", time,
+                 "--time", limits.time,
                  "Maximum solving time, without reading, cutting and writing; in render: time of the whole command")
               ->type_name("SECONDS")
               ->check(number_between(1e-3, 1e9)));
-    group(add_parsed(app, "--until", until, parse_share,
+    group(add_parsed(app, "--until", limits.until, parse_share,
                      "Stop at this estimated relative error, such as 2%; with a view: of its picture")
               ->type_name("SHARE"));
 }
 
-Limits LimitOptions::resolved() const {
-    const Limits unlimited;
-    return {rays.value_or(unlimited.rays), time.value_or(unlimited.time), until.value_or(unlimited.until)};
-}
-
 void SolverOptions::add_to(CLI::App& app) {
-    add_method(app, method_);
-    add_parsed(app, "--seed", solve_.seed, parse_seed, "Same seed, same bits")
+    add_method(app, given_.method);
+    add_parsed(app, "--seed", given_.others.seed, parse_seed, "Same seed, same bits")
         ->type_name("NUMBER")
         ->default_str("1")
         ->group(solver_group);
-    app.add_flag("--keep-direct", solve_.keep_direct, "Store direct light separately in the solution file")
+    app.add_flag("--keep-direct", given_.others.keep_direct, "Store direct light separately in the solution file")
         ->group(solver_group);
     app.add_option("--stats", stats, "File for statistics of each iteration, as JSON lines")
         ->type_name("FILE")
         ->group(solver_group);
-    limits_.add_to(app);
+    add_limits(app, given_.limits);
     add_parsed(app, "--memory", memory, parse_memory,
                "Maximum memory of the process, where refinement ends (k, M, G: powers of 1024)")
         ->type_name("BYTES")
@@ -354,7 +346,7 @@ void SolverOptions::add_to(CLI::App& app) {
 
 void SolverOptions::add_refinement(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(refinement_group); };
-    RefinementOptions& refinement = solve_.refinement;
+    RefinementOptions& refinement = given_.others.refinement;
     group(add_choice<RefinementCriterion>(app, "--refinement-criterion", refinement.criterion,
                                           {{"variance", RefinementCriterion::variance},
                                            {"perceptual", RefinementCriterion::perceptual},
@@ -378,11 +370,11 @@ void SolverOptions::add_refinement(CLI::App& app) {
 void SolverOptions::add_importance(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(importance_group); };
     group(add_choice<ImportanceUse>(
-        app, "--importance", importance_,
+        app, "--importance", given_.importance,
         {{"off", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}},
         "Surfaces on which a view concentrates rays: off: none; direct: visible ones; full: also those that light them "
         "(default: of the method)"));
-    ImportanceOptions& importance = solve_.importance;
+    ImportanceOptions& importance = given_.others.importance;
     group(app.add_option("--camera-rays", importance.camera_rays,
                          "Initial camera rays per view; their number grows with that of the averaged rays")
               ->capture_default_str()
@@ -402,14 +394,13 @@ void SolverOptions::add_importance(CLI::App& app) {
 
 void SolverOptions::add_schedule(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(experimental_group); };
-    ExperimentalOptions& o = solve_.experimental;
+    ExperimentalOptions& o = given_.others.experimental;
     // Takes effect while the command line is parsed, before the options that replace its settings.
     group(app.add_option_function<std::string>(
                  "--preset",
                  [this](const std::string&) {
-                     use_published_algorithm(solve_);
-                     solve_.experimental.rays_per_iteration = 0;  // depends on --rays
-                     is_published_ = true;
+                     use_published_algorithm(given_.others);
+                     given_.is_published = true;
                  },
                  "paper: the algorithm as published in 2000, in 10 iterations that warm up and 100 that are averaged; "
                  "other options replace its settings")
@@ -427,14 +418,14 @@ void SolverOptions::add_schedule(CLI::App& app) {
     group(app.add_option("--iterations", o.iterations, "Number of averaged iterations; 0: until a limit is reached")
               ->capture_default_str()
               ->check(CLI::Range(0, 1'000'000'000)));
-    group(add_parsed(app, "--rays-per-iteration", o.rays_per_iteration, parse_iteration_size,
+    group(add_parsed(app, "--rays-per-iteration", given_.rays_per_iteration, parse_iteration_size,
                      "Rays of each iteration; default: small at first, then growing")
               ->type_name("COUNT"));
 }
 
 void SolverOptions::add_paper_refinement(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(experimental_group); };
-    ExperimentalOptions& o = solve_.experimental;
+    ExperimentalOptions& o = given_.others.experimental;
     group(app.add_flag("--shrinkage,!--no-shrinkage", o.shrinkage,
                        "Reduce differences of neighbouring elements that are mostly noise "
                        "(with --refinement-criterion variance)"));
@@ -464,7 +455,7 @@ void SolverOptions::add_paper_refinement(CLI::App& app) {
 
 void SolverOptions::add_paper_importance(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(experimental_group); };
-    ExperimentalOptions& o = solve_.experimental;
+    ExperimentalOptions& o = given_.others.experimental;
     group(app.add_flag("--separate-iterations", o.separate_iterations,
                        "Importance and power in steps of their own ('si'), instead of in one ('ci')"));
     group(app.add_flag("--importance-at-patches", o.importance_at_patches,
@@ -482,17 +473,9 @@ void SolverOptions::add_paper_importance(CLI::App& app) {
 }
 
 SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspect, int pixel_rows) const {
-    SolveOptions options = solve_;
-    options.method = method_.value_or(default_method(!views.empty()));
-    options.method.importance = importance_.value_or(options.method.importance);
-    for (const View& view : views) options.views.push_back({view, 1, aspect, pixel_rows});
-    if (limits_.any()) options.limits = limits_.resolved();
-    if (is_published_ && options.experimental.rays_per_iteration == 0) {
-        SolveOptions published = options;
-        use_published_algorithm(published);
-        options.experimental.rays_per_iteration = published.experimental.rays_per_iteration;
-    }
-    return options;
+    GivenSettings given = given_;
+    for (const View& view : views) given.others.views.push_back({view, 1, aspect, pixel_rows});
+    return interflect::resolved(given);
 }
 
 }  // namespace interflect::command

@@ -89,15 +89,7 @@ inline constexpr const char* experimental_group = "Experimental (of the paper, a
 inline constexpr std::array<std::string_view, 5> rare_groups = {reading_group, solver_group, refinement_group,
                                                                 importance_group, experimental_group};
 
-struct LimitOptions {
-    std::optional<std::int64_t> rays;
-    std::optional<double> time, until;
-
-    void add_to(CLI::App& app);
-    bool any() const { return rays || time || until; }
-    /// Omitted limits are infinite.
-    Limits resolved() const;
-};
+void add_limits(CLI::App& app, GivenLimits& limits);
 
 struct SolverOptions {
     int threads = 0;         ///< 0: all threads of the machine.
@@ -105,13 +97,11 @@ struct SolverOptions {
     std::filesystem::path stats;
 
     void add_to(CLI::App& app);
-    /// Returns the options of solve(). The default method is ihsrr with views, otherwise hsrr. A given limit replaces
-    /// the default limit.
-    /// @param aspect  Width over height of the pictures.
+    /// Returns the options of solve(). @param aspect  Width over height of the pictures.
     SolveOptions resolved(const std::vector<View>& views, float aspect = 16.0f / 9, int pixel_rows = 720) const;
-    std::uint64_t seed() const { return solve_.seed; }
-    double until() const { return limits_.resolved().until; }  ///< Target of the relative error; 0 if not given.
-    double time() const { return limits_.resolved().time; }    ///< [s]; infinite if not given.
+    std::uint64_t seed() const { return given_.others.seed; }
+    double until() const { return given_.limits.limits().until; }  ///< Target of the relative error; 0 if not given.
+    double time() const { return given_.limits.limits().time; }    ///< [s]; infinite if not given.
 
   private:
     void add_refinement(CLI::App& app);
@@ -120,11 +110,7 @@ struct SolverOptions {
     void add_paper_refinement(CLI::App& app);
     void add_paper_importance(CLI::App& app);
 
-    SolveOptions solve_;
-    LimitOptions limits_;
-    bool is_published_ = false;  // --preset paper
-    std::optional<Method> method_;
-    std::optional<ImportanceUse> importance_;
+    GivenSettings given_;
 };
 
 void add_method(CLI::App& app, std::optional<Method>& method);

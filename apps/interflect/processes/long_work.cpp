@@ -7,7 +7,6 @@
 
 #include "apps/interflect/console/progress.h"
 #include "interflect/base/files/escapes.h"
-#include "interflect/base/memory/address_space.h"
 #include "interflect/base/memory/machine_memory.h"
 
 namespace interflect::command {
@@ -18,12 +17,14 @@ namespace {
 
 constexpr std::chrono::seconds silence{5};  // longer than most phases; shorter than a user's patience
 
-constexpr std::size_t min_addresses = std::size_t{1} << 30;  // a thread takes 136 MiB: a stack and a heap of malloc
+/// A thread takes 136 MiB, for a stack and a heap of malloc. addressable_memory() counts half of the free address
+/// space.
+constexpr std::size_t min_addresses = std::size_t{1} << 29;
 
 }  // namespace
 
 LongWork::LongWork(std::string what) : what_(std::move(what)), start_(Clock::now()), last_news_(start_) {
-    if (free_address_space() < min_addresses) return;
+    if (addressable_memory() - memory_in_use() < min_addresses) return;
     try {
         thread_ = std::thread([this] { watch(); });
     } catch (const std::system_error&) {  // too many threads: work without reports

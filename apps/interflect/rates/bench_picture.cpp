@@ -7,40 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "apps/interflect/rates/embree_rates.h"
+#include "apps/interflect/rates/median_rates.h"
 #include "interflect/core.h"
-#include "interflect/raycast/embree/ray_recorder.h"
+#include "interflect/rates.h"
 #include "interflect/solve.h"
 
 namespace interflect::command {
 
 using namespace detail;
-
-namespace {
-
-/// Rays of a picture, recorded or sampled from it.
-struct RecordedRays {
-    double count = 0;  // of the whole picture
-    std::vector<Ray> sample;
-    Json shares;  // by kind
-};
-
-RecordedRays record(const RayCaster& ray_caster, std::int64_t max_rays, const auto& draw) {
-    const RayRecorder recorder(ray_caster, static_cast<std::size_t>(max_rays));
-    const Rendering picture = draw();
-    const auto share = [&](std::int64_t rays) { return static_cast<double>(rays) / static_cast<double>(picture.rays); };
-    return {static_cast<double>(recorder.traced()), recorder.kept(),
-            Json{{"camera", share(picture.paths)},
-                 {"reflected", share(picture.rays - picture.shadow_rays - picture.paths)},
-                 {"shadow", share(picture.shadow_rays)}}};
-}
-
-struct PictureRound {
-    double seconds = 0;
-    EmbreeRates embree;
-};
-
-}  // namespace
 
 void PictureBenchOptions::add_to(CLI::App& command) {
     CLI::Option* picture = command.add_flag("--picture", is_given, "Measure a picture instead of the solver");
@@ -68,31 +42,25 @@ Json bench_picture(const Scene& scene, const RayCaster& ray_caster, const SolveO
                                  .shading = options.shading,
                                  .samples = require_samples(options.shading, &DefaultSamples::pixel, options.samples)};
     const View& view = solve_options.views.front().view;
-    const auto draw = [&] {
-        return solution ? render(scene, *solution, ray_caster, view, picture)
-                        : render(scene, ray_caster, view, picture);
-    };
-    const RecordedRays rays = record(ray_caster, solve_options.limits.rays, draw);
-
-    std::vector<PictureRound> measured;
-    for (int round = 0; round < rounds; ++round) {
-        const EmbreeRates embree = measure_embree(ray_caster, rays.sample);
-        measured.push_back({seconds_for(draw), embree});
-    }
-    const auto median = [&](const auto& figure) { return median_of(measured, figure); };
-    const auto rate = [&](const PictureRound& round) { return rays.count / round.seconds; };
+    const PictureMeasurement measured = measure_picture(scene, solution ? &*solution : nullptr, ray_caster, view,
+                                                        picture, solve_options.limits.rays, rounds);
+    using Round = PictureMeasurement::Round;
+    const auto median = [&](const auto& figure) { return median_of(measured.rounds, figure); };
+    const auto rays = static_cast<double>(measured.rays);
+    const auto rate = [&](const Round& round) { return rays / round.seconds; };
     return {{"shading", label(options.shading)},
             {"width", options.size.width},
             {"height", options.size.height},
             {"samples", picture.samples},
-            {"picture_rays", rays.count},
-            {"shares_of_rays", rays.shares},
-            {"recorded_rays", rays.sample.size()},
-            {"seconds", median([](const PictureRound& round) { return round.seconds; })},
-            {"ceiling_rays_per_second", median([](const PictureRound& round) { return round.embree.ceiling(); })},
-            {"embree", json_by_interface(median_rates(measured))},
+            {"picture_rays", rays},
+            {"shares_of_rays",
+             {{"camera", measured.camera}, {"reflected", measured.reflected}, {"shadow", measured.shadow}}},
+            {"recorded_rays", measured.recorded},
+            {"seconds", median([](const Round& round) { return round.seconds; })},
+            {"ceiling_rays_per_second", median([](const Round& round) { return round.embree.ceiling(); })},
+            {"embree", json_by_interface(median_rates(measured.rounds))},
             {"picture_rays_per_second", median(rate)},
-            {"ratio", median([&](const PictureRound& round) { return rate(round) / round.embree.ceiling(); })}};
+            {"ratio", median([&](const Round& round) { return rate(round) / round.embree.ceiling(); })}};
 }
 
 void print_picture(const Json& figures) {

@@ -4,61 +4,40 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
-#include <set>
 
-#include "interflect/luminaires/emission.h"
-#include "interflect/scene/faces/patch_area.h"
-#include "interflect/solver/light/materials.h"
+#include "interflect/summary.h"
 
 namespace interflect::command {
-
-using namespace detail;
 
 namespace {
 
 double photometric(const Rgb& colour) { return luminance(RgbD(colour)); }
 
-std::vector<SurfaceFacts> surfaces_of(const Scene& scene, const Materials& materials) {
-    std::map<std::uint32_t, SurfaceFacts> surfaces;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
-        const Patch& patch = scene.patches[i];
-        if (patch.other_side < i) continue;
-        SurfaceFacts& s = surfaces[patch.material];
-        const double area = patch_area(scene, patch);
-        s.area += area;
-        s.reflectance += area * photometric(materials.reflectance(i));
+std::vector<SurfaceFacts> surfaces_of(const Scene& scene, const SceneSummary& summary) {
+    std::vector<SurfaceFacts> surfaces;
+    for (const MaterialSummary& m : summary.materials) {
+        const Material& material = scene.materials[m.material];
+        surfaces.push_back({.material = material.name,
+                            .area = m.area,
+                            .reflectance = luminance(m.reflectance),
+                            .transmittance = photometric(material.transmittance),
+                            .specular_reflectance = photometric(material.specular_reflectance)});
     }
-    std::vector<SurfaceFacts> sorted;
-    for (auto& [material, s] : surfaces) {
-        s.material = scene.materials[material].name;
-        s.reflectance /= s.area;
-        s.transmittance = photometric(scene.materials[material].transmittance);
-        s.specular_reflectance = photometric(scene.materials[material].specular_reflectance);
-        sorted.push_back(s);
-    }
-    std::stable_sort(sorted.begin(), sorted.end(),
+    std::stable_sort(surfaces.begin(), surfaces.end(),
                      [](const SurfaceFacts& a, const SurfaceFacts& b) { return a.area > b.area; });
-    return sorted;
+    return surfaces;
 }
 
-void add_emitting_surfaces(const Scene& scene, const Materials& materials, std::vector<LightFacts>& lights) {
-    std::map<std::uint32_t, LightFacts> by_material;
-    std::map<std::uint32_t, std::set<std::uint32_t>> objects;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
-        const Patch& patch = scene.patches[i];
-        const double exitance = photometric(materials.exitance(i));
-        if (!(exitance > 0)) continue;
-        LightFacts& light = by_material[patch.material];
-        light.flux += exitance * static_cast<double>(patch_area(scene, patch));
-        objects[patch.material].insert(patch.object);
-    }
-    for (auto& [material, light] : by_material) {
-        const Material& m = scene.materials[material];
-        light.name = m.name;
+void add_emitting_surfaces(const Scene& scene, const SceneSummary& summary, std::vector<LightFacts>& lights) {
+    for (const MaterialSummary& m : summary.materials) {
+        if (m.emitting_patches == 0) continue;
+        const Material& material = scene.materials[m.material];
+        LightFacts& light = lights.emplace_back();
+        light.name = material.name;
         light.kind = "surface";
-        light.count = objects[material].size();
-        if (m.exitance_texture == none) light.luminance = photometric(m.exitance) / std::numbers::pi;
-        lights.push_back(light);
+        light.count = m.emitting_objects;
+        light.flux = luminance(m.power);
+        if (material.exitance_texture == none) light.luminance = photometric(material.exitance) / std::numbers::pi;
     }
 }
 
@@ -68,13 +47,9 @@ bool is_far_away(const Luminaire& luminaire) {
 }
 
 /// Adds one entry per photometric file or kind of unmeasured light.
-void add_luminaires(const Scene& scene, std::vector<LightFacts>& lights) {
-    const Emission emission(scene);
-    std::vector<double> flux(scene.luminaires.size());
-    for (std::size_t part = 0; part < emission.part_count(); ++part)
-        flux[emission.luminaire(part)] += luminance(emission.power(part));
+void add_luminaires(const Scene& scene, const SceneSummary& summary, std::vector<LightFacts>& lights) {
     std::map<std::string, LightFacts> by_name;
-    for (std::size_t i = 0; i < flux.size(); ++i) {
+    for (std::size_t i = 0; i < summary.luminaires.size(); ++i) {
         const Luminaire& luminaire = scene.luminaires[i];
         const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind);
         const std::string name = measured ? std::filesystem::path(measured->web->name).filename().string()
@@ -83,7 +58,7 @@ void add_luminaires(const Scene& scene, std::vector<LightFacts>& lights) {
         light.name = name;
         light.kind = kind_name(luminaire);
         ++light.count;
-        light.flux += flux[i];
+        light.flux += luminance(summary.luminaires[i]);
         light.far_away = is_far_away(luminaire);
         if (std::holds_alternative<UniformSky>(luminaire.kind)) light.luminance = photometric(rating(luminaire));
     }
@@ -94,14 +69,12 @@ void add_luminaires(const Scene& scene, std::vector<LightFacts>& lights) {
 
 SceneFacts facts_of(const SolvedScene& solved, const RayCaster& ray_caster) {
     const Scene& scene = solved.scene;
-    const Materials materials(scene, ray_caster);
+    const SceneSummary summary = summarise(scene, ray_caster);
     SceneFacts facts;
-    for (const Patch& patch : scene.patches)
-        for (std::size_t k = 0; k < static_cast<std::size_t>(patch.vertex_count()); ++k)
-            facts.bounds.extendBy(scene.origin + Imath::V3d(scene.vertices[patch.vertices[k]]));
-    facts.surfaces = surfaces_of(scene, materials);
-    add_emitting_surfaces(scene, materials, facts.lights);
-    add_luminaires(scene, facts.lights);
+    facts.bounds = summary.bounds;
+    facts.surfaces = surfaces_of(scene, summary);
+    add_emitting_surfaces(scene, summary, facts.lights);
+    add_luminaires(scene, summary, facts.lights);
     std::stable_sort(facts.lights.begin(), facts.lights.end(),
                      [](const LightFacts& a, const LightFacts& b) { return a.flux > b.flux; });
     facts.balance = power_balance(scene, solved.solution);

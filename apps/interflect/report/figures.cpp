@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "apps/interflect/report/html.h"
-#include "interflect/image/codecs/srgb.h"
-#include "interflect/image/plots/legend.h"
+#include "interflect/plots.h"
 
 namespace interflect::command {
 
@@ -33,7 +34,8 @@ struct Frame {
 };
 
 std::string colour_text(const Rgb& linear) {
-    return fmt::format("#{:02x}{:02x}{:02x}", srgb_byte(linear.x), srgb_byte(linear.y), srgb_byte(linear.z));
+    const std::array<std::uint8_t, 3> bytes = srgb_bytes(linear);
+    return fmt::format("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2]);
 }
 
 std::string text(double x, double y, const char* anchor, const std::string& words, double size = font_size) {

@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "interflect/base/files/escapes.h"
-#include "interflect/image/codecs/image_codecs.h"
 
 namespace interflect::command {
 
@@ -53,6 +52,6 @@ std::string html_text(std::string_view text) {
     return html;
 }
 
-std::string data_url(const Image& image) { return "data:image/png;base64," + base64(codecs::encode_png(image)); }
+std::string data_url(const Image& image) { return "data:image/png;base64," + base64(encode_png(image)); }
 
 }  // namespace interflect::command

@@ -1,16 +1,15 @@
 #include "apps/interflect/report/plan.h"
 
+#include <ImathBox.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <vector>
 
 #include "apps/interflect/console/path_progress.h"
-#include "interflect/geometry/polygons/patch_geometry.h"
-#include "interflect/image/plots/isolines.h"
-#include "interflect/image/plots/legend.h"
 #include "interflect/measure.h"
-#include "interflect/photometry/planar_outline.h"
+#include "interflect/plots.h"
 
 namespace interflect::command {
 
@@ -195,8 +194,8 @@ Image outlines_below(const Scene& scene, const RayCaster& ray_caster, const Rast
         ray_caster.trace(rays, hits);
         for (std::size_t c = 0; c < width; ++c)
             if (hits[c].patch != none)
-                seen[static_cast<std::size_t>(row) * width + c] = {
-                    rays[c].origin.z - hits[c].distance, PatchGeometry(scene, scene.patches[hits[c].patch]).normal()};
+                seen[static_cast<std::size_t>(row) * width + c] = {rays[c].origin.z - hits[c].distance,
+                                                                   patch_normal(scene, scene.patches[hits[c].patch])};
     }
     constexpr float step = 0.02f;  // visible difference in height [m]
     constexpr float crease = 0.9f;

@@ -3,8 +3,8 @@
 #include <ImathVec.h>
 
 #include "interflect/image.h"
-#include "interflect/image/plots/false_colour.h"
 #include "interflect/measure.h"
+#include "interflect/plots.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"
@@ -17,7 +17,7 @@ struct ReportPlan {
     Imath::V2d floor_size{0, 0};       ///< Size of the floor [m]; excludes the margin.
     Image outlines;                    ///< Outlines of objects, black on white.
     Image illuminance;                 ///< The outlines over false colours with isolines; white inside furniture.
-    detail::ColourScale scale;         ///< Scale of the false colours [lx].
+    ColourScale scale;                 ///< Scale of the false colours [lx].
 };
 
 /// Draws a plan with a progress bar; stop_flag() ends it early. @param height  World z of the plane [m].

@@ -11,15 +11,15 @@
 #include <utility>
 
 #include "apps/interflect/console/progress.h"
-#include "apps/interflect/leaks/leaks.h"
 #include "apps/interflect/processes/shared_run.h"
 #include "apps/interflect/processes/signals.h"
 #include "apps/interflect/values/percent.h"
 #include "interflect/base/memory/machine_memory.h"
-#include "interflect/checks/memory_need.h"
 #include "interflect/core.h"
+#include "interflect/leaks.h"
+#include "interflect/prepare.h"
 #include "interflect/solution.h"
-#include "interflect/solver/light/materials.h"
+#include "interflect/summary.h"
 
 namespace interflect::command {
 
@@ -30,7 +30,7 @@ namespace {
 void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
     if (solution.iterations.empty() || solution.iterations.back().escaped_rays == 0) return;
     const Escapes escapes = find_escapes(scene, ray_caster, solution);
-    if (leaks(escapes))
+    if (escapes.is_leak())
         spdlog::warn(
             "the scene looks closed but leaks: {} of the light leaves it, most of that through gaps "
             "between faces",

@@ -8,7 +8,6 @@
 
 #include "apps/interflect/console/messages.h"
 #include "apps/interflect/console/print_views.h"
-#include "interflect/base/files/crc32.h"
 #include "interflect/exports/records/solve_report.h"
 #include "interflect/solution.h"
 
@@ -39,7 +38,7 @@ Json to_json(const SolvedScene& solved) {
         json["files"] = scene.files;
         json["file_checksums"] = Json::array();
         for (const std::uint32_t checksum : scene.file_checksums)
-            json["file_checksums"].push_back(text_of_crc32(checksum));
+            json["file_checksums"].push_back(fmt::format("{:08x}", checksum));
     }
     json.update({{"patches", scene.patches.size()},
                  {"result", json_of(result_of(solved))},

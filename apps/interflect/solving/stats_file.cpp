@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "interflect/exports/records/solve_report.h"
-#include "interflect/geometry/polygons/patch_geometry.h"
 
 namespace interflect::command {
 

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <string>
 #include <system_error>
 
 #include "apps/interflect/values/parse.h"
-#include "interflect/formats/text/extension.h"
 
 namespace interflect::command {
 
@@ -33,6 +33,8 @@ constexpr std::array<std::string_view, 28> known_extensions = {
     ".pbrt", ".py",   ".vtu", ".vtkhdf", ".hdf", ".html", ".htm",  ".npz"};
 
 }  // namespace
+
+std::string lower_case_extension(const fs::path& path) { return CLI::detail::to_lower(path.extension().string()); }
 
 void require_distinct_files(std::span<const NamedFile> inputs, std::span<const NamedFile> outputs) {
     const auto require_distinct = [](const NamedFile& a, const NamedFile& b) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "interflect/scene.h"
@@ -18,6 +19,9 @@ void require_distinct_files(std::span<const NamedFile> inputs, std::span<const N
 
 /// @throws UsageError if an output is one of Scene::files.
 void require_no_scene_files(const Scene& scene, std::span<const NamedFile> outputs);
+
+/// Converts ASCII letters alone.
+std::string lower_case_extension(const std::filesystem::path& path);
 
 /// @param output  Receives a table or JSON.
 /// @throws UsageError if its name ends like that of a scene, a solution, a picture or another kind of file.

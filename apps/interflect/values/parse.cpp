@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "interflect/scene/core/limits.h"
+#include "interflect/scene.h"
 #include "interflect/solve_options.h"
 
 namespace interflect::command {

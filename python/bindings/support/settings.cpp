@@ -80,10 +80,11 @@ std::vector<WeightedView> weighted_views(const Scene& scene, const py::object& v
 }
 
 Limits limits_of(const py::object& rays, const py::object& time, const py::object& until) {
-    Limits limits;
-    if (!rays.is_none()) limits.rays = whole_number(rays, "rays");
-    if (!time.is_none()) limits.time = setting("time", time, nullptr).get<double>();
-    if (!until.is_none()) limits.until = setting("until", until, nullptr).get<double>();
+    GivenLimits given;
+    if (!rays.is_none()) given.rays = whole_number(rays, "rays");
+    if (!time.is_none()) given.time = setting("time", time, nullptr).get<double>();
+    if (!until.is_none()) given.until = setting("until", until, nullptr).get<double>();
+    const Limits limits = given.limits();
     if (limits.rays <= 0) throw InputError("rays: expected more than 0");
     if (!(limits.time > 0)) throw InputError("time: expected more than 0");
     if (!(limits.until >= 0 && limits.until < 1))
@@ -93,16 +94,14 @@ Limits limits_of(const py::object& rays, const py::object& time, const py::objec
 
 SolveOptions solve_options(const Scene& scene, const py::object& method, const py::object& views,
                            const py::dict& settings) {
-    SolveOptions options;
+    GivenSettings given;
+    SolveOptions& options = given.others;
     options.views = weighted_views(scene, views);
-    options.method = method.is_none() ? default_method(!options.views.empty())
-                                      : find_method(argument<std::string>(method, "method"));
-    const bool has_limit = settings.contains("rays") || settings.contains("time") || settings.contains("until");
-    if (has_limit) options.limits = Limits();
+    if (!method.is_none()) given.method = find_method(argument<std::string>(method, "method"));
     if (settings.contains("preset")) {
         if (!py::str("paper").equal(settings["preset"])) throw InputError("preset: expected 'paper'");
-        if (settings.contains("rays")) options.limits.rays = whole_number(settings["rays"], "rays");
         use_published_algorithm(options);
+        given.is_published = true;
     }
     Json json = detail::json_of(options);
     for (const auto& [key, value] : settings) {
@@ -121,7 +120,12 @@ SolveOptions solve_options(const Scene& scene, const py::object& method, const p
     }
     json["views"] = Json::array();  // kept in full precision
     detail::read_options(json, options, true);
-    return options;
+    if (settings.contains("importance")) given.importance = options.method.importance;
+    if (settings.contains("rays")) given.limits.rays = options.limits.rays;
+    if (settings.contains("time")) given.limits.time = options.limits.time;
+    if (settings.contains("until")) given.limits.until = options.limits.until;
+    if (settings.contains("rays_per_iteration")) given.rays_per_iteration = options.experimental.rays_per_iteration;
+    return resolved(given);
 }
 
 py::dict settings_of(const SolveOptions& options) {

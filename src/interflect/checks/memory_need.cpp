@@ -1,4 +1,4 @@
-#include "interflect/checks/memory_need.h"
+#include "interflect/prepare.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,20 @@
 #include "interflect/core.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
+
+namespace {
+
+// Three colours, and an index per four siblings [bytes].
+constexpr std::size_t per_textured_element = 37;
+// Bytes: H, unshot light and pass result, 12 each; contributions 24 or received light 12.
+constexpr std::size_t per_element_and_group = 60;
+// With SolveOptions::keep_direct, per light group [bytes].
+constexpr std::size_t per_element_of_direct_light = 24;
+
+}  // namespace
 
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
     constexpr std::size_t program = 100 << 20;
@@ -20,19 +33,18 @@ MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster) {
     }
     need.scene += (scene.texture_coordinates.size() + scene.lightmap_coordinates.size()) * sizeof(V2f);
     need.scene += scene.normals.size() * sizeof(V3f);
-    if (!scene.texture_coordinates.empty()) need.per_element += MemoryNeed::per_textured_element;
+    if (!scene.texture_coordinates.empty()) need.per_element += per_textured_element;
     need.ray_tracer = ray_caster.memory();
     need.patches = scene.patches.size() * sizeof(PatchGeometry);
     need.rest = program;
-    need.per_element += source_groups(scene).size() * MemoryNeed::per_element_and_group;
+    need.per_element += source_groups(scene).size() * per_element_and_group;
     return need;
 }
 
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options) {
     MemoryNeed need = memory_need(scene, ray_caster);
     if (options.keep_direct)
-        need.per_element +=
-            MemoryNeed::per_element_of_direct_light * std::max<std::size_t>(1, source_groups(scene).size());
+        need.per_element += per_element_of_direct_light * std::max<std::size_t>(1, source_groups(scene).size());
     return need;
 }
 
@@ -45,4 +57,4 @@ std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Sce
     return (bytes - need.without_elements()) / need.per_element;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

@@ -7,6 +7,7 @@
 #include "interflect/base/files/pending_file.h"
 #include "interflect/base/files/state_archive.h"
 #include "interflect/core.h"
+#include "interflect/elements/forest.h"
 #include "interflect/exports/saved_run.h"
 #include "interflect/solution.h"
 #include "interflect/solver.h"
@@ -35,6 +36,17 @@ void write_run(Run& run, Solution result, SolveOptions options, const Write& wri
 }
 
 }  // namespace
+
+Solution detail::dark_solution(const Scene& scene) {
+    Solution dark;
+    dark.options.method = default_method(false);  // files name one
+    dark.forest = std::make_shared<ElementForest>(scene, scene.patches.size());
+    const std::size_t elements = dark.forest->size();
+    dark.irradiance.assign(elements, Rgb(0));
+    for (std::vector<float>* values : {&dark.standard_error, &dark.discretisation_error, &dark.rays})
+        values->assign(elements, 0);
+    return dark;
+}
 
 void Solver::save(const std::filesystem::path& path) const {
     PendingFile file(path);

@@ -28,6 +28,9 @@ SolvedScene read_solution_image(std::span<const char> image);
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                     const StateArchive* state);
 
+/// Makes a solution without light; its file contains the scene.
+Solution dark_solution(const Scene& scene);
+
 /// Returns the bytes of such a file without checksums.
 std::string solution_image(const Scene& scene, const Solution& solution, const StateArchive* state);
 

@@ -12,9 +12,12 @@
 #include "interflect/formats/text/line_reader.h"
 #include "interflect/formats/text/number.h"
 #include "interflect/formats/text/text_file.h"
+#include "interflect/load.h"
 #include "interflect/scene/core/view.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace fs = std::filesystem;
 
@@ -133,7 +136,7 @@ bool starts_a_view(std::string_view word) { return !word.starts_with('-') && !pa
 
 fs::path view_list_path(const fs::path& scene_path) { return fs::path(scene_path).replace_extension(".views.json"); }
 
-std::vector<View> read_view_list(const fs::path& path) {
+std::vector<View> detail::read_view_list(const fs::path& path) {
     const json document = parse_json(read_text_file(path), path);
     Members members(document, "the file", path);
     const json& list = members.require("views");
@@ -149,7 +152,7 @@ std::vector<View> read_view_list(const fs::path& path) {
     return views;
 }
 
-void write_view_list(std::span<const View> views, const fs::path& path) {
+void detail::write_view_list(std::span<const View> views, const fs::path& path) {
     // fmt writes the shortest decimals that round-trip.
     const auto vector = [](const auto& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); };
     std::vector<std::string> lines;
@@ -180,4 +183,4 @@ View read_radiance_view(const fs::path& path) {
     return view;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

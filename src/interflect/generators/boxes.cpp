@@ -1,4 +1,4 @@
-#include "interflect/generators/boxes.h"
+#include "interflect/generate.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,9 @@
 #include "interflect/generators/building/walls/shell.h"
 #include "interflect/generators/patterns.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -76,4 +78,4 @@ Scene make_boxes(const BoxesOptions& options) {
     return scene;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

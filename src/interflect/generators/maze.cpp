@@ -1,4 +1,4 @@
-#include "interflect/generators/maze.h"
+#include "interflect/generate.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,9 @@
 #include "interflect/generators/building/rooms/room_views.h"
 #include "interflect/generators/building/walls/shell.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -89,4 +91,4 @@ std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options) 
     return static_cast<std::uint32_t>(rooms);
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

@@ -1,4 +1,4 @@
-#include "interflect/generators/office.h"
+#include "interflect/generate.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,9 @@
 #include "interflect/generators/building/rooms/room_views.h"
 #include "interflect/generators/building/walls/shell.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -90,4 +92,4 @@ Scene make_office(const OfficeOptions& options) {
     return scene;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

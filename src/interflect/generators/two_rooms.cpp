@@ -1,4 +1,4 @@
-#include "interflect/generators/two_rooms.h"
+#include "interflect/generate.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,9 @@
 #include "interflect/core.h"
 #include "interflect/generators/building/walls/solids.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -80,4 +82,4 @@ Scene make_two_rooms(const TwoRoomsOptions& options) {
     return scene;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

@@ -11,9 +11,8 @@
 
 #include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
-#include "interflect/image/plots/false_colour.h"
-#include "interflect/image/plots/legend.h"
 #include "interflect/metrics.h"
+#include "interflect/plots.h"
 
 namespace interflect {
 

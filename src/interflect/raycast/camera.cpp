@@ -52,3 +52,11 @@ Camera::Camera(const View& view, int width, int height, const V3d& origin)
 }
 
 }  // namespace interflect::detail
+
+namespace interflect {
+
+void require_picture(const View& view, int width, int height, const Imath::V3d& origin) {
+    detail::Camera(view, width, height, origin);
+}
+
+}  // namespace interflect

@@ -9,7 +9,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/exports/lightmap/baked_light.h"
-#include "interflect/generators/two_rooms.h"
+#include "interflect/generate.h"
 #include "interflect/prepare.h"
 #include "interflect/render/smooth/smooth_field.h"
 #include "interflect/solve.h"

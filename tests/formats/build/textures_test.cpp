@@ -11,7 +11,7 @@
 #include "interflect/formats/build/texture_files.h"
 #include "interflect/formats/mgf/mgf.h"
 #include "interflect/formats/mgf/write_mgf.h"
-#include "interflect/generators/boxes.h"
+#include "interflect/generate.h"
 #include "interflect/image.h"
 #include "interflect/image/codecs/srgb.h"
 #include "interflect/load.h"

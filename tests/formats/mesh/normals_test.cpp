@@ -10,7 +10,6 @@
 #include "interflect/formats/mesh/ply/ply.h"
 #include "interflect/formats/mgf/mgf.h"
 #include "interflect/formats/mgf/write_mgf.h"
-#include "interflect/geometry/surfaces/split.h"
 #include "interflect/prepare.h"
 #include "tests/formats/gltf/builder.h"
 

@@ -13,8 +13,7 @@
 #include "interflect/formats/build/colour.h"
 #include "interflect/formats/mgf/mgf.h"
 #include "interflect/formats/view_files.h"
-#include "interflect/generators/maze.h"
-#include "interflect/generators/office.h"
+#include "interflect/generate.h"
 #include "interflect/load.h"
 #include "tests/support/scenes/scenes.h"
 

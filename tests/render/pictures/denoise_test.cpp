@@ -9,9 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "interflect/generators/boxes.h"
-#include "interflect/generators/maze.h"
-#include "interflect/generators/office.h"
+#include "interflect/generate.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "interflect/elements/forest.h"
-#include "interflect/generators/boxes.h"
+#include "interflect/generate.h"
 #include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
 #include "tests/support/parameter_names.h"

@@ -11,6 +11,7 @@
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/light/radiosity.h"
+#include "interflect/summary.h"
 #include "tests/support/parameter_names.h"
 #include "tests/support/release_only.h"
 #include "tests/support/scenes/scenes.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "interflect/elements/forest.h"
-#include "interflect/generators/maze.h"
+#include "interflect/generate.h"
 #include "interflect/solver.h"
 #include "tests/support/statistics.h"
 

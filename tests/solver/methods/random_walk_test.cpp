@@ -19,7 +19,7 @@
 #include <numeric>
 
 #include "interflect/elements/forest.h"
-#include "interflect/generators/maze.h"
+#include "interflect/generate.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"

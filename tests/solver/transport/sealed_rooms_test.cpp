@@ -9,8 +9,7 @@
 #include <ostream>
 
 #include "interflect/elements/forest.h"
-#include "interflect/generators/two_rooms.h"
-#include "interflect/geometry/surfaces/split.h"
+#include "interflect/generate.h"
 #include "interflect/prepare.h"
 #include "interflect/solve.h"
 

@@ -1,4 +1,4 @@
-#include "interflect/checks/faces/measuring_places.h"
+#include "interflect/measure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,6 @@
 namespace interflect {
 
 using namespace detail;
-
-namespace detail {
 
 namespace {
 
@@ -130,7 +128,7 @@ std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_ca
     const SightLines lines(scene, ray_caster);
     const bool is_room = find_shell(scene, ray_caster, lines).is_room;
     const float offset = offset_of_points(scene);
-    std::vector<PointFault> faults(points.size(), PointFault::none);
+    std::vector<PointFault> faults(points.size(), PointFault::sound);
     const std::size_t step = (points.size() + max_points - 1) / max_points;
     for (std::size_t p = 0; p < points.size(); p += step) {
         const FirstHits hits = first_hits(scene, ray_caster, lines, place_of(scene, points[p], offset));
@@ -141,8 +139,6 @@ std::vector<PointFault> point_faults(const Scene& scene, const RayCaster& ray_ca
     }
     return faults;
 }
-
-}  // namespace detail
 
 MeasuringGrid without_enclosed_points(const Scene& scene, const RayCaster& ray_caster, MeasuringGrid grid) {
     ray_caster.require_made_for(scene);

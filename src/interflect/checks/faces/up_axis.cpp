@@ -10,9 +10,12 @@
 
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/geometry/search/disjoint_sets.h"
+#include "interflect/prepare.h"
 #include "interflect/scene/core/core.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -107,7 +110,7 @@ bool is_flat(const V3f& extent, int axis) {
 
 }  // namespace
 
-const char* find_other_up_axis(const Scene& scene) {
+const char* detail::find_other_up_axis(const Scene& scene) {
     constexpr double min_standing = 0.5, min_advantage = 0.25;
     if (scene.patches.empty() || axis_of_views(scene)) return nullptr;
     const char* const of_light = axis_of_light(scene);
@@ -125,10 +128,17 @@ const char* find_other_up_axis(const Scene& scene) {
     return nullptr;
 }
 
+V3f UpAxis::direction() const {
+    const std::string_view name = axis;
+    V3f direction(0);
+    direction[name.back() - 'x'] = name.front() == '-' ? -1.0f : 1.0f;
+    return direction;
+}
+
 std::optional<UpAxis> find_up_axis(const Scene& scene) {
     if (const char* axis = axis_of_views(scene)) return UpAxis{axis, "views"};
     if (const char* axis = axis_of_light(scene)) return UpAxis{axis, "light"};
     return std::nullopt;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

@@ -13,7 +13,6 @@
 #include "interflect/exports/mesh/opacity.h"
 #include "interflect/exports/vertices/lit_polygons.h"
 #include "interflect/luminaires/skies/skies.h"
-#include "interflect/scene/core/view.h"
 
 namespace interflect::detail {
 

@@ -104,3 +104,9 @@ Parameters PatchGeometry::parameters_of(const V3f& x) const {
 }
 
 }  // namespace interflect::detail
+
+namespace interflect {
+
+V3f patch_normal(const Scene& scene, const Patch& patch) { return detail::PatchGeometry(scene, patch).normal(); }
+
+}  // namespace interflect

@@ -1,4 +1,4 @@
-#include "interflect/geometry/surfaces/split.h"
+#include "interflect/prepare.h"
 
 #include <ImathBox.h>
 #include <fmt/format.h>
@@ -13,7 +13,9 @@
 #include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/scene/core/core.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -128,4 +130,4 @@ float default_mesh_size(const Scene& scene) {
     return std::max(box.size().length() / pieces_of_diagonal, static_cast<float>(std::sqrt(area / moderate_patches)));
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

@@ -11,6 +11,7 @@
 #include "interflect/base/files/input_file.h"
 #include "interflect/core.h"
 #include "interflect/image/codecs/image_codecs.h"
+#include "interflect/image/codecs/srgb.h"
 #include "interflect/image/codecs/stored_image.h"
 #include "interflect/image/files/pending_image.h"
 #include "interflect/image/files/photograph.h"
@@ -129,6 +130,19 @@ std::optional<float> read_field_of_view(const fs::path& path) {
     return read_with(path, [](ImageFormat format, const fs::path& file) {
         return format == ImageFormat::exr ? codecs::read_exr_field_of_view(file) : std::nullopt;
     });
+}
+
+std::string encode_png(const Image& image) {
+    require_pixels(image);
+    return codecs::encode_png(image);
+}
+
+bool can_hold(ImageFormat format, int width, int height) {
+    return format != ImageFormat::png || codecs::png_bytes(width, height) <= codecs::max_png_bytes;
+}
+
+std::array<std::uint8_t, 3> srgb_bytes(const Rgb& linear) {
+    return {srgb_byte(linear.x), srgb_byte(linear.y), srgb_byte(linear.z)};
 }
 
 }  // namespace interflect

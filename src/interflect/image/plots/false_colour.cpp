@@ -1,9 +1,11 @@
-#include "interflect/image/plots/false_colour.h"
+#include "interflect/plots.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -69,4 +71,4 @@ Image false_colours(const Image& values, const ColourScale& scale) {
     return image;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

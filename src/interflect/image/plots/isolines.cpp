@@ -1,4 +1,4 @@
-#include "interflect/image/plots/isolines.h"
+#include "interflect/plots.h"
 
 #include <ImathVec.h>
 #include <fmt/format.h>
@@ -13,7 +13,9 @@
 #include "interflect/geometry/search/disjoint_sets.h"
 #include "interflect/image/plots/lettering.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -217,4 +219,4 @@ Image with_isolines(const Image& picture, const Image& values, std::span<const f
     return image;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

@@ -1,4 +1,4 @@
-#include "interflect/image/plots/legend.h"
+#include "interflect/plots.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,9 @@
 #include "interflect/image.h"
 #include "interflect/image/plots/lettering.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -128,4 +130,4 @@ Image with_legend(const Image& picture, const ColourScale& scale, const std::str
     return image;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

@@ -13,12 +13,8 @@ namespace interflect::detail {
 /// @throws InputError for inconsistent sizes or a forest of another scene.
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
 
-/// Peak memory of trace_picture() [bytes], measured with 1.4 million emitting patches.
-inline constexpr std::size_t path_bytes_per_pixel = 600, path_bytes_per_patch = 250;
-
-/// Peak memory of a set of virtual lights per walk [bytes]: measured 3,600 in a closed room of reflectance 0.9, 550 in
-/// an office.
-inline constexpr std::size_t bytes_per_light_walk = 4000;
+/// Peak memory of trace_picture() [bytes].
+inline constexpr std::size_t path_bytes_per_pixel = 600;
 
 /// Draws the picture with virtual lights; the arguments are those of trace_picture().
 Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,

@@ -5,7 +5,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/image.h"
-#include "interflect/image/plots/false_colour.h"
+#include "interflect/plots.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/scene.h"
@@ -19,14 +19,6 @@ struct Quantity {
     Spacing spacing = Spacing::logarithmic;
 
     std::string label() const { return unit.empty() ? name : name + " [" + unit + "]"; }
-};
-
-struct QuantityPicture {
-    Image values;  ///< Means over visible surfaces; 0 without surfaces.
-    Image shown;   ///< False colours; escaped rays are black.
-    ColourScale scale;
-    std::int64_t non_finite_pixels = 0;  ///< In either image.
-    bool interrupted = false;            ///< The remaining pixels are 0.
 };
 
 /// Draws leaves without shading.

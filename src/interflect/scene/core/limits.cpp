@@ -22,11 +22,6 @@ void extend(Imath::Box3d& box, const Scene& scene, const Patch& patch) {
 
 }  // namespace
 
-bool is_within_reach(const Imath::V3d& point) {
-    return std::abs(point.x) <= farthest_coordinate && std::abs(point.y) <= farthest_coordinate &&
-           std::abs(point.z) <= farthest_coordinate;
-}
-
 double scene_width(const Scene& scene) {
     Imath::Box3d box;
     for (const Patch& patch : scene.patches) extend(box, scene, patch);
@@ -94,3 +89,14 @@ float brightest_source(const Scene& scene) {
 }
 
 }  // namespace interflect::detail
+
+namespace interflect {
+
+bool is_within_reach(const Imath::V3d& point) {
+    return std::abs(point.x) <= farthest_coordinate && std::abs(point.y) <= farthest_coordinate &&
+           std::abs(point.z) <= farthest_coordinate;
+}
+
+bool emits_light(const Scene& scene) { return detail::brightest_source(scene) > 0; }
+
+}  // namespace interflect

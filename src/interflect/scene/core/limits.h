@@ -8,9 +8,6 @@ namespace interflect::detail {
 
 // Limits for single precision: variances scale with the square of irradiance and the inverse square of element area.
 
-/// For faces and views, in the world and from the scene's origin [m]; a double resolves 1/8 m there.
-inline constexpr double farthest_coordinate = 1e15;
-
 /// Diagonal of the bounding box [m]: about the Earth.
 inline constexpr double widest_face = 1e7;
 
@@ -20,8 +17,6 @@ inline constexpr float smallest_face_area = 1e-18f;
 
 /// Range of the brightest source unless 0, per channel [lm/m^2 or W/m^2]; the Sun has 6 * 10^9 lm/m^2.
 inline constexpr float weakest_exitance = 1e-9f, strongest_exitance = 1e10f;
-
-bool is_within_reach(const Imath::V3d& point);
 
 /// Returns the diagonal of all patches' bounding box [m]; 0 without patches. Ignores invalid vertices.
 double scene_width(const Scene& scene);

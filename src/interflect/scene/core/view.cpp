@@ -9,7 +9,9 @@
 #include "interflect/scene/core/core.h"
 #include "interflect/scene/core/limits.h"
 
-namespace interflect::detail {
+namespace interflect {
+
+using namespace detail;
 
 namespace {
 
@@ -29,7 +31,7 @@ double largest_coordinate(const V3d& x) { return std::max({std::abs(x.x), std::a
 
 }  // namespace
 
-std::string view_fault(const View& view) {
+std::string detail::view_fault(const View& view) {
     if (!is_finite(view.eye) || !is_finite(view.look_at) || !is_finite(view.up))
         return fmt::format("eye {}, look-at {} and up {} must be finite", text(view.eye), text(view.look_at),
                            text(view.up));
@@ -94,4 +96,4 @@ View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& dir
     return view;
 }
 
-}  // namespace interflect::detail
+}  // namespace interflect

@@ -16,7 +16,4 @@ Imath::Vec3<T> doubled_area_vector(std::span<const Imath::Vec3<T>> corners) {
                                : (corners[2] - corners[0]).cross(corners[3] - corners[1]);
 }
 
-/// [m^2]
-float patch_area(const Scene& scene, const Patch& patch);
-
 }  // namespace interflect::detail

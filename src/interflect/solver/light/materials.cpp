@@ -6,6 +6,7 @@
 #include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/summary.h"
 
 namespace interflect::detail {
 
@@ -58,22 +59,6 @@ Materials::Materials(const Scene& scene, std::vector<float> exitance_share)
     });
 }
 
-CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster) {
-    ray_caster.require_made_for(scene);
-    CoveredEmission covered;
-    if (!ray_caster.has_covered_patches()) return covered;
-    const Materials materials(scene);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
-        const float share = ray_caster.uncovered_share(i);
-        const Material& material = materials.material(i);
-        if (share == 1 || !emits(material)) continue;
-        ++(share > 0 ? covered.partly : covered.wholly);
-        covered.power +=
-            RgbD(material.exitance) * static_cast<double>((1 - share) * patch_area(scene, scene.patches[i]));
-    }
-    return covered;
-}
-
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest,
                            const std::vector<Rgb>& irradiance) {
     std::vector<Rgb> b(irradiance.size());
@@ -93,3 +78,23 @@ RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values) {
 }
 
 }  // namespace interflect::detail
+
+namespace interflect {
+
+CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster) {
+    ray_caster.require_made_for(scene);
+    CoveredEmission covered;
+    if (!ray_caster.has_covered_patches()) return covered;
+    const detail::Materials materials(scene);
+    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+        const float share = ray_caster.uncovered_share(i);
+        const Material& material = materials.material(i);
+        if (share == 1 || !detail::emits(material)) continue;
+        ++(share > 0 ? covered.partly : covered.wholly);
+        covered.power +=
+            RgbD(material.exitance) * static_cast<double>((1 - share) * patch_area(scene, scene.patches[i]));
+    }
+    return covered;
+}
+
+}  // namespace interflect

@@ -55,13 +55,6 @@ class Materials {
     std::vector<Material> own_materials_;
 };
 
-struct CoveredEmission {
-    std::int64_t wholly = 0, partly = 0;
-    RgbD power{0, 0, 0};  ///< [lm or W]
-};
-/// @throws InputError for a ray caster of another scene.
-CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster);
-
 /// Returns Radiosity by element. With textures, inner elements have the mean of their children.
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 

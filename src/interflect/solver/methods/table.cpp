@@ -162,6 +162,23 @@ void use_published_algorithm(SolveOptions& options) {
     o.inherited_weight = 1;
 }
 
+Limits GivenLimits::limits() const {
+    const Limits unlimited;
+    return {rays.value_or(unlimited.rays), time.value_or(unlimited.time), until.value_or(unlimited.until)};
+}
+
+SolveOptions resolved(const GivenSettings& given) {
+    SolveOptions options = given.others;
+    options.method = given.method ? *given.method : default_method(!options.views.empty());
+    options.method.importance = given.importance.value_or(options.method.importance);
+    options.limits = given.limits.any() ? given.limits.limits() : SolveOptions().limits;
+    SolveOptions preset;
+    preset.limits = options.limits;
+    if (given.is_published) use_published_algorithm(preset);
+    options.experimental.rays_per_iteration = given.rays_per_iteration.value_or(preset.experimental.rays_per_iteration);
+    return options;
+}
+
 namespace detail {
 
 std::unique_ptr<IterationMethod> make_iteration_method(SolverState& state) {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "interflect/geometry/surfaces/split.h"
+#include "interflect/prepare.h"
 
 namespace interflect::detail {
 

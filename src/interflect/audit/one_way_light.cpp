@@ -1,92 +1,24 @@
-#include "apps/interflect/leaks/leaks.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <utility>
 #include <vector>
 
+#include "interflect/audit/sampled_sources.h"
 #include "interflect/base/numbers/points.h"
 #include "interflect/base/numbers/random.h"
-#include "interflect/elements/forest.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/leaks.h"
 #include "interflect/luminaires/emission.h"
 #include "interflect/render/lights/path_samples.h"
-#include "interflect/scene/core/core.h"
 #include "interflect/solver/light/materials.h"
-#include "interflect/solver/sampling/ray_maker.h"
 
-namespace interflect::command {
+namespace interflect {
 
 using namespace detail;
 
 namespace {
-
-constexpr std::int64_t rays_traced = 1 << 16;
-constexpr std::uint64_t leak_seed = 1;
-constexpr float min_leak = 1e-3f, max_leak = 0.05f;
-/// Distance from an escaping ray to its parallels, relative to the scene's diagonal.
-constexpr float distance_beside = 0.02f;
-constexpr std::size_t rays_beside = 8;
-
-/// Leaves sampled systematically in proportion to their power.
-struct Sources {
-    std::vector<std::uint32_t> leaves;
-    double power = 0;  ///< Sum of channels and leaves.
-
-    double power_of_each() const { return power / static_cast<double>(leaves.size()); }
-};
-
-Sources sources(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
-    const ElementForest& forest = *solution.forest;
-    Materials materials(scene, ray_caster);
-    materials.grow(forest);
-    const std::vector<Rgb> b = radiosity(materials, forest, solution.irradiance);
-    const std::vector<std::uint32_t> leaves = forest.leaves();
-    std::vector<double> cumulative;
-    cumulative.reserve(leaves.size());
-    Sources result;
-    for (const std::uint32_t leaf : leaves) {
-        const float sum = channel_sum(b[leaf]);
-        if (std::isfinite(sum)) result.power += static_cast<double>(sum * forest.area(leaf));
-        cumulative.push_back(result.power);
-    }
-    std::size_t i = 0;
-    for (std::int64_t k = 0; result.power > 0 && k < rays_traced; ++k) {
-        const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(rays_traced) * result.power;
-        while (cumulative[i] < at) ++i;
-        result.leaves.push_back(leaves[i]);
-    }
-    return result;
-}
-
-Ray ray_from(std::uint32_t leaf, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t sample,
-             PointBlock& points) {
-    const std::uint32_t patch = forest.patch(leaf);
-    Ray ray;
-    Parameters origin;
-    shoot_rays(forest.geometry(patch), forest.cell(leaf), ray_caster.ray_offset(patch), PointSet::random, leak_seed,
-               sample, points, {&ray, 1}, {&origin, 1});
-    return ray;
-}
-
-/// Returns whether most parallels of a ray hit something.
-bool is_through_a_gap(const RayCaster& ray_caster, const Ray& ray, float distance) {
-    const V3f& d = ray.direction;
-    const V3f across = (std::abs(d.x) < 0.5f ? V3f(1, 0, 0) : V3f(0, 1, 0)).cross(d).normalized(),
-              other = d.cross(across);
-    std::array<Ray, rays_beside> beside;
-    for (std::size_t i = 0; i < rays_beside; ++i) {
-        const float angle = 2 * std::numbers::pi_v<float> * (static_cast<float>(i) + 0.5f) / rays_beside;
-        beside[i] = {ray.origin + distance * (std::cos(angle) * across + std::sin(angle) * other), d};
-    }
-    std::array<Hit, rays_beside> hits;
-    ray_caster.trace(beside, hits);
-    return 2 * std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.patch != none; }) >
-           static_cast<std::ptrdiff_t>(rays_beside);
-}
 
 struct LightByFace {
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> power;  // by object and material
@@ -165,7 +97,7 @@ class WaysBack {
         constexpr float longest_walk = 1000;
         float sum = 0;
         while (sum < longest_walk) {
-            const std::array<std::uint32_t, 4> words = random_words(leak_seed, walk_steps_++);
+            const std::array<std::uint32_t, 4> words = random_words(audit_seed, walk_steps_++);
             const Ray ray{place + ray_caster_.ray_offset(patch) * normal(patch),
                           cosine_direction(normal(patch), unit_float(words[0]), unit_float(words[1]))};
             const Hit hit = trace(ray);
@@ -190,7 +122,7 @@ class WaysBack {
 void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solution& solution, WaysBack& ways) {
     PointBlock points;
     std::uint64_t sample = 0;
-    const Sources from = sources(scene, ray_caster, solution);
+    const SampledSources from = sample_sources(scene, ray_caster, solution);
     for (const std::uint32_t leaf : from.leaves)
         ways.add(ray_from(leaf, *solution.forest, ray_caster, sample++, points), solution.forest->patch(leaf),
                  from.power_of_each());
@@ -204,8 +136,8 @@ void add_luminaires(const Scene& scene, WaysBack& ways) {
     std::vector<Ray> rays;
     for (std::size_t part = 0; part < emission.part_count() && total > 0; ++part) {
         const double power = channel_sum(emission.power(part));
-        rays.resize(static_cast<std::size_t>(std::ceil(rays_traced * (power / total))));
-        emission.shoot(part, PointSet::random, leak_seed, 0, points, rays);
+        rays.resize(static_cast<std::size_t>(std::ceil(audit_rays * (power / total))));
+        emission.shoot(part, PointSet::random, audit_seed, 0, points, rays);
         for (const Ray& ray : rays) ways.add(ray, none, power / static_cast<double>(rays.size()));
     }
 }
@@ -213,6 +145,8 @@ void add_luminaires(const Scene& scene, WaysBack& ways) {
 }  // namespace
 
 OneWayLight find_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
+    solution.forest->require_made_for(scene);
+    ray_caster.require_made_for(scene);
     const bool has_one_sided_faces = std::any_of(scene.patches.begin(), scene.patches.end(),
                                                  [](const Patch& patch) { return patch.other_side == none; });
     if (!has_one_sided_faces) return {};
@@ -222,24 +156,4 @@ OneWayLight find_one_way_light(const Scene& scene, const RayCaster& ray_caster, 
     return ways.result();
 }
 
-Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
-    const float distance = distance_beside * core_bounds(scene).size().length();
-    Escapes escapes;
-    PointBlock points;
-    for (const std::uint32_t leaf : sources(scene, ray_caster, solution).leaves) {
-        const auto sample = static_cast<std::uint64_t>(escapes.rays++);
-        const Ray ray = ray_from(leaf, *solution.forest, ray_caster, sample, points);
-        Hit hit;
-        ray_caster.trace({&ray, 1}, {&hit, 1});
-        if (hit.patch != none) continue;
-        ++escapes.escaped;
-        escapes.through_gaps += is_through_a_gap(ray_caster, ray, distance);
-    }
-    return escapes;
-}
-
-bool leaks(const Escapes& escapes) {
-    return escapes.share() > min_leak && escapes.share() < max_leak && 2 * escapes.through_gaps > escapes.escaped;
-}
-
-}  // namespace interflect::command
+}  // namespace interflect

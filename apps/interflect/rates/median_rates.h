@@ -1,24 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "interflect/exports/records/json_text.h"
-#include "interflect/ray_caster.h"
+#include "interflect/rates.h"
 
 namespace interflect::command {
-
-template <class Work>
-double seconds_for(const Work& work) {
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
-    work();
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Returns the median of a figure over the rounds of a measurement; of an even number the larger middle one.
 template <class Round, class Figure>
@@ -29,15 +18,6 @@ double median_of(const std::vector<Round>& rounds, const Figure& figure) {
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
-
-/// Rates of Embree alone: rays prepared in its own layout, on all threads.
-struct EmbreeRates {
-    std::array<double, 4> by_interface{};  ///< [rays/s] Of RayInterface.
-
-    double ceiling() const { return *std::max_element(by_interface.begin(), by_interface.end()); }
-};
-
-EmbreeRates measure_embree(const RayCaster& ray_caster, std::span<const Ray> rays);
 
 /// Computes the medians of EmbreeRates, a member `embree` of each round.
 template <class Round>
