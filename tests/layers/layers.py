@@ -43,7 +43,7 @@ INNER_LAYERS = {
 FOR_PROGRAMS = [
     "base/files/escapes.h", "base/files/input_file.h", "base/files/pending_file.h", "base/memory/machine_memory.h",
     "cluster/fingerprint.h", "exports/records/json_text.h", "exports/records/solve_report.h", "exports/saved_run.h",
-    "formats/scene_files.h", "image/files/pending_image.h", "render/light_help.h", "view_factors/write_npz.h",
+    "formats/scene_files.h", "image/files/pending_image.h", "render/shared_light.h", "view_factors/write_npz.h",
 ]
 # A folder has at most so many files, but for these: the public headers are one list, and data are not read one by one.
 MOST_FILES = 12

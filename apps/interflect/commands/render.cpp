@@ -190,7 +190,8 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
     write_image(output, picture.image,
                 {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure.value_or(0)},
                 options.path.layers ? layers_of(picture.traced) : std::vector<ImageLayer>());
-    if (picture.non_finite_pixels > 0) spdlog::warn("{} pixels are not finite", picture.non_finite_pixels);
+    if (picture.non_finite_pixels > 0)
+        spdlog::warn("{} pixels have no valid value (overflow or NaN)", picture.non_finite_pixels);
     const bool is_exposed = picture.exposure && is_for_people(options);
     spdlog::info("{}: {} x {}, view '{}', {}{}", options.output.string(), picture.image.width, picture.image.height,
                  view.name, picture.quantity, is_exposed ? fmt::format(", exposure {:+.2f}", *picture.exposure) : "");
@@ -201,8 +202,8 @@ std::array<NamedFile, 3> outputs_of(const RenderArguments& options) {
         {{"--output", options.output}, {"--stats", options.solver.stats}, {"--error-image", options.path.error_image}}};
 }
 
-/// Whether coarser pictures may precede the final one: not within a time limit, in formats for numbers, pipes and
-/// devices.
+/// Whether coarser pictures may precede the final one: not within a time limit, not in .exr and .hdr, and not in pipes
+/// and devices.
 bool takes_previews(const RenderArguments& options) {
     constexpr std::size_t fewest_pixels = 1 << 16;  // smaller pictures take less than a second
     if (std::isfinite(options.solver.time())) return false;
@@ -244,7 +245,7 @@ DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const Ray
             spdlog::warn("{}: the picture will be late", needed);
             return paths;
         }
-        spdlog::warn("{}: the light is drawn as by --shading smooth; a smaller --size takes less time", needed);
+        spdlog::warn("{}: the light is drawn as with --shading smooth; a smaller --size takes less time", needed);
         options.picture.shading = Shading::smooth;
         options.picture.samples = std::min(options.picture.samples, few_samples);
     }
@@ -260,7 +261,7 @@ Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, co
             Picture picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options);
             if (options.path.needs_paths() || has_every_pixel(picture.traced)) return picture;
         }
-        spdlog::warn("stopped before each pixel had enough light: the picture is drawn as by --shading smooth");
+        spdlog::warn("stopped before each pixel had enough light: the picture is drawn as with --shading smooth");
         options.picture.shading = Shading::smooth;
         options.picture.samples =
             std::min(options.picture.samples, require_samples(Shading::smooth, &DefaultSamples::pixel));
@@ -295,7 +296,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
         seconds_to_preview = std::min(seconds_to_preview, left / 10);
         solve_options.limits.time = left / 3;  // until the time of drawing is known
         if (options.has_default_samples && traces_paths(options.picture.shading))
-            options.picture.samples = options.picture.max_samples;  // until the time is over
+            options.picture.samples = options.picture.max_samples;  // the time ends the picture
     }
 
     std::optional<DrawingTime> planned;
@@ -366,7 +367,7 @@ void check_tone_options(const RenderArguments& options, const CLI::App& command)
 void check_false_colours(const RenderArguments& options) {
     options.false_colour.check();
     if (options.false_colour.measured && options.shown != Shown::light)
-        throw UsageError("--false-colour measures the light: expected no --show beside it");
+        throw UsageError("it measures the light, which --show does not draw");
     const bool is_drawn =
         options.false_colour.scale || options.false_colour.logarithmic || options.false_colour.isolines;
     if (is_drawn && !is_for_people(options))
@@ -395,7 +396,7 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
                          fmt::format("{} x {} pixels are too many for a PNG: expected fewer, or another format",
                                      options.size.width, options.size.height));
     if (options.shown == Shown::mesh && !is_for_people(options))
-        throw UsageError("--show", fmt::format("mesh is drawn to be looked at: expected an --output that ends in .png "
+        throw UsageError("--show", fmt::format("the mesh is drawn for people: expected an --output that ends in .png "
                                                "or .jpg, found '{}'",
                                                options.output.string()));
     options.scene.check(command, traces_paths(shading));
@@ -426,7 +427,7 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
 
 void add_tone_options(CLI::App& command, RenderArguments& options) {
     add_parsed(command, "--exposure", options.exposure, parse_exposure,
-               "Brightness of .png and .jpg: 1 more is twice as bright; auto+1 is twice as bright as by itself. For "
+               "Brightness of .png and .jpg: 1 more is twice as bright; auto+1 is twice as bright as auto. For "
                "ward, tumblin and ferwerda auto is 0: they choose the brightness")
         ->type_name("STOPS|auto[+-STOPS]")
         ->default_str("auto");
@@ -471,7 +472,7 @@ void add_render(CLI::App& app, int& exit_code) {
     add_shading(command, options->picture.shading, &DefaultSamples::pixel, "pixel");
     command
         .add_option("--light-walks", options->picture.light_walks,
-                    "Random walks from the light sources that leave virtual lights, for each batch of samples "
+                    "Number of random walks that place virtual lights, for each batch of samples "
                     "(--shading instant)")
         ->capture_default_str()
         ->check(CLI::Range(1, 1 << 18))
@@ -485,8 +486,8 @@ void add_render(CLI::App& app, int& exit_code) {
     command.get_option("--rays")->description(
         "Maximum number of rays, such as 20M (default 20M, unless --until is given)");
     command.get_option("--time")->description(
-        "Most seconds of the whole command, divided between solving and drawing; too short for --shading hybrid: "
-        "smooth");
+        "Maximum time of the whole command [s], divided between solving and drawing; if it is too short for per-pixel "
+        "shading, --shading smooth is used");
     options->mesh.add_to(command);
     command.callback([options, &command, &exit_code] { run(*options, command, exit_code); });
 }

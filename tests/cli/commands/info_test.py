@@ -53,7 +53,7 @@ class Info(CommandTest):
         """Seen to be refused as outside of the folder."""
         self.write("leaf.mtl", "newmtl leaf\nmap_Kd missing.png\n")
         self.write("leaf.obj", "mtllib leaf.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl leaf\nf 1/1 2/1 3/1\n")
-        self.assertIn("texture (map_Kd) that is missing", self.interflect("info", "leaf.obj").stderr)
+        self.assertIn("a texture (map_Kd) is left out", self.interflect("info", "leaf.obj").stderr)
         self.write("leaf.mtl", "newmtl leaf\nmap_Kd ../missing.png\n")
         result = self.interflect("info", "leaf.obj", exit_code=BAD_INPUT)
         self.assertIn("lies outside the folder of the scene", result.stderr)

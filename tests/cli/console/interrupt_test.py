@@ -161,7 +161,7 @@ class Interrupt(CommandTest):
         process.send_signal(signal.SIGINT)
         said = process.communicate(timeout=SOON)[1]
         self.assertEqual(process.returncode, INTERRUPTED, said)
-        self.assertIn("stopped before each pixel had enough light: the picture is drawn as by --shading smooth", said)
+        self.assertIn("stopped before each pixel had enough light: the picture is drawn as with --shading smooth", said)
         self.interflect(*picture, "4", "-o", "smooth.exr", "--shading", "smooth")
         self.assertAlmostEqual(self.json("compare", "out.exr", "smooth.exr")["ratio_of_means"], 1, delta=0.01)
 

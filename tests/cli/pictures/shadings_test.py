@@ -36,7 +36,7 @@ class TimeLimit(RenderTest):
     def test_too_short_for_per_pixel_shading(self):
         took, said = self.limited("out.png", 0.5, "--mesh-size", "0.5")
         self.assertLess(took, 10)
-        self.assertRegex(said, r"per-pixel shading takes about .*, but --time leaves .*: .* as by --shading smooth")
+        self.assertRegex(said, r"per-pixel shading takes about .*, but --time leaves .*: .* as with --shading smooth")
         self.assertNotIn("not reached", said)
 
     def test_too_short_for_layers(self):

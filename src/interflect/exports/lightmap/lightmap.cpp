@@ -37,7 +37,8 @@ struct TexelPlace : BakedPoint {
     bool is_near = false;  ///< Less than a texel from the patch: bilinear interpolation may use it.
 };
 
-/// Solves side = p.u u + p.v v (Cramer's rule). @param spacing  [m]
+/// Returns the two sides of a texel in the parameters of the patch, taken as the parallelogram of its edges at corner 0
+/// (Cramer's rule). @param spacing  Width and height of a texel [m].
 std::array<Parameters, 2> texel_sides(const FlatPatch& flat, const Imath::V2d& spacing) {
     const Imath::V2d u = flat.corners[1] - flat.corners[0],
                      v = flat.corners[static_cast<std::size_t>(flat.count) - 1] - flat.corners[0];
@@ -258,8 +259,9 @@ double texel_count(const LightmapChart& chart, int gutter) {
 /// @param image_texels  Of all images. @param chart_texels  With gutters.
 void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, Shading shading,
                     std::size_t groups) {
-    constexpr double encoded_bytes = 16, target_bytes = 16;
-    // A texel of an image needs itself and a copy to encode.
+    constexpr double encoded_bytes = 16;  // of four single-precision channels at most
+    constexpr double target_bytes = 24;   // two indices, a column and a row
+    // Each texel of an image is stored twice, the second time to be encoded, and once encoded.
     constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
     // A texel of a chart needs two copies of its place, its target and its light.
     constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb),
@@ -272,13 +274,13 @@ void require_memory(double image_texels, double chart_texels, const LightmapOpti
         image_texels * (image_bytes + (options.groups ? static_cast<double>(groups) * group_bytes : 0)) +
         chart_texels * (texel_bytes + shading_bytes);
     if (bytes > static_cast<double>(options.max_bytes))
-        throw InputError(
-            Fault{.text = fmt::format(
-                      "lightmap: {:.3g} million texels need {:.0f} MiB of memory, the limit (max_bytes) is {} MiB: "
-                      "expected fewer than {:g} texels_per_metre{}",
-                      image_texels / 1e6, bytes / (1 << 20), options.max_bytes >> 20, options.texels_per_metre,
-                      gathers ? ", or a shading other than gather" : ""),
-                  .setting = "texels_per_metre"});
+        throw InputError(Fault{
+            .text = fmt::format(
+                "lightmap: {:.3g} million texels need {:.0f} MiB of memory, more than the limit of {} MiB (max_bytes): "
+                "expected fewer than {:g} texels_per_metre{}",
+                image_texels / 1e6, bytes / (1 << 20), options.max_bytes >> 20, options.texels_per_metre,
+                gathers ? ", or a shading other than gather" : ""),
+            .setting = "texels_per_metre"});
 }
 
 }  // namespace
@@ -302,7 +304,7 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     const auto require_memory_of_images = [&](double texels) {
         require_memory(texels, chart_texels, lightmap_options, options.bake.shading, solution.groups.size());
     };
-    require_memory_of_images(chart_texels);  // the images have more; packing so many would take minutes
+    require_memory_of_images(chart_texels);  // a lower bound, before packing, which takes minutes for so many charts
     const std::vector<Imath::V2i> sizes =
         pack_charts(lightmap.charts, lightmap_options.gutter, lightmap_options.max_size);
     for (const Imath::V2i& size : sizes) image_texels += static_cast<double>(size.x) * size.y;

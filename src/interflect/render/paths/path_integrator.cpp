@@ -17,7 +17,8 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// In hybrid shading, one path of each group of this size also samples light sources by its direction, best near them.
+/// In hybrid shading, one of so many paths also searches light sources in a direction of its own, which is better than
+/// shadow rays close to a source.
 constexpr std::uint32_t paths_per_direction = 4;
 /// Lower values reduce variance but lengthen paths; 0.25 to 1 are equally efficient.
 constexpr float roulette_threshold = 0.5f;
@@ -97,6 +98,7 @@ void PathIntegrator::start_at_gauges(std::span<const SampleBatch> batches) {
 
 void PathIntegrator::arrive_at_surfaces() {
     const bool is_first = vertex_ == 1;
+    // A picture of irradiance shows all first surfaces as white, also panes and mirrors.
     const bool splits =
         (!plan_.scene.panes.empty() || plan_.scene.has_mirrors) && !(is_first && plan_.shows_irradiance());
     find_surfaces(plan_.scene, splits, is_first && plan_.options.mirrors, paths_, counts_);
@@ -111,6 +113,7 @@ void PathIntegrator::arrive_at_surfaces() {
 
 bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
     const TracedScene& s = plan_.scene;
+    // Irradiance is drawn as the light of a white first surface that does not emit.
     const bool is_white = vertex_ == 1 && plan_.shows_irradiance();
     if (hit.patch == none) {
         ++counts_.escaped_rays;
@@ -132,7 +135,7 @@ bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
         reflectance = Rgb(1);
     }
     FirstHit& first = first_hits_[path.sample];
-    // Later paths, behind panes or in mirrors, overwrite it.
+    // A path seen through clear panes or in a mirror follows the path that it was split from, and replaces its hit.
     if (vertex_ == 1 && path.sets_first_hit)
         first = {RgbD(reflectance), Imath::V3d(s.geometry[hit.patch].normal()), Imath::V3d(x), distance,
                  plan_.known ? static_cast<double>(plan_.known->level(hit.patch, x)) : 0};
@@ -261,7 +264,7 @@ void PathIntegrator::leave_surfaces() {
     for (Path path : paths_.paths) {
         const std::uint64_t key = keys_[path.half];
         if (path.sampling.is_last) {
-            // Starts anywhere: the number of points need not be a multiple.
+            // With a random start, each path has the same chance even if the number of paths is no multiple.
             if (!(path.sampling.directions > 0) || (path.point + mix(key, 2)) % paths_per_direction != 0) continue;
             path.throughput /= path.sampling.directions;
         }

@@ -34,7 +34,8 @@ float mtl_number(std::string_view word) {
 Rgb mtl_colour(std::span<const std::string_view> words) {
     if (words.size() != 2 && words.size() != 4)
         throw std::invalid_argument(
-            fmt::format("{} needs one number or three, as spectra and XYZ are not read", words[0]));
+            fmt::format("{}: expected one number or three, found {} (spectral and xyz values are not read)", words[0],
+                        words.size() - 1));
     Rgb result;
     for (int c = 0; c < 3; ++c) result[c] = mtl_number(words[words.size() == 2 ? 1 : 1 + c]);
     if (std::min({result.x, result.y, result.z}) < 0)
@@ -104,7 +105,7 @@ void ObjMaterials::read_line(std::span<const std::string_view> words, Definition
     if (key == map_of_colours && words.size() > 1) definition.texture = texture_path(words.subspan(1), where);
     if (key == "map_d" && words.size() > 1) definition.mask = texture_path(words.subspan(1), where);
     if ((key == "d" || key == "Tr") && words.size() > 1) {
-        const float value = mtl_number(words.back());
+        const float value = mtl_number(words.back());  // behind an option: d -halo 0.5
         if (!(value >= 0 && value <= 1))
             throw std::invalid_argument(fmt::format("{} is {}; expected 0 to 1", key, value));
         if (key == "d" || !definition.has_dissolve) definition.opacity = key == "d" ? value : 1 - value;
@@ -115,11 +116,12 @@ void ObjMaterials::read_line(std::span<const std::string_view> words, Definition
 /// File names may contain spaces.
 fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, const Location& where) {
     while (words.size() > 1 && words[0].starts_with('-')) {
-        warn("texture-option", "option of a texture map is ignored", where);
+        warn("texture-option", fmt::format("the option {} of texture maps is ignored", words[0]), where);
         std::size_t taken = 1;
         const std::size_t most = std::min(1 + max_arguments(words[0]), words.size() - 1);
         // A single argument may be any word; several are optional numbers.
-        while (taken < most && (most == 2 || parse_number(words[taken]))) ++taken;
+        const bool is_single = max_arguments(words[0]) == 1;
+        while (taken < most && (is_single || parse_number(words[taken]))) ++taken;
         words = words.subspan(taken);
     }
     std::string name = fmt::format("{}", fmt::join(words, " "));
@@ -137,7 +139,7 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
 std::uint32_t ObjMaterials::find(const std::string& name, const Location& where) {
     const auto entry = definitions_.find(name);
     if (entry == definitions_.end()) {
-        warn("missing-material", "material that no library has is taken as a grey of reflectance 0.5", where);
+        warn("missing-material", "a material that no library defines is replaced by a grey of reflectance 0.5", where);
         return 0;
     }
     Definition& definition = entry->second;
@@ -169,15 +171,18 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
     if (result.reflectance_texture != none) {
         const Rgb largest = largest_texel(model_.textures[result.reflectance_texture]);
         for (int c = 0; c < 3; ++c) {
-            const float most = static_cast<float>(largest_reflectance) / std::max(largest[c], 1e-6f);
+            const float most =
+                static_cast<float>(largest_reflectance) / std::max(largest[c], 1e-6f);  // black needs no limit
             result.reflectance[c] = std::min(result.reflectance[c], most);
         }
     }
     limited |= !has_holes && limit_sum(result);
-    if (limited) warn("reflectance-clamped", "diffuse reflectance (Kd) above 0.99 is reduced", definition.where);
+    if (limited)
+        warn("reflectance-clamped", "reflectance (Kd), or its sum with transmittance (d, Tr), above 0.99 is reduced",
+             definition.where);
     if (const std::string fault = exitance_fault(result.exitance); !fault.empty())
         throw InputError(*definition.where.file, definition.where.line,
-                         fmt::format("of the material '{}' the {}", name, fault));
+                         fmt::format("material '{}': the {}", name, fault));
     if (largest_channel(definition.specular) > 0)
         warn("specular-reflection", "specular reflectance (Ks) is left out", definition.where);
     model_.materials.push_back(std::move(result));
@@ -191,8 +196,8 @@ bool ObjMaterials::is_readable(const fs::path& texture, std::string_view key, co
     const bool is_known = is_png_or_jpeg || (key == map_of_colours && (extension == ".exr" || extension == ".hdr"));
     if (is_known && fs::exists(texture, ignored)) return true;
     warn("missing-texture",
-         fmt::format("texture ({}) that is missing, or no {}, is left out", key,
-                     key == map_of_colours ? "PNG, JPEG, EXR or HDR file" : "PNG or JPEG file"),
+         fmt::format("a texture ({}) is left out: its file does not exist, or is not {}", key,
+                     key == map_of_colours ? "PNG, JPEG, EXR or HDR" : "PNG or JPEG"),
          definition.where);
     return false;
 }
@@ -207,7 +212,8 @@ Texture ObjMaterials::read_colours(const Definition& definition) {
         model_.files.push_back(definition.texture.string());
         return texture;
     } catch (const InputError& unreadable) {
-        throw definition.where.error(fmt::format("the texture {}", unreadable.what()));
+        throw definition.where.error(
+            fmt::format("the texture '{}': {}", definition.texture.filename().string(), unreadable.what()));
     }
 }
 
@@ -225,9 +231,9 @@ StoredImage ObjMaterials::read_mask(const Definition& definition) {
 }
 
 void ObjMaterials::count_decoded(std::size_t pixels) {
-    constexpr std::uint64_t most = 32 * max_texels;  // as for glTF: materials may share an image
+    constexpr std::uint64_t most = 32 * max_texels;  // bounds the work: each material decodes its image anew
     decoded_ += pixels;
-    if (decoded_ > most) throw InputError(fmt::format("with it, more than {} pixels are decoded", most));
+    if (decoded_ > most) throw InputError(fmt::format("the images of all materials have more than {} pixels", most));
 }
 
 std::uint32_t ObjMaterials::add_texture(Texture texture) {
