@@ -16,6 +16,7 @@
 #include "interflect/base/memory/machine_memory.h"
 #include "interflect/core.h"
 #include "interflect/image.h"
+#include "interflect/image/files/pending_image.h"
 #include "interflect/render.h"
 #include "interflect/render/pictures/path_picture.h"
 

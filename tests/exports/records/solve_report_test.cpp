@@ -150,7 +150,8 @@ TEST(SolveReport, ReadsPayloadsUnderTheirFormerNames) {
     Json json = json_of(IterationReport{.largest_payload = 2.5, .high_payload = 1.5});
     json["largest_quantum"] = json.at("largest_payload");
     json["high_quantum"] = json.at("high_payload");
-    json.erase("largest_payload"), json.erase("high_payload");
+    json.erase("largest_payload");
+    json.erase("high_payload");
     const IterationReport read = report_of(json);
     EXPECT_EQ(read.largest_payload, 2.5);
     EXPECT_EQ(read.high_payload, 1.5);
