@@ -28,7 +28,7 @@ void archive_options(StateArchive& archive, SolveOptions& options) {
 /// Calls write(scene, solution, state).
 template <class Write>
 void write_run(Run& run, Solution result, SolveOptions options, const Write& write) {
-    result.dimming = run.state.solution.dimming;
+    result.dimming = run.state.light.solution.dimming;
     StateArchive state;
     archive_options(state, options);
     run.archive(state);

@@ -14,19 +14,21 @@ Run::Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster
       ray_caster(std::move(caster)),
       state(*undimmed_scene, *ray_caster, options),
       method(make_iteration_method(state)),
-      known_dimming(state.groups.size(), 1) {}
+      known_dimming(state.inputs.groups.size(), 1) {}
 
 void Run::dim_sources() {
-    const bool is_dimmed = std::any_of(state.solution.dimming.begin(), state.solution.dimming.end(),
+    const bool is_dimmed = std::any_of(state.light.solution.dimming.begin(), state.light.solution.dimming.end(),
                                        [](float factor) { return factor != 1; });
     const std::shared_ptr<const Scene> before = scene;
-    scene = is_dimmed ? std::make_shared<const Scene>(dimmed(*undimmed_scene, state.groups, state.solution.dimming))
-                      : undimmed_scene;
-    set_sources(state, *scene);
+    scene =
+        is_dimmed
+            ? std::make_shared<const Scene>(dimmed(*undimmed_scene, state.inputs.groups, state.light.solution.dimming))
+            : undimmed_scene;
+    set_sources(state.inputs, state.light, *scene);
 }
 
 void Run::dim(std::size_t group, float factor) {
-    Solution& solution = state.solution;
+    Solution& solution = state.light.solution;
     const float change = factor > 0 ? factor / known_dimming[group] : 1;  // a dark group keeps its light
     if (factor > 0) known_dimming[group] = factor;
     solution.dimming[group] = factor;
@@ -35,16 +37,16 @@ void Run::dim(std::size_t group, float factor) {
         for (Rgb& h : solution.direct[group]) h *= change;
     solution.irradiance = sum_of(solution.groups, solution.dimming);
     dim_sources();
-    state.escaped_power_rays = 0;  // unknown until the next iteration
+    state.light.escaped_power_rays = 0;  // unknown until the next iteration
 }
 
 Solution Run::snapshot() {
-    Solution copy = state.solution;
+    Solution copy = state.light.solution;
     method->finish(state);
-    std::swap(copy, state.solution);
+    std::swap(copy, state.light.solution);
     std::fill(copy.dimming.begin(), copy.dimming.end(), 1.0f);  // relative to the sources of `scene`
-    const auto forest = std::make_shared<ElementForest>(*scene, state.forest->size());
-    forest->rebuild(state.forest->subdivided());
+    const auto forest = std::make_shared<ElementForest>(*scene, state.light.forest->size());
+    forest->rebuild(state.light.forest->subdivided());
     copy.forest = forest;
     return copy;
 }
@@ -60,9 +62,10 @@ void Run::archive(StateArchive& archive) {
     StateArchive::require_range(error >= 0, "error");
     archive("iteration", iteration);
     archive.amounts("known_dimming", known_dimming);
-    archive.amounts("dimming", state.solution.dimming);
+    archive.amounts("dimming", state.light.solution.dimming);
     if (!archive.reads()) return;
-    if (known_dimming.size() != state.groups.size() || state.solution.dimming.size() != state.groups.size())
+    if (known_dimming.size() != state.inputs.groups.size() ||
+        state.light.solution.dimming.size() != state.inputs.groups.size())
         throw std::runtime_error("the state of the run: expected the dimming of every light group");
     dim_sources();
 }

@@ -9,9 +9,9 @@
 
 #include "interflect/core.h"
 #include "interflect/solver.h"
+#include "interflect/solver/iteration/iteration_start.h"
 #include "interflect/solver/iteration/report.h"
 #include "interflect/solver/run.h"
-#include "interflect/solver/state/iteration_start.h"
 
 namespace interflect {
 
@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::int64_t unlimited = std::numeric_limits<std::int64_t>::max();
 
-void start_time_limit(SolverState& state) {
-    state.stop.limit_time(state.start_of_this_call, state.options.limits.time - state.earlier_seconds);
+void start_time_limit(Work& work, const Limits& limits) {
+    work.stop.limit_time(work.start_of_this_call, limits.time - work.earlier_seconds);
 }
 
 /// An interruption restores the state; deterministic methods keep finished links.
@@ -33,7 +33,7 @@ void run_or_restore(Run& run, const Step& step) {
     try {
         step();
     } catch (const Interrupted&) {
-        if (run.state.options.method.is_stochastic) {
+        if (run.state.light.options().method.is_stochastic) {
             start.restore(run.state);
             run.method->discard();
         }
@@ -45,10 +45,10 @@ void run_or_restore(Run& run, const Step& step) {
 void prepare(Run& run) {
     SolverState& state = run.state;
     // The time limit does not interrupt the preparation of stochastic methods.
-    if (!state.options.method.is_stochastic) start_time_limit(state);
+    if (!state.light.options().method.is_stochastic) start_time_limit(state.work, state.light.options().limits);
     if (!run.is_prepared) run_or_restore(run, [&] { run.method->prepare(state); });
     run.is_prepared = true;
-    start_time_limit(state);
+    start_time_limit(state.work, state.light.options().limits);
 }
 
 /// Extends a completed run if more rays are requested. @param requested_rays  Since the run began.
@@ -57,10 +57,10 @@ IterationPlan plan_or_extend(Run& run, std::int64_t requested_rays) {
     SolverState& state = run.state;
     IterationPlan next = run.method->plan(state);
     if (next.rays > 0 || requested_rays == unlimited) return next;
-    Limits& run_limits = state.solution.options.limits;
-    if (requested_rays <= std::max(state.schedule.rays(), run_limits.rays)) return next;
+    Limits& run_limits = state.light.solution.options.limits;
+    if (requested_rays <= std::max(state.rays.schedule.rays(), run_limits.rays)) return next;
     run_limits.rays = requested_rays;
-    state.schedule.set_limits(run_limits);
+    state.rays.schedule.set_limits(run_limits);
     return run.method->plan(state);
 }
 
@@ -69,18 +69,18 @@ IterationPlan plan_or_extend(Run& run, std::int64_t requested_rays) {
 void iterate_until(Run& run, const Limits& call_limits) {
     SolverState& state = run.state;
     IterationMethod& method = *run.method;
-    const std::int64_t before = state.schedule.rays();
+    const std::int64_t before = state.rays.schedule.rays();
     const std::int64_t requested_rays = call_limits.rays < unlimited - before ? before + call_limits.rays : unlimited;
-    const double target_error = std::max(call_limits.until, state.options.limits.until);
+    const double target_error = std::max(call_limits.until, state.light.options().limits.until);
     bool has_advanced = !run.is_prepared;  // preparation is progress, too
     prepare(run);
     run.is_finished = false;
-    while (!(run.error <= target_error) && state.schedule.rays() < requested_rays) {
-        if (has_advanced && state.seconds_of_this_call() >= call_limits.time) return;
+    while (!(run.error <= target_error) && state.rays.schedule.rays() < requested_rays) {
+        if (has_advanced && state.work.seconds_of_this_call() >= call_limits.time) return;
         const IterationPlan plan = plan_or_extend(run, requested_rays);
         run.is_finished = plan.rays == 0;
         if (run.is_finished) return;
-        if (state.stop.is_due()) throw Interrupted();
+        if (state.work.stop.is_due()) throw Interrupted();
         TracedIteration iteration{plan};
         run_or_restore(run, [&] {
             method.update_importance(state, iteration);                // Eq. 7, 8
@@ -88,12 +88,12 @@ void iterate_until(Run& run, const Limits& call_limits) {
             method.merge(state, estimate, iteration);                  // Eq. 6
             method.refine(state);                                      // by variance
         });
-        state.schedule.done(iteration);
+        state.rays.schedule.done(iteration);
         append_report(state, ++run.iteration);
-        run.error = state.solution.iterations.back().error_estimate;
+        run.error = state.light.solution.iterations.back().error_estimate;
         has_advanced = true;
     }
-    run.is_finished = run.error <= state.options.limits.until || method.is_fulfilled(state);
+    run.is_finished = run.error <= state.light.options().limits.until || method.is_fulfilled(state);
 }
 
 }  // namespace detail

@@ -47,44 +47,44 @@ AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
     Run& run = *run_;
     SolverState& state = run.state;
     run.finished.reset();
-    state.begin_work(monitor);
-    state.solution.interrupted = false;
-    const bool is_lit = channel_sum(state.solution.emitted_power) > 0;  // otherwise 0 is the exact solution
+    state.work.begin(monitor);
+    state.light.solution.interrupted = false;
+    const bool is_lit = channel_sum(state.light.solution.emitted_power) > 0;  // otherwise 0 is the exact solution
     try {
         if (is_lit) iterate_until(run, limits);
     } catch (const Interrupted&) {
-        state.solution.interrupted = state.stop.is_asked_for();
+        state.light.solution.interrupted = state.work.stop.is_asked_for();
     }
-    const bool is_out_of_time = state.seconds() >= state.options.limits.time;
-    state.end_work();
+    const bool is_out_of_time = state.work.seconds() >= state.light.options().limits.time;
+    state.work.end();
     return {.error = is_lit ? run.error : 0,
-            .rays = state.schedule.rays(),
-            .seconds = state.earlier_seconds,
+            .rays = state.rays.schedule.rays(),
+            .seconds = state.work.earlier_seconds,
             .is_finished = !is_lit || run.is_finished || is_out_of_time,
-            .is_stopped = state.solution.interrupted};
+            .is_stopped = state.light.solution.interrupted};
 }
 
 void Solver::set_views(std::vector<WeightedView> views) {
     Run& run = *run_;
-    SolveOptions options = run.state.options;
+    SolveOptions options = run.state.light.options();
     options.views = std::move(views);
     require_solvable(*run.scene, options);
     for (const WeightedView& v : options.views) Camera(v.view, 1, 1, run.ray_caster->origin());  // throws InputError
     run.finished.reset();
     run.is_finished = false;
-    run.state.solution.options.views = std::move(options.views);
+    run.state.light.solution.options.views = std::move(options.views);
     run.method->change_views(run.state);
     run.error = estimate_error(run.state).total();
 }
 
 void Solver::set_dimming(const std::string& group, float factor) {
     Run& run = *run_;
-    const std::size_t g = run.state.groups.index_of(group);
+    const std::size_t g = run.state.inputs.groups.index_of(group);
     if (!(factor >= 0 && std::isfinite(factor)))
         throw InputError(fmt::format("light group '{}': expected a factor of 0 or more, not {}", group, factor));
-    if (!run.state.options.method.follows_dimming)
+    if (!run.state.light.options().method.follows_dimming)
         throw InputError(fmt::format("{} cannot go on with other light: choose a method that averages iterations",
-                                     run.state.options.method.name));
+                                     run.state.light.options().method.name));
     run.finished.reset();
     run.is_finished = false;
     run.dim(g, factor);
@@ -93,11 +93,11 @@ void Solver::set_dimming(const std::string& group, float factor) {
 
 void Solver::set_plan(const Limits& limits) {
     Run& run = *run_;
-    SolveOptions options = run.state.options;
+    SolveOptions options = run.state.light.options();
     options.limits = limits;
     require_solvable(*run.scene, options);
-    run.state.solution.options = std::move(options);
-    run.state.schedule.set_limits(limits);
+    run.state.light.solution.options = std::move(options);
+    run.state.rays.schedule.set_limits(limits);
     run.is_finished = false;
 }
 
@@ -110,7 +110,7 @@ std::shared_ptr<const Solution> Solver::shared_solution() const {
 }
 
 Solution Solver::take_solution() && {
-    Solution& solution = run_->state.solution;
+    Solution& solution = run_->state.light.solution;
     run_->method->finish(run_->state);
     std::fill(solution.dimming.begin(), solution.dimming.end(), 1.0f);
     return std::move(solution);
@@ -118,6 +118,6 @@ Solution Solver::take_solution() && {
 
 std::shared_ptr<const Scene> Solver::shared_scene() const { return run_->scene; }
 std::shared_ptr<const RayCaster> Solver::shared_ray_caster() const { return run_->ray_caster; }
-const SolveOptions& Solver::options() const { return run_->state.options; }
+const SolveOptions& Solver::options() const { return run_->state.light.options(); }
 
 }  // namespace interflect

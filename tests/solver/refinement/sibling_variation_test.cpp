@@ -41,7 +41,7 @@ struct Setting {
     Scene scene;
     RayCaster ray_caster;
     SolverState state;
-    SolveOptions& options = state.solution.options;
+    SolveOptions& options = state.light.solution.options;
     std::mt19937_64 random{1};
 
     Setting(int n, int levels, float exitance = 1)
@@ -55,11 +55,11 @@ struct Setting {
         return options;
     }
     void divide() {
-        const std::uint32_t before = state.forest->size();
-        for (const std::uint32_t leaf : state.forest->leaves()) state.forest->subdivide(leaf);
-        state.forest->put_in_order(before);
+        const std::uint32_t before = state.light.forest->size();
+        for (const std::uint32_t leaf : state.light.forest->leaves()) state.light.forest->subdivide(leaf);
+        state.light.forest->put_in_order(before);
         grow_with_forest(state, before);
-        state.streams.used.resize(state.forest->size(), 0);
+        state.sampling.streams.used.resize(state.light.forest->size(), 0);
     }
 
     /// Simulates an iteration. Siblings differ from their parent by the signal and by noise. Before the siblings' mean
@@ -67,7 +67,7 @@ struct Setting {
     /// per level. The model receives the variance without the factor.
     template <class Signal>
     Estimate iteration(float rays, const std::vector<float>& factor, float variance, const Signal& signal) {
-        const ElementForest& forest = *state.forest;
+        const ElementForest& forest = *state.light.forest;
         Estimate fresh{std::vector<Rgb>(forest.size(), Rgb(0)), std::vector<float>(forest.size(), 0.0f)};
         const auto independent = [&](int level) { return variance / rays * std::pow(4.0f, static_cast<float>(level)); };
         for (std::uint32_t e = 0; e < forest.size(); ++e) fresh.variance[e] = independent(forest.level(e));
@@ -90,10 +90,10 @@ struct Setting {
     void iterate(float rays, const std::vector<float>& factor, float variance, const Signal& signal) {
         const Estimate fresh = iteration(rays, factor, variance, signal);
         const TracedIteration iteration{
-            {.rays = static_cast<std::int64_t>(rays), .old_elements = state.forest->size()}};
+            {.rays = static_cast<std::int64_t>(rays), .old_elements = state.light.forest->size()}};
         estimate_noise(state, fresh, iteration.weight);
-        merge_independent(state, state.solution.irradiance, fresh.irradiance, iteration);
-        update_history(state, iteration);
+        merge_independent(state.light, state.light.solution.irradiance, fresh.irradiance, iteration);
+        update_history(state.light, iteration);
     }
 };
 
@@ -104,7 +104,7 @@ TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
     const std::vector<float> factor{3, 1, 0.1f};
     constexpr float variance = 3;  // of one ray on a patch
     for (int k = 0; k < 12; ++k) {
-        EXPECT_EQ(s.state.noise.is_known(), k > 1) << k;
+        EXPECT_EQ(s.state.light.noise.is_known(), k > 1) << k;
         s.iterate(1e5f * static_cast<float>(1 + k), factor, variance, no_signal);
     }
     const std::array<std::uint32_t, 3> first{0, 600, 3000};
@@ -112,10 +112,12 @@ TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
         // Three of four siblings are independent. Four iterations count, by the decay of the model's history.
         const double expected = variance * std::pow(4.0, level) * factor[level] * (level == 0 ? 1 : 0.75);
         const double freedom = 4.0 * (level == 0 ? 600 : 0.75 * (level == 1 ? 2400 : 9600));
-        const double found = s.state.noise.variance(*s.state.forest, s.state.solution.irradiance, first[level], 1);
+        const double found =
+            s.state.light.noise.variance(*s.state.light.forest, s.state.light.solution.irradiance, first[level], 1);
         EXPECT_NEAR(found / expected, 1, sure * std::sqrt(2 / freedom)) << "level " << level;
         EXPECT_GT(std::abs(found / (1.5 * expected) - 1), sure * std::sqrt(2 / freedom)) << "would notice a half more";
-        const double with_ten = s.state.noise.variance(*s.state.forest, s.state.solution.irradiance, first[level], 10);
+        const double with_ten =
+            s.state.light.noise.variance(*s.state.light.forest, s.state.light.solution.irradiance, first[level], 10);
         EXPECT_NEAR(with_ten / found, 0.1, 1e-5) << "falls with the rays";
     }
 }
@@ -123,13 +125,13 @@ TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
 /// Returns the mean squared error of the shrunk differences over all siblings, given the true `signal`.
 template <class Signal>
 double true_risk(const Setting& s, const Signal& signal) {
-    const ElementForest& forest = *s.state.forest;
+    const ElementForest& forest = *s.state.light.forest;
     double sum = 0, groups = 0;
     for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4, ++groups)
         for (std::uint32_t k = 0; k < 4; ++k) {
-            const float y = luminance(s.state.solution.irradiance[first + k]) -
-                            luminance(s.state.solution.irradiance[forest.parent(first)]);
-            sum += std::pow(sibling_variation(s.state, first).shrinkage() * y - signal(first, k), 2) / 4;
+            const float y = luminance(s.state.light.solution.irradiance[first + k]) -
+                            luminance(s.state.light.solution.irradiance[forest.parent(first)]);
+            sum += std::pow(sibling_variation(s.state.light, first).shrinkage() * y - signal(first, k), 2) / 4;
         }
     return sum / groups;
 }
@@ -141,11 +143,11 @@ TEST(RiskCheck, MeasuresTheErrorOfReducedDifferences) {
     double measured = 0, expected = 0, found_signal = 0;
     for (int k = 0; k < 8; ++k) {
         const double risk = 6 * true_risk(s, signal);  // times the area of the walls [m^2]
-        s.state.risk_check = {};
+        s.state.light.risk_check = {};
         s.iterate(1000, {0, 1}, 0.1f, signal);
-        measured += s.state.risk_check.measured / risk / 8;
-        expected += s.state.risk_check.expected / risk / 8;
-        found_signal += s.state.risk_check.signal / s.state.risk_check.weight / 8;
+        measured += s.state.light.risk_check.measured / risk / 8;
+        expected += s.state.light.risk_check.expected / risk / 8;
+        found_signal += s.state.light.risk_check.signal / s.state.light.risk_check.weight / 8;
     }
     // 2400 products, with noise of four times the risk. Each of the eight iterations shares most data with the next.
     EXPECT_NEAR(measured, 1, 0.1);
@@ -160,10 +162,10 @@ TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {
     SolveOptions options = Setting::hierarchical();
     options.views.push_back({{"", {0.5, 0.5, 0.5}, {1, 0.5, 0.5}}});
     interflect::SolverState state(scene, ray_caster, options);
-    state.solution.view_importance.assign(state.forest->size(), 1.0f);
-    state.solution.irradiance[0] = {3, -0.89f, 0.2f};  // luminance 0.02; the reflected light has 0.4
-    EXPECT_LE(error_weight(state, ErrorMeasure::pictures, 0), 0.8 * 0.8);
-    EXPECT_GE(error_weight(state, ErrorMeasure::pictures, 0), 0.1 * 0.1);
+    state.light.solution.view_importance.assign(state.light.forest->size(), 1.0f);
+    state.light.solution.irradiance[0] = {3, -0.89f, 0.2f};  // luminance 0.02; the reflected light has 0.4
+    EXPECT_LE(error_weight(state.inputs, state.light, ErrorMeasure::pictures, 0), 0.8 * 0.8);
+    EXPECT_GE(error_weight(state.inputs, state.light, ErrorMeasure::pictures, 0), 0.1 * 0.1);
 }
 
 class Risk : public testing::TestWithParam<double> {};
@@ -205,18 +207,19 @@ TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
     Setting s(2, 2);
     std::uniform_real_distribution<float> history(0, 1000);
     for (int k = 0; k < 5; ++k) {
-        for (float& h : s.state.history) h = history(s.random);
-        for (std::uint32_t e = 0; e < s.state.forest->size(); ++e)
-            if (e >= s.state.forest->patch_count() && (e - s.state.forest->patch_count()) % 4 != 0)
-                s.state.history[e] =
-                    s.state.history[e - (e - s.state.forest->patch_count()) % 4];  // siblings share a history
+        for (float& h : s.state.light.history) h = history(s.random);
+        for (std::uint32_t e = 0; e < s.state.light.forest->size(); ++e)
+            if (e >= s.state.light.forest->patch_count() && (e - s.state.light.forest->patch_count()) % 4 != 0)
+                s.state.light.history[e] =
+                    s.state.light
+                        .history[e - (e - s.state.light.forest->patch_count()) % 4];  // siblings share a history
         const Estimate fresh = s.iteration(100, {1, 1, 1}, 2, no_signal);
-        merge_independent(s.state, s.state.solution.irradiance, fresh.irradiance, {100, false});
+        merge_independent(s.state.light, s.state.light.solution.irradiance, fresh.irradiance, {100, false});
     }
-    std::vector<Rgb> means = s.state.solution.irradiance;
-    pull(*s.state.forest, means);
+    std::vector<Rgb> means = s.state.light.solution.irradiance;
+    pull(*s.state.light.forest, means);
     for (std::uint32_t e = 0; e < means.size(); ++e)
-        EXPECT_NEAR(means[e].x, s.state.solution.irradiance[e].x, 1e-5f) << e;
+        EXPECT_NEAR(means[e].x, s.state.light.solution.irradiance[e].x, 1e-5f) << e;
 }
 
 /// Returns estimates for siblings, one per trial. Only the first sibling is lit, and each of its samples is either 0 or
@@ -228,22 +231,22 @@ std::array<std::vector<double>, 4> lone_bright_siblings(float before, int merges
     std::array<std::vector<double>, 4> found;
     std::bernoulli_distribution hit(0.2);
     for (int trial = 0; trial < 2000; ++trial) {
-        std::vector<Rgb>& mean = s.state.solution.irradiance;
+        std::vector<Rgb>& mean = s.state.light.solution.irradiance;
         mean.assign(mean.size(), Rgb(1));  // inherited; the truth is 4 for the first sibling, 0 for the others
-        for (std::uint32_t e = 0; e < mean.size(); ++e) s.state.history[e] = e < 6 ? before : 0.0f;
-        s.state.noise = NoiseModel(mean.size());
+        for (std::uint32_t e = 0; e < mean.size(); ++e) s.state.light.history[e] = e < 6 ? before : 0.0f;
+        s.state.light.noise = NoiseModel(mean.size());
         for (int k = 0; k < merges; ++k) {
             Estimate fresh{std::vector<Rgb>(mean.size(), Rgb(0)), std::vector<float>(mean.size(), 0.0f)};
             for (std::uint32_t first = 6; first < mean.size(); first += 4) {
                 fresh.irradiance[first] = Rgb(hit(s.random) ? 20 : 0);
                 fresh.variance[first] = fresh.irradiance[first].x * fresh.irradiance[first].x;
             }
-            pull(*s.state.forest, fresh.irradiance);
-            pull_variance(*s.state.forest, fresh.variance);
-            const TracedIteration iteration{{.rays = 100, .old_elements = s.state.forest->size()}};
+            pull(*s.state.light.forest, fresh.irradiance);
+            pull_variance(*s.state.light.forest, fresh.variance);
+            const TracedIteration iteration{{.rays = 100, .old_elements = s.state.light.forest->size()}};
             estimate_noise(s.state, fresh, iteration.weight);
             merge_one(s.state, mean, fresh.irradiance, iteration);
-            update_history(s.state, iteration);
+            update_history(s.state.light, iteration);
         }
         for (std::uint32_t k = 0; k < 4; ++k) found[k].push_back(mean[6 + k].x);
     }
@@ -252,9 +255,9 @@ std::array<std::vector<double>, 4> lone_bright_siblings(float before, int merges
 
 TEST(MergeDetails, IsUnbiasedForYoungSiblings) {
     const auto merged = lone_bright_siblings(
-        1000, 2, [](const interflect::SolverState& state, auto&&... a) { merge_independent(state, a...); });
-    const auto scaled =
-        lone_bright_siblings(1000, 2, [](const interflect::SolverState& state, auto&&... a) { merge(state, a...); });
+        1000, 2, [](const interflect::SolverState& state, auto&&... a) { merge_independent(state.light, a...); });
+    const auto scaled = lone_bright_siblings(
+        1000, 2, [](const interflect::SolverState& state, auto&&... a) { merge(state.light, a...); });
     for (std::size_t k = 0; k < 4; ++k) {
         EXPECT_GT(4 * t_test(merged[k], k == 0 ? 4 : 0), false_alarm) << k;
         EXPECT_LT(4 * t_test(merged[k], k == 0 ? 4.3 : 0.3), false_alarm) << k << ": would notice 0.3";
@@ -268,7 +271,7 @@ TEST(MergeDetails, IsUnbiasedForYoungSiblings) {
 TEST(MergeDetails, DoesNotSpreadTheNoiseOfABrightSiblingToDarkOnes) {
     RELEASE_ONLY();  // see MergeDetails.IsUnbiasedForYoungSiblings
     const auto merged = lone_bright_siblings(
-        1e6f, 100, [](const interflect::SolverState& state, auto&&... a) { merge_independent(state, a...); });
+        1e6f, 100, [](const interflect::SolverState& state, auto&&... a) { merge_independent(state.light, a...); });
     for (std::size_t k = 0; k < 4; ++k) {
         double mean = 0, square = 0;
         for (const double x : merged[k]) {
@@ -287,22 +290,22 @@ TEST(MergeDetails, DoesNotSpreadTheNoiseOfABrightSiblingToDarkOnes) {
 TEST(Shrinkage, LeavesADarkSiblingDark) {
     Setting s(1, 1);
     std::normal_distribution<float> normal(4, 0.4f);
-    const TracedIteration iteration{{.rays = 100, .old_elements = s.state.forest->size()}};
+    const TracedIteration iteration{{.rays = 100, .old_elements = s.state.light.forest->size()}};
     for (int k = 0; k < 20; ++k) {
         Estimate fresh{std::vector<Rgb>(30, Rgb(0)), std::vector<float>(30, 0.0f)};
         for (std::uint32_t first = 6; first < 30; first += 4) {
             fresh.irradiance[first] = Rgb(normal(s.random));
             fresh.variance[first] = 0.16f;
         }
-        pull(*s.state.forest, fresh.irradiance);
-        pull_variance(*s.state.forest, fresh.variance);
+        pull(*s.state.light.forest, fresh.irradiance);
+        pull_variance(*s.state.light.forest, fresh.variance);
         estimate_noise(s.state, fresh, iteration.weight);
-        merge_independent(s.state, s.state.solution.irradiance, fresh.irradiance, iteration);
-        update_history(s.state, iteration);
+        merge_independent(s.state.light, s.state.light.solution.irradiance, fresh.irradiance, iteration);
+        update_history(s.state.light, iteration);
     }
     finish_solution(s.state);
     for (std::uint32_t e = 6; e < 30; ++e)
-        EXPECT_NEAR(s.state.solution.irradiance[e].x, e % 4 == 2 ? 4 : 0, e % 4 == 2 ? 0.5 : 1e-4);
+        EXPECT_NEAR(s.state.light.solution.irradiance[e].x, e % 4 == 2 ? 4 : 0, e % 4 == 2 ? 0.5 : 1e-4);
 }
 
 TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
@@ -311,13 +314,13 @@ TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
     for (const float trust : {0.0f, 0.1f, 1.0f}) {
         Setting s(1, 1);
         s.options.experimental.inherited_weight = trust;
-        std::vector<Rgb>& mean = s.state.solution.irradiance;
+        std::vector<Rgb>& mean = s.state.light.solution.irradiance;
         mean.assign(mean.size(), Rgb(1));
-        update_history(s.state, iteration);  // after one iteration, which created the elements below the patches
+        update_history(s.state.light, iteration);  // after one iteration, which created the elements below the patches
         std::vector<Rgb> received(mean.size(), Rgb(4.0f / 3));
         for (std::uint32_t e = patches; e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
-        pull(*s.state.forest, received);
-        merge(s.state, mean, received, iteration);
+        pull(*s.state.light.forest, received);
+        merge(s.state.light, mean, received, iteration);
         EXPECT_NEAR(mean[0].x, 1, 1e-6) << "of light none is lost";
         const float missed = trust / (1 + trust), others = (trust + 4.0f / 3) / (1 + trust);
         EXPECT_NEAR(mean[patches].x, missed, 1e-5);
@@ -330,11 +333,12 @@ template <class Signal>
 double share_split(const Signal& signal) {
     Setting s(10, 1);
     for (int k = 0; k < 6; ++k) s.iterate(1000, {1, 1}, 10, signal);
-    const auto leaves = static_cast<double>(s.state.forest->leaves().size());
-    const std::uint32_t before = s.state.forest->size();
+    const auto leaves = static_cast<double>(s.state.light.forest->leaves().size());
+    const std::uint32_t before = s.state.light.forest->size();
     refine_by_variance(s.state);
-    for (std::uint32_t e = before; e < s.state.forest->size(); ++e) EXPECT_EQ(s.state.history[e], 0) << "measured anew";
-    return (s.state.forest->size() - before) / 4 / leaves;
+    for (std::uint32_t e = before; e < s.state.light.forest->size(); ++e)
+        EXPECT_EQ(s.state.light.history[e], 0) << "measured anew";
+    return (s.state.light.forest->size() - before) / 4 / leaves;
 }
 
 TEST(VarianceRefinement, SeldomSplitsPureNoise) {
@@ -365,15 +369,15 @@ TEST(VarianceRefinement, KeepsItsLimitsAndLeavesWhatIsMeasuredTooLittle) {
     Setting s(4, 1);
     const auto edge = [](std::uint32_t, std::uint32_t k) { return k < 2 ? 0.3f : -0.3f; };
     for (int k = 0; k < 4; ++k) s.iterate(1000, {1, 1}, 10, edge);
-    s.options.refinement.max_elements = s.state.forest->size() + 21;
-    const std::uint32_t before = s.state.forest->size();
+    s.options.refinement.max_elements = s.state.light.forest->size() + 21;
+    const std::uint32_t before = s.state.light.forest->size();
     refine_by_variance(s.state);
-    EXPECT_EQ(s.state.forest->size(), before + 20);
+    EXPECT_EQ(s.state.light.forest->size(), before + 20);
     s.options.refinement.max_elements = 1 << 20;
-    for (float& h : s.state.history) h = 0;
-    const std::uint32_t then = s.state.forest->size();
+    for (float& h : s.state.light.history) h = 0;
+    const std::uint32_t then = s.state.light.forest->size();
     refine_by_variance(s.state);
-    EXPECT_EQ(s.state.forest->size(), then) << "nothing was measured";
+    EXPECT_EQ(s.state.light.forest->size(), then) << "nothing was measured";
 }
 
 }  // namespace

@@ -59,25 +59,27 @@ struct Setting {
         reset();
     }
     void reset() {
-        const ElementForest& forest = *state.forest;
+        const ElementForest& forest = *state.light.forest;
         float area = 0;
         for (std::uint32_t i = 0; i < forest.patch_count(); ++i) area += forest.area(i);
-        state.solution.irradiance.assign(forest.size(), Rgb(1));
-        state.solution.view_importance.assign(forest.size(), 1 / area);
-        state.solution.indirect_importance.assign(forest.size(), 1 / area);
-        state.history.assign(forest.size(), 0);
+        state.light.solution.irradiance.assign(forest.size(), Rgb(1));
+        state.light.solution.view_importance.assign(forest.size(), 1 / area);
+        state.light.solution.indirect_importance.assign(forest.size(), 1 / area);
+        state.light.history.assign(forest.size(), 0);
     }
     /// Divides the first child again and again; returns the last one.
     std::uint32_t divide(std::uint32_t element, int levels) {
-        const std::uint32_t before = state.forest->size();
-        for (int k = 0; k < levels; ++k) element = state.forest->subdivide(element);
+        const std::uint32_t before = state.light.forest->size();
+        for (int k = 0; k < levels; ++k) element = state.light.forest->subdivide(element);
         grow_with_forest(state, before);
         reset();
         return element;
     }
-    void set(std::uint32_t element, float irradiance) { state.solution.irradiance[element] = Rgb(irradiance); }
+    void set(std::uint32_t element, float irradiance) { state.light.solution.irradiance[element] = Rgb(irradiance); }
     /// Threshold of luminance.
-    float threshold(std::uint32_t leaf) const { return std::sqrt(VisibleDifference(state).threshold(leaf)); }
+    float threshold(std::uint32_t leaf) const {
+        return std::sqrt(VisibleDifference(state.inputs, state.light).threshold(leaf));
+    }
 };
 
 TEST(VisibleDifference, AdaptsToLocalLight) {
@@ -97,7 +99,7 @@ TEST(VisibleDifference, AdaptsToLocalLight) {
 
 TEST(VisibleDifference, AdaptsToASquareDegree) {
     Setting s;
-    const ElementForest& forest = *s.state.forest;
+    const ElementForest& forest = *s.state.light.forest;
     const std::uint32_t leaf = s.divide(12, 4), parent = forest.parent(leaf);
     const std::uint32_t degree = forest.parent(forest.parent(parent));  // 118 pixels wide; its children 59
     const float before = s.threshold(leaf);
@@ -111,7 +113,7 @@ TEST(VisibleDifference, AdaptsToASquareDegree) {
 TEST(VisibleDifference, FollowsTheUnitOfLight) {
     Setting s;
     const float before = s.threshold(12);
-    for (Rgb& h : s.state.solution.irradiance) h *= 1000;
+    for (Rgb& h : s.state.light.solution.irradiance) h *= 1000;
     EXPECT_NEAR(s.threshold(12) / before, 1000, 0.1);
 }
 
@@ -124,7 +126,8 @@ TEST(VisibleDifference, SparesSmallElements) {
     for (int levels = 1, deepest = 7; levels <= deepest; ++levels) {
         Setting divided;
         const std::uint32_t leaf = divided.divide(12, levels);
-        const float width = std::sqrt(divided.state.forest->area(leaf) / pixel_area(divided.state, leaf));
+        const float width = std::sqrt(divided.state.light.forest->area(leaf) /
+                                      pixel_area(divided.state.inputs, divided.state.light, leaf));
         const double frequency = 67.02 / std::max(1.0, static_cast<double>(width));
         const double factor = contrast_sensitivity(8) / contrast_sensitivity(std::max(8.0, frequency));
         EXPECT_NEAR(divided.threshold(leaf) / large, factor, 0.01 * factor) << width << " pixels";
@@ -146,10 +149,10 @@ TEST(VisibleDifference, IsMaskedByTexture) {
     WeightedView view;
     view.view = {"floor", {2, 1, 1.9}, {2, 1.001, 0}, {0, 1, 0}, 80};
     Setting textured(half_dark_floor(Halves::reflect), perceptual({view}));
-    const std::uint32_t floor = textured.state.forest->patch_count() - 1;
+    const std::uint32_t floor = textured.state.light.forest->patch_count() - 1;
     const std::uint32_t first = textured.divide(floor, 1);
     const auto reflectance = [&](std::uint32_t e) {
-        return luminance(textured.state.materials.surface(floor, e).reflectance);
+        return luminance(textured.state.inputs.materials.surface(floor, e).reflectance);
     };
     ASSERT_LT(reflectance(first), 0.02f);
     const float bright = reflectance(first + 1);
@@ -157,14 +160,14 @@ TEST(VisibleDifference, IsMaskedByTexture) {
     const float threshold = textured.threshold(first + 1);
     // The texture without its neighbour: the bright half as a patch of its own.
     Setting plain(half_dark_floor_of_two_patches(Halves::reflect), perceptual({view}));
-    const float unmasked = plain.threshold(plain.state.forest->patch_count() - 1);
+    const float unmasked = plain.threshold(plain.state.light.forest->patch_count() - 1);
     EXPECT_NEAR(threshold / unmasked, threshold_elevation(0.5f / unmasked), 0.15f * threshold / unmasked);
     EXPECT_GT(threshold, 5 * unmasked);
 }
 
 TEST(VisibleDifference, IsInfiniteWhereNothingShows) {
     Setting s;
-    s.state.solution.view_importance[12] = 0;
+    s.state.light.solution.view_importance[12] = 0;
     EXPECT_TRUE(std::isinf(s.threshold(12)));
     EXPECT_TRUE(std::isfinite(s.threshold(13)));
     Setting black(closed_box({2, 2, 2}, 1, {{"black", Rgb(0), Rgb(1)}}));
@@ -173,21 +176,25 @@ TEST(VisibleDifference, IsInfiniteWhereNothingShows) {
 
 TEST(VisibleDifference, OfOtherSurfacesIsThatOfASquareDegree) {
     const double contrast = 0.2 * cone_threshold(20) / 20, square_degree = 67.02 * 67.02 / (1280 * 720);
-    EXPECT_NEAR(VisibleDifference(Setting().state).share_of_light(), contrast * square_degree, 1e-9);
+    const Setting standard;
+    EXPECT_NEAR(VisibleDifference(standard.state.inputs, standard.state.light).share_of_light(),
+                contrast * square_degree, 1e-9);
     WeightedView small = view_of_patches(), large = view_of_patches();
     small.pixel_rows = 360;
     large.weight = 8;
     const Setting two(cube(), perceptual({small, large}));
-    EXPECT_NEAR(VisibleDifference(two.state).share_of_light(), contrast * square_degree * 8 / 9, 1e-9);
+    EXPECT_NEAR(VisibleDifference(two.state.inputs, two.state.light).share_of_light(), contrast * square_degree * 8 / 9,
+                1e-9);
 }
 
 /// The children of two patches differ by more and by less than the threshold, without noise.
 TEST(PerceptualRefinement, SplitsVisibleDifferences) {
     Setting s;
     const std::uint32_t clear = s.divide(12, 1), faint = s.divide(13, 1);
-    std::fill(s.state.solution.indirect_importance.begin(), s.state.solution.indirect_importance.end(), 0.0f);
+    std::fill(s.state.light.solution.indirect_importance.begin(), s.state.light.solution.indirect_importance.end(),
+              0.0f);
     const float threshold = s.threshold(clear);
-    s.state.history.assign(s.state.forest->size(), 1000);
+    s.state.light.history.assign(s.state.light.forest->size(), 1000);
     const auto differ = [&](std::uint32_t first, float signal) {
         const float difference = signal / std::sqrt(0.3f);  // falls to 0.3 of the square within the children
         for (const std::uint32_t k : {0u, 1u}) {
@@ -199,8 +206,8 @@ TEST(PerceptualRefinement, SplitsVisibleDifferences) {
     differ(faint, 0.8f * threshold);
     refine_by_variance(s.state);
     for (std::uint32_t k = 0; k < 4; ++k) {
-        EXPECT_FALSE(s.state.forest->is_leaf(clear + k));
-        EXPECT_TRUE(s.state.forest->is_leaf(faint + k));
+        EXPECT_FALSE(s.state.light.forest->is_leaf(clear + k));
+        EXPECT_TRUE(s.state.light.forest->is_leaf(faint + k));
     }
 }
 

@@ -38,12 +38,12 @@ struct ErrorSums {
 };
 
 ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const ElementErrors& errors) {
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *state.light.forest;
     const auto sum = [&](std::size_t begin, std::size_t end) {
         ErrorSums sums;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;
-            const double w = error_weight(state, measure, e) * forest.area(e);
+            const double w = error_weight(state.inputs, state.light, measure, e) * forest.area(e);
             if (!(w > 0)) continue;
             sums.weight += w;
             sums.noise += w * errors.noise[e];
@@ -51,12 +51,12 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
             sums.noise_of_patches += w * errors.noise_of_patch[e];
             sums.bias_of_patches += w * errors.bias[forest.patch(e)];
             if (e >= forest.patch_count()) continue;
-            const float variation = assumed_variation * luminance(state.solution.irradiance[e]);
-            sums.assumed_bias += w * shown_within(state, measure, e)[0] * variation * variation;
+            const float variation = assumed_variation * luminance(state.light.solution.irradiance[e]);
+            sums.assumed_bias += w * shown_within(state.inputs, state.light, measure, e)[0] * variation * variation;
         }
         return sums;
     };
-    return parallel_sum(state.stop.ranks(), forest.size(), elements_per_task, ErrorSums(), sum);
+    return parallel_sum(state.work.stop.ranks(), forest.size(), elements_per_task, ErrorSums(), sum);
 }
 
 /// Extrapolates differences from parents to finer levels.
@@ -83,13 +83,14 @@ double squared_error_of_differences(const RiskCheck& check, double noise_of_diff
 }
 
 /// Sets the errors of reduced means in the first tree. The average over the trees has slightly smaller errors.
-void set_errors_of_clusters(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {
-    const ElementForest& forest = *state.forest;
-    const PatchClusters& clusters = state.clusters.front();
+void set_errors_of_clusters(const RunInputs& inputs, const LightState& light, ErrorMeasure measure,
+                            ElementErrors& errors) {
+    const ElementForest& forest = *light.forest;
+    const PatchClusters& clusters = inputs.clusters.front();
     const std::vector<double> pixels =
-        clusters.sums<double>([&](std::uint32_t p) { return forest.area(p) / pixel_area(state, p); });
+        clusters.sums<double>([&](std::uint32_t p) { return forest.area(p) / pixel_area(inputs, light, p); });
     std::vector<ClusterShrinkage::Errors> of_patches(forest.patch_count());
-    ClusterShrinkage(state, clusters, state.solution.irradiance).measure_errors(of_patches, [&](std::size_t node) {
+    ClusterShrinkage(light, clusters, light.solution.irradiance).measure_errors(of_patches, [&](std::size_t node) {
         return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(pixels[node]);
     });
     for (std::size_t p = 0; p < of_patches.size(); ++p) {
@@ -98,33 +99,34 @@ void set_errors_of_clusters(const SolverState& state, ErrorMeasure measure, Elem
     }
 }
 
-void set_errors_of_patches(const SolverState& state, ErrorMeasure measure, ElementErrors& errors) {
-    if (!state.clusters.empty()) return set_errors_of_clusters(state, measure, errors);
-    const ElementForest& forest = *state.forest;
+void set_errors_of_patches(const RunInputs& inputs, const LightState& light, ErrorMeasure measure,
+                           ElementErrors& errors) {
+    if (!inputs.clusters.empty()) return set_errors_of_clusters(inputs, light, measure, errors);
+    const ElementForest& forest = *light.forest;
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto root = static_cast<std::uint32_t>(begin); root < end; ++root) {
-            const float shown = shown_of_patch(state, measure, root);
-            const float rays = std::max(state.history[root], 1.0f);
-            errors.noise[root] = shown * state.noise.variance(forest, state.solution.irradiance, root, rays);
+            const float shown = shown_of_patch(inputs, light, measure, root);
+            const float rays = std::max(light.history[root], 1.0f);
+            errors.noise[root] = shown * light.noise.variance(forest, light.solution.irradiance, root, rays);
         }
     });
 }
 
 }  // namespace
 
-ElementErrors element_errors(const SolverState& state, ErrorMeasure measure) {
-    const ElementForest& forest = *state.forest;
+ElementErrors element_errors(const RunInputs& inputs, const LightState& light, ErrorMeasure measure) {
+    const ElementForest& forest = *light.forest;
     ElementErrors errors;
     errors.noise.assign(forest.size(), 0);
     errors.bias.assign(forest.size(), 0);
-    set_errors_of_patches(state, measure, errors);
+    set_errors_of_patches(inputs, light, measure, errors);
     errors.noise_of_patch = errors.noise;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
-        const SiblingVariation variation = sibling_variation(state, first);
-        const auto [noise, bias] = added_error(state, first, variation);
+        const SiblingVariation variation = sibling_variation(light, first);
+        const auto [noise, bias] = added_error(light, first, variation);
         const std::uint32_t parent = forest.parent(first);
-        const float shown = shown_of_siblings(state, measure, first);
-        const Shrinkage shrinkage = shrinkage_of(state, first, variation);
+        const float shown = shown_of_siblings(inputs, light, measure, first);
+        const Shrinkage shrinkage = shrinkage_of(light, first, variation);
         for (std::uint32_t e = first; e < first + 4; ++e) {
             const float noise_share = shrinkage.noise[e - first];
             errors.noise[e] = noise_share * (errors.noise[parent] + shown * noise);
@@ -139,18 +141,20 @@ double ErrorEstimate::total() const { return std::hypot(noise, discretisation); 
 
 ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const double mean = error_reference(state, measure);
-    if (!state.noise.is_known() || !(mean > 0)) return {infinity, infinity};
-    const ErrorSums sums = sum_errors(state, measure, element_errors(state, measure));
+    const double mean = error_reference(state.inputs, state.light, measure);
+    if (!state.light.noise.is_known() || !(mean > 0)) return {infinity, infinity};
+    const ErrorSums sums = sum_errors(state, measure, element_errors(state.inputs, state.light, measure));
     if (!(sums.weight > 0)) return {infinity, infinity};
     const double total_weight = measure == ErrorMeasure::surfaces ? sums.weight : 1;
-    const double squared_total = sums.noise_of_patches + sums.bias_of_patches +
-                                 squared_error_of_differences(state.risk_check, sums.noise - sums.noise_of_patches,
-                                                              sums.bias - sums.bias_of_patches) +
-                                 error_within_leaves(state.risk_check) + sums.assumed_bias;
-    const double squared_discretisation = state.options.method.refines ? std::max(0.0, squared_total - sums.noise) : 0;
+    const double squared_total =
+        sums.noise_of_patches + sums.bias_of_patches +
+        squared_error_of_differences(state.light.risk_check, sums.noise - sums.noise_of_patches,
+                                     sums.bias - sums.bias_of_patches) +
+        error_within_leaves(state.light.risk_check) + sums.assumed_bias;
+    const double squared_discretisation =
+        state.light.options().method.refines ? std::max(0.0, squared_total - sums.noise) : 0;
     // `mean` and `sums` average over pixels with a surface, a share s: over the picture, s mean and s sum.
-    const double surface_share = measure == ErrorMeasure::surfaces ? 1 : state.view.surface_share();
+    const double surface_share = measure == ErrorMeasure::surfaces ? 1 : state.sampling.view.surface_share();
     const double scale = 1 / (mean * std::sqrt(total_weight * surface_share));
     return {std::sqrt(sums.noise) * scale, std::sqrt(squared_discretisation) * scale};
 }

@@ -12,7 +12,7 @@ struct ElementErrors {
     std::vector<float> noise, bias;
     std::vector<float> noise_of_patch;  // variance of the patch mean, part of `noise`
 };
-ElementErrors element_errors(const SolverState& state, ErrorMeasure measure);
+ElementErrors element_errors(const RunInputs& inputs, const LightState& light, ErrorMeasure measure);
 
 /// Estimated errors relative to error_reference(); see IterationReport.
 struct ErrorEstimate {
@@ -23,6 +23,8 @@ struct ErrorEstimate {
 
 /// Returns infinite errors until two iterations have been compared, or if the relevant surfaces are dark.
 ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure);
-inline ErrorEstimate estimate_error(const SolverState& state) { return estimate_error(state, default_measure(state)); }
+inline ErrorEstimate estimate_error(const SolverState& state) {
+    return estimate_error(state, default_measure(state.light));
+}
 
 }  // namespace interflect::detail

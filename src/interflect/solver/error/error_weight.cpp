@@ -7,22 +7,22 @@
 
 namespace interflect::detail {
 
-ErrorMeasure default_measure(const SolverState& state) {
-    return state.view.empty() ? ErrorMeasure::surfaces : ErrorMeasure::pictures;
+ErrorMeasure default_measure(const LightState& light) {
+    return light.solution.view_importance.empty() ? ErrorMeasure::surfaces : ErrorMeasure::pictures;
 }
 
-double error_weight(const SolverState& state, ErrorMeasure measure, std::uint32_t element) {
+double error_weight(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, std::uint32_t element) {
     if (measure == ErrorMeasure::surfaces) return 1;
-    const Rgb rho = state.materials.surface(state.forest->patch(element), element).reflectance;
-    Rgb h = state.solution.irradiance[element];
+    const Rgb rho = inputs.materials.surface(light.forest->patch(element), element).reflectance;
+    Rgb h = light.solution.irradiance[element];
     for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // noisy differences may sum to a negative value
     const float all = luminance(h), reflected = luminance(Rgb(rho * h));
     const float factor = all > 0 ? reflected / all : luminance(rho);
-    return static_cast<double>(state.solution.view_importance[element]) * factor * factor;
+    return static_cast<double>(light.solution.view_importance[element]) * factor * factor;
 }
 
-double error_reference(const SolverState& state, ErrorMeasure measure) {
-    const ElementForest& forest = *state.forest;
+double error_reference(const RunInputs& inputs, const LightState& light, ErrorMeasure measure) {
+    const ElementForest& forest = *light.forest;
     const bool of_pictures = measure == ErrorMeasure::pictures;
     struct Sums {
         double light = 0, weight = 0;
@@ -33,9 +33,9 @@ double error_reference(const SolverState& state, ErrorMeasure measure) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;
             const double w =
-                forest.area(e) * (of_pictures ? static_cast<double>(state.solution.view_importance[e]) : 1.0);
-            const Rgb& h = state.solution.irradiance[e];
-            const Rgb& rho = state.materials.surface(forest.patch(e), e).reflectance;
+                forest.area(e) * (of_pictures ? static_cast<double>(light.solution.view_importance[e]) : 1.0);
+            const Rgb& h = light.solution.irradiance[e];
+            const Rgb& rho = inputs.materials.surface(forest.patch(e), e).reflectance;
             sum.light += w * luminance(of_pictures ? Rgb(rho * h) : h);
             sum.weight += w;
         }

@@ -36,14 +36,15 @@ void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) 
 }
 
 /// Moves the patches' means as their clusters demand, the average over the trees. Elements keep their shares of it.
-/// @param unreduced  The same light as the state has it.
+/// @param unreduced  The same light before any reduction.
 void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, std::vector<Rgb>& light) {
-    if (state.clusters.empty()) return;
-    const ElementForest& forest = *state.forest;
+    if (state.inputs.clusters.empty()) return;
+    const ElementForest& forest = *state.light.forest;
     std::vector<Rgb> means(forest.patch_count(), Rgb(0));
-    const float weight = 1 / static_cast<float>(state.clusters.size());
-    for (const PatchClusters& clusters : state.clusters) {
-        const std::vector<Rgb> of_tree = ClusterShrinkage(state, clusters, unreduced).means();
+    const float weight = 1 / static_cast<float>(state.inputs.clusters.size());
+    for (const PatchClusters& clusters : state.inputs.clusters) {
+        const std::vector<Rgb> of_tree =
+            ClusterShrinkage(state.light, clusters, unreduced).means(state.sampling.view.rays());
         for (std::size_t p = 0; p < means.size(); ++p) means[p] += weight * of_tree[p];
     }
     for (std::uint32_t e = forest.size(); e-- > 0;) {  // patches last
@@ -56,23 +57,24 @@ void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, st
 }  // namespace
 
 void finish_solution(SolverState& state) {
-    const ElementForest& forest = *state.forest;
-    Solution& solution = state.solution;
-    const ElementErrors errors = element_errors(state, ErrorMeasure::surfaces);
+    const ElementForest& forest = *state.light.forest;
+    Solution& solution = state.light.solution;
+    const ElementErrors errors = element_errors(state.inputs, state.light, ErrorMeasure::surfaces);
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        const float within = std::max(0.0f, signal_among_siblings(state, e)) / 3;  // 1/4 + 1/16 + ... of the signal
+        const float within =
+            std::max(0.0f, signal_among_siblings(state.light, e)) / 3;  // 1/4 + 1/16 + ... of the signal
         solution.standard_error[e] = std::sqrt(errors.noise[e]);
         solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
     }
-    state.streams.used.resize(forest.size(), 0);
-    solution.rays.assign(state.streams.used.begin(), state.streams.used.end());
+    state.sampling.streams.used.resize(forest.size(), 0);
+    solution.rays.assign(state.sampling.streams.used.begin(), state.sampling.streams.used.end());
     std::vector<Rgb> reduced = solution.irradiance;
     GroupLight reduced_groups = solution.groups, reduced_direct = solution.direct;
     forest.for_siblings_from_roots([&](std::uint32_t first) {
         const std::uint32_t parent = forest.parent(first);
-        const Shrinkage shrinkage = shrinkage_of(state, first, sibling_variation(state, first));
+        const Shrinkage shrinkage = shrinkage_of(state.light, first, sibling_variation(state.light, first));
         const auto differences = [&](const std::vector<Rgb>& irradiance) {
             std::array<Rgb, 4> difference;
             Rgb sum(0);

@@ -15,19 +15,19 @@ namespace interflect::detail {
 namespace {
 
 /// Returns the mean of y z over siblings (docs/method/method.md, Errors), less the noise of rays that both have.
-double measured_signal(const SolverState& state, const Estimate& fresh, std::uint32_t first) {
-    const ElementForest& forest = *state.forest;
+double measured_signal(const LightState& light, const Estimate& fresh, std::uint32_t first) {
+    const ElementForest& forest = *light.forest;
     const std::uint32_t parent = forest.parent(first);
     const auto difference = [&](const std::vector<Rgb>& irradiance, std::uint32_t e) {
         return luminance(irradiance[e]) - luminance(irradiance[parent]);
     };
     double product = 0, area = 0;
     for (std::uint32_t e = first; e < first + 4; ++e) {
-        product += static_cast<double>(forest.area(e) * difference(state.solution.irradiance, e) *
+        product += static_cast<double>(forest.area(e) * difference(light.solution.irradiance, e) *
                                        difference(fresh.irradiance, e));
         if (!fresh.shared_variance.empty())
             product -=
-                static_cast<double>(forest.area(e) * state.noise.variance_of_part(forest, state.solution.irradiance, e,
+                static_cast<double>(forest.area(e) * light.noise.variance_of_part(forest, light.solution.irradiance, e,
                                                                                   fresh.shared_variance[e]));
         area += forest.area(e);
     }
@@ -35,24 +35,25 @@ double measured_signal(const SolverState& state, const Estimate& fresh, std::uin
 }
 
 RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *state.light.forest;
     const std::uint32_t roots = forest.patch_count();
-    const ErrorMeasure measure = default_measure(state);
+    const ErrorMeasure measure = default_measure(state.light);
     const auto check_siblings = [&](std::uint32_t first, RiskCheck& sum) {
-        const SiblingVariation variation = sibling_variation(state, first);
+        const SiblingVariation variation = sibling_variation(state.light, first);
         const std::uint32_t parent = forest.parent(first);
-        const double w = error_weight(state, measure, parent) * forest.area(parent);
+        const double w = error_weight(state.inputs, state.light, measure, parent) * forest.area(parent);
         if (!variation.is_known() || !(w > 0)) return;
-        const double signal = measured_signal(state, fresh, first), k = variation.shrinkage();
-        const double shown = shown_of_siblings(state, measure, first);
-        const AddedError expected = added_error(state, first, variation);
+        const double signal = measured_signal(state.light, fresh, first), k = variation.shrinkage();
+        const double shown = shown_of_siblings(state.inputs, state.light, measure, first);
+        const AddedError expected = added_error(state.light, first, variation);
         sum.measured += w * shown * (k * k * variation.spread + (1 - 2 * k) * signal);
         sum.expected += w * shown * static_cast<double>(expected.noise + expected.bias);
-        const double of_parent = parent < roots ? 0 : measured_signal(state, fresh, first_sibling(forest, parent));
+        const double of_parent =
+            parent < roots ? 0 : measured_signal(state.light, fresh, first_sibling(forest, parent));
         for (std::uint32_t e = first; e < first + 4; ++e) {
             if (!forest.is_leaf(e)) continue;
-            const double of_leaf = error_weight(state, measure, e) * forest.area(e);
-            const std::array<float, finer_levels> shown_of_level = shown_within(state, measure, e);
+            const double of_leaf = error_weight(state.inputs, state.light, measure, e) * forest.area(e);
+            const std::array<float, finer_levels> shown_of_level = shown_within(state.inputs, state.light, measure, e);
             sum.signal += of_leaf * signal;
             sum.signal_of_parents += of_leaf * of_parent;
             for (std::size_t level = 0; level < finer_levels; ++level)
@@ -65,7 +66,7 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
         return part;
     };
     RiskCheck sum =
-        parallel_sum(state.stop.ranks(), (forest.size() - roots) / 4, elements_per_task, RiskCheck(), check);
+        parallel_sum(state.work.stop.ranks(), (forest.size() - roots) / 4, elements_per_task, RiskCheck(), check);
     sum.weight = 1;
     return sum;
 }
@@ -73,15 +74,18 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
 }  // namespace
 
 void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays) {
-    const ErrorMeasure measure = default_measure(state);
-    const auto weight = [&](std::uint32_t e) { return error_weight(state, measure, e) * state.forest->area(e); };
-    if (uses_shrinkage(state) && state.noise.is_known()) {
+    const ErrorMeasure measure = default_measure(state.light);
+    const auto weight = [&](std::uint32_t e) {
+        return error_weight(state.inputs, state.light, measure, e) * state.light.forest->area(e);
+    };
+    if (uses_shrinkage(state.light) && state.light.noise.is_known()) {
         constexpr double long_enough = 0.25;  // of the averaged rays
-        const double before = long_enough * static_cast<double>(state.schedule.averaged_rays());
-        state.risk_check.add(check_risk(state, fresh),
-                             std::min(1.0, static_cast<double>(rays) / std::max(1.0, before)));
+        const double before = long_enough * static_cast<double>(state.rays.schedule.averaged_rays());
+        state.light.risk_check.add(check_risk(state, fresh),
+                                   std::min(1.0, static_cast<double>(rays) / std::max(1.0, before)));
     }
-    state.noise.add(*state.forest, fresh, state.solution.irradiance, state.history, static_cast<float>(rays), weight);
+    state.light.noise.add(*state.light.forest, fresh, state.light.solution.irradiance, state.light.history,
+                          static_cast<float>(rays), weight);
 }
 
 }  // namespace interflect::detail

@@ -22,13 +22,13 @@ float shown_of_pairs(float a) {
 struct Extents {
     float u, v;
 };
-Extents extents_in_pixels(const SolverState& state, std::uint32_t element) {
-    const ElementForest& forest = *state.forest;
+Extents extents_in_pixels(const RunInputs& inputs, const LightState& light, std::uint32_t element) {
+    const ElementForest& forest = *light.forest;
     const PatchGeometry::Shape& shape = forest.geometry(forest.patch(element)).shape();
     const float u2 = shape.edge_u.length2(), v2 = shape.edge_v.length2();
     const float across = shape.edge_u.cross(shape.edge_v).length();  // the shorter extent times the longer edge
     const float aspect = !(across > 0) ? 1 : u2 > v2 ? u2 / across : across / v2;
-    const float pixels = forest.area(element) / pixel_area(state, element);
+    const float pixels = forest.area(element) / pixel_area(inputs, light, element);
     return {std::sqrt(pixels * aspect), std::sqrt(pixels / aspect)};
 }
 
@@ -41,8 +41,8 @@ float shown_of_siblings(const Extents& sibling) {
 
 }  // namespace
 
-float shown_of_patch(const SolverState& state, ErrorMeasure measure, std::uint32_t patch) {
-    return measure == ErrorMeasure::surfaces ? 1 : shown_of_patch(extents_in_pixels(state, patch));
+float shown_of_patch(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, std::uint32_t patch) {
+    return measure == ErrorMeasure::surfaces ? 1 : shown_of_patch(extents_in_pixels(inputs, light, patch));
 }
 
 float shown_of_cluster(double pixels) {
@@ -50,15 +50,16 @@ float shown_of_cluster(double pixels) {
     return of_side * of_side;
 }
 
-float shown_of_siblings(const SolverState& state, ErrorMeasure measure, std::uint32_t first) {
-    return measure == ErrorMeasure::surfaces ? 1 : shown_of_siblings(extents_in_pixels(state, first));
+float shown_of_siblings(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, std::uint32_t first) {
+    return measure == ErrorMeasure::surfaces ? 1 : shown_of_siblings(extents_in_pixels(inputs, light, first));
 }
 
-std::array<float, finer_levels> shown_within(const SolverState& state, ErrorMeasure measure, std::uint32_t leaf) {
+std::array<float, finer_levels> shown_within(const RunInputs& inputs, const LightState& light, ErrorMeasure measure,
+                                             std::uint32_t leaf) {
     std::array<float, finer_levels> shares;
     shares.fill(1);
     if (measure == ErrorMeasure::surfaces) return shares;
-    Extents extents = extents_in_pixels(state, leaf);
+    Extents extents = extents_in_pixels(inputs, light, leaf);
     for (float& of_level : shares) {
         extents.u /= 2;
         extents.v /= 2;

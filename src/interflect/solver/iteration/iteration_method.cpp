@@ -5,8 +5,8 @@
 namespace interflect::detail {
 
 IterationPlan IterationMethod::plan(SolverState& state) {
-    IterationPlan plan = state.schedule.next(state.seconds());
-    plan.old_elements = state.forest->size();
+    IterationPlan plan = state.rays.schedule.next(state.work.seconds());
+    plan.old_elements = state.light.forest->size();
     if (plan.rays > 0) refine_view_importance(state);
     return plan;
 }
@@ -15,8 +15,8 @@ void IterationMethod::finish(SolverState& state) const { finish_solution(state);
 
 void IterationMethod::change_views(SolverState& state) {
     compute_view_importance(state);
-    state.rays_of_other_views = state.schedule.averaged_rays();
-    state.schedule.restart();
+    state.rays.of_other_views = state.rays.schedule.averaged_rays();
+    state.rays.schedule.restart();
 }
 
 }  // namespace interflect::detail

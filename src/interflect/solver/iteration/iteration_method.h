@@ -16,7 +16,7 @@ class IterationMethod {
 
     /// @throws Interrupted
     virtual void prepare(SolverState&) {}
-    virtual bool is_fulfilled(const SolverState& state) const { return state.schedule.is_fulfilled(); }
+    virtual bool is_fulfilled(const SolverState& state) const { return state.rays.schedule.is_fulfilled(); }
     /// Returns 0 rays if the run is over.
     virtual IterationPlan plan(SolverState& state);
     /// With rays that carry importance alone (Eq. 7, 8). @throws Interrupted

@@ -35,12 +35,12 @@ struct Earlier {
 };
 
 template <class T>
-void merge_into(const SolverState& state, std::vector<T>& mean, const std::vector<T>& received,
+void merge_into(const LightState& light, std::vector<T>& mean, const std::vector<T>& received,
                 const TracedIteration& iteration, const Earlier& earlier = {}) {
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *light.forest;
     const auto rays = static_cast<float>(iteration.weight);
     const auto merge_one = [&](std::uint32_t e) {
-        const float tau = iteration.plan.warms_up ? 1.0f : rays / (earlier.rays(state.history[e]) + rays);
+        const float tau = iteration.plan.warms_up ? 1.0f : rays / (earlier.rays(light.history[e]) + rays);
         mean[e] += tau * (received[e] - mean[e]);
     };
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
@@ -62,16 +62,16 @@ void merge_into(const SolverState& state, std::vector<T>& mean, const std::vecto
 
 }  // namespace
 
-void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+void merge(const LightState& light, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
            const TracedIteration& iteration) {
-    merge_into(state, mean, received, iteration);
+    merge_into(light, mean, received, iteration);
 }
-void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+void merge_independent(const LightState& light, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                        const TracedIteration& iteration) {
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *light.forest;
     const auto rays = static_cast<float>(iteration.weight);
     const auto merged = [&](std::uint32_t e) {
-        return mean[e] + (received[e] - mean[e]) * (rays / (state.history[e] + rays));
+        return mean[e] + (received[e] - mean[e]) * (rays / (light.history[e] + rays));
     };
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) mean[e] = merged(e);
@@ -86,46 +86,45 @@ void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const s
         }
         const Rgb missing = mean[forest.parent(first)] - sum / area;
         const std::array<float, 4> shares =
-            state.noise.shares(forest, state.solution.irradiance, first, state.history[first] + rays);
+            light.noise.shares(forest, light.solution.irradiance, first, light.history[first] + rays);
         for (std::uint32_t k = 0; k < 4; ++k) mean[first + k] += missing * shares[k];
     });
 }
 
-void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
-           const TracedIteration& iteration) {
+void merge_importance(LightState& light, const RayTotals& rays, const std::vector<float>& received,
+                      const TracedIteration& iteration) {
     Earlier earlier;
-    earlier.first = static_cast<float>(state.rays_of_first_importance);
-    if (state.rays_of_other_views > 0)
-        earlier.most = static_cast<float>(state.schedule.averaged_rays() - state.rays_of_other_views);
-    merge_into(state, mean, received, iteration, earlier);
+    earlier.first = static_cast<float>(rays.of_first_importance);
+    if (rays.of_other_views > 0) earlier.most = static_cast<float>(rays.schedule.averaged_rays() - rays.of_other_views);
+    merge_into(light, light.solution.indirect_importance, received, iteration, earlier);
 }
 
-void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const TracedIteration& iteration) {
+void merge(const LightState& light, GroupLight& mean, const GroupLight& received, const TracedIteration& iteration) {
     for (std::size_t g = 0; g < mean.size(); ++g)
-        if (state.solution.dimming[g] > 0) merge(state, mean[g], received[g], iteration);
+        if (light.solution.dimming[g] > 0) merge(light, mean[g], received[g], iteration);
 }
-void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
+void merge_independent(const LightState& light, GroupLight& mean, const GroupLight& received,
                        const TracedIteration& iteration) {
-    const std::vector<float>& dimming = state.solution.dimming;  // empty without groups
+    const std::vector<float>& dimming = light.solution.dimming;  // empty without groups
     for (std::size_t g = 0; g < mean.size(); ++g)
-        if (dimming.empty() || dimming[g] > 0) merge_independent(state, mean[g], received[g], iteration);
+        if (dimming.empty() || dimming[g] > 0) merge_independent(light, mean[g], received[g], iteration);
 }
 
-void merge_escaped_power(SolverState& state, const RgbD& escaped, const TracedIteration& iteration) {
+void merge_escaped_power(LightState& light, const RgbD& escaped, const TracedIteration& iteration) {
     const auto rays = static_cast<double>(iteration.weight);
-    const double tau = iteration.plan.warms_up ? 1 : rays / (state.escaped_power_rays + rays);
-    state.escaped_power += (escaped - state.escaped_power) * tau;
-    state.escaped_power_rays = iteration.plan.warms_up ? 0 : state.escaped_power_rays + rays;
+    const double tau = iteration.plan.warms_up ? 1 : rays / (light.escaped_power_rays + rays);
+    light.escaped_power += (escaped - light.escaped_power) * tau;
+    light.escaped_power_rays = iteration.plan.warms_up ? 0 : light.escaped_power_rays + rays;
 }
 
-void update_history(SolverState& state, const TracedIteration& iteration) {
+void update_history(LightState& light, const TracedIteration& iteration) {
     const auto rays = static_cast<float>(iteration.weight),
-               inherited = static_cast<float>(state.options.experimental.inherited_weight);
-    parallel_for_ranges(state.history.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
+               inherited = static_cast<float>(light.options().experimental.inherited_weight);
+    parallel_for_ranges(light.history.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e)
-            state.history[e] = iteration.plan.warms_up
+            light.history[e] = iteration.plan.warms_up
                                    ? 0.0f
-                                   : (state.history[e] + rays) * (e < iteration.plan.old_elements ? 1.0f : inherited);
+                                   : (light.history[e] + rays) * (e < iteration.plan.old_elements ? 1.0f : inherited);
     });
 }
 

@@ -9,23 +9,24 @@ namespace interflect::detail {
 
 /// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) per element. Children with a larger tau
 /// only redistribute their parent's mean, which preserves power.
-void merge(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+void merge(const LightState& light, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
            const TracedIteration& iteration);
-void merge(const SolverState& state, std::vector<float>& mean, const std::vector<float>& received,
-           const TracedIteration& iteration);
+/// The same for the indirect importance.
+void merge_importance(LightState& light, const RayTotals& rays, const std::vector<float>& received,
+                      const TracedIteration& iteration);
 
 /// Merges independent estimates (docs/method/method.md, A run); means may be negative.
-void merge_independent(const SolverState& state, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
+void merge_independent(const LightState& light, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                        const TracedIteration& iteration);
 
 /// Groups dimmed to 0 do not change.
-void merge(const SolverState& state, GroupLight& mean, const GroupLight& received, const TracedIteration& iteration);
-void merge_independent(const SolverState& state, GroupLight& mean, const GroupLight& received,
+void merge(const LightState& light, GroupLight& mean, const GroupLight& received, const TracedIteration& iteration);
+void merge_independent(const LightState& light, GroupLight& mean, const GroupLight& received,
                        const TracedIteration& iteration);
 
-void merge_escaped_power(SolverState& state, const RgbD& escaped, const TracedIteration& iteration);
+void merge_escaped_power(LightState& light, const RgbD& escaped, const TracedIteration& iteration);
 
 /// Adds the rays of an iteration. New elements keep only `inherited_weight` of their history.
-void update_history(SolverState& state, const TracedIteration& iteration);
+void update_history(LightState& light, const TracedIteration& iteration);
 
 }  // namespace interflect::detail

@@ -33,7 +33,7 @@ struct LineFinder {
                        std::vector<OutdoorLine>& lines) const {
         std::vector<Hit> hits(rays.size());
         std::vector<Panes::HitBehind> behind;
-        state.ray_caster.trace(rays, hits);
+        state.inputs.ray_caster.trace(rays, hits);
         panes.trace(rays, hits, behind);
         const auto keep = [&](std::size_t ray, double transmitted) {
             lines.push_back({{rays[ray].origin, -rays[ray].direction}, sun, importance[ray] * transmitted});
@@ -52,22 +52,23 @@ struct LineFinder {
         for (const SourceRays& source : batch.sources)
             for (std::uint32_t r = source.begin; r < source.end; ++r) {
                 importance[r] = payload.importance(source.source);
-                normals[r] = state.forest->geometry(state.forest->patch(source.source)).normal();
+                normals[r] = state.light.forest->geometry(state.light.forest->patch(source.source)).normal();
             }
         std::vector<OutdoorLine> lines;
-        if (state.emission.has_sky()) {
+        if (state.inputs.emission.has_sky()) {
             // Directions have density cos(theta) / pi: irradiance is pi times the mean radiance.
             std::vector<double> importance_per_radiance;
             importance_per_radiance.reserve(importance.size());
             for (const double i : importance) importance_per_radiance.push_back(i * std::numbers::pi);
             keep_escaping(batch.rays, importance_per_radiance, none, lines);
         }
-        for (std::uint32_t sun = 0; sun < state.emission.sun_count(); ++sun) {
+        for (std::uint32_t sun = 0; sun < state.inputs.emission.sun_count(); ++sun) {
             std::vector<Ray> rays;
             std::vector<double> importance_per_irradiance;
             for (std::size_t r = 0; r < batch.rays.size(); ++r) {
                 const auto words = random_words(mix(key, sun), begin + r);
-                const V3f towards = -state.emission.sun_direction(sun, unit_float(words[0]), unit_float(words[1]));
+                const V3f towards =
+                    -state.inputs.emission.sun_direction(sun, unit_float(words[0]), unit_float(words[1]));
                 const float cosine = normals[r].dot(towards);
                 if (!(cosine > 0)) continue;
                 rays.push_back({batch.rays[r].origin, towards});
@@ -92,13 +93,14 @@ std::vector<OutdoorLine> thinned(const std::vector<OutdoorLine>& lines) {
 }
 
 std::vector<OutdoorLine> outdoor_lines(const SolverState& state, std::int64_t rays) {
-    const RayPlan plan = plan_importance(state.materials, state.solution, importance_of(state.solution), rays);
-    const std::uint64_t key = mix(state.streams.seed, aiming_stream);
-    const SampleStreams streams(state.streams.points, key);
-    const RayMaker maker(*state.forest, state.ray_caster, plan, streams);
+    const RayPlan plan =
+        plan_importance(state.inputs.materials, state.light.solution, importance_of(state.light.solution), rays);
+    const std::uint64_t key = mix(state.sampling.streams.seed, aiming_stream);
+    const SampleStreams streams(state.sampling.streams.points, key);
+    const RayMaker maker(*state.light.forest, state.inputs.ray_caster, plan, streams);
     if (!(maker.allocation().q_sum() > 0)) return {};
-    const Payload payload(state.materials, *state.forest, plan, maker.allocation().q_sum());
-    const Panes panes(state.scene, state.ray_caster);
+    const Payload payload(state.inputs.materials, *state.light.forest, plan, maker.allocation().q_sum());
+    const Panes panes(state.inputs.scene, state.inputs.ray_caster);
     const LineFinder finder{state, plan, maker, payload, panes, key};
     const auto count = static_cast<std::size_t>(rays);
     std::vector<std::vector<OutdoorLine>> found((count + rays_per_task - 1) / rays_per_task);
@@ -256,20 +258,20 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 std::vector<OutdoorLine> aim_outdoor_light(SolverState& state) {
     // Many rays: a small window transmits little importance. `all` is the run's limit.
     constexpr std::int64_t max_rays = 1 << 18, all_over_rays = 32;
-    if (importance_use(state.solution) != ImportanceUse::full) return {};
-    const auto suns = static_cast<std::int64_t>(state.emission.sun_count());
-    const std::int64_t sources = suns + (state.emission.has_sky() ? 1 : 0);
+    if (importance_use(state.light.solution) != ImportanceUse::full) return {};
+    const auto suns = static_cast<std::int64_t>(state.inputs.emission.sun_count());
+    const std::int64_t sources = suns + (state.inputs.emission.has_sky() ? 1 : 0);
     if (sources == 0) return {};
-    const std::int64_t rays = std::min(max_rays, state.options.limits.rays / all_over_rays) / sources;
+    const std::int64_t rays = std::min(max_rays, state.light.options().limits.rays / all_over_rays) / sources;
     if (rays == 0) return {};
     std::vector<OutdoorLine> lines = outdoor_lines(state, rays);
     std::vector<Imath::Box3f> targets =
-        find_targets(lines, weights_of(state.emission, lines), state.emission.scene_box());
-    if (!targets.empty() || !state.targets.empty()) {
-        set_targets(state, std::move(targets));
-        if (!lines.empty()) state.part_importance = importance_of_parts(state.emission, lines);
+        find_targets(lines, weights_of(state.inputs.emission, lines), state.inputs.emission.scene_box());
+    if (!targets.empty() || !state.inputs.targets.empty()) {
+        set_targets(state.inputs, state.sampling, std::move(targets));
+        if (!lines.empty()) state.sampling.part_importance = importance_of_parts(state.inputs.emission, lines);
     }
-    state.importance_rays += rays * sources;
+    state.rays.importance += rays * sources;
     return lines;
 }
 

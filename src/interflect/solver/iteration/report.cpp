@@ -21,12 +21,12 @@ double fraction_done(const Limits& limits, const IterationReport& report) {
     return std::clamp(fraction, 0.0, 1.0);
 }
 
-void append_traffic(SolverState& state, int iteration) {
-    Ranks* const ranks = state.monitor.ranks;
+void append_traffic(Work& work, Solution& solution, int iteration) {
+    Ranks* const ranks = work.monitor.ranks;
     if (!ranks) return;
-    const Ranks::Traffic so_far = ranks->traffic(), before = std::exchange(state.reported_traffic, so_far);
+    const Ranks::Traffic so_far = ranks->traffic(), before = std::exchange(work.reported_traffic, so_far);
     const Ranks::Traffic own{so_far.bytes - before.bytes, so_far.seconds - before.seconds};
-    state.solution.traffic.push_back({iteration, gather_over_ranks<Ranks::Traffic>(*ranks, std::span(&own, 1))});
+    solution.traffic.push_back({iteration, gather_over_ranks<Ranks::Traffic>(*ranks, std::span(&own, 1))});
 }
 
 }  // namespace
@@ -34,30 +34,30 @@ void append_traffic(SolverState& state, int iteration) {
 void append_report(SolverState& state, int iteration) {
     IterationReport r;
     r.iteration = iteration;
-    r.seconds = state.seconds();
-    r.rays = state.schedule.rays();
-    r.power_rays = state.power_rays;
-    r.importance_rays = state.importance_rays;
-    r.escaped_rays = state.escaped_rays;
-    r.elements = state.forest->size();
-    r.leaves = state.forest->patch_count() + (r.elements - state.forest->patch_count()) / 4 * 3;
-    r.total_power = radiated_power(state);
-    r.escaped_power = state.escaped_power;
+    r.seconds = state.work.seconds();
+    r.rays = state.rays.schedule.rays();
+    r.power_rays = state.rays.power;
+    r.importance_rays = state.rays.importance;
+    r.escaped_rays = state.rays.escaped;
+    r.elements = state.light.forest->size();
+    r.leaves = state.light.forest->patch_count() + (r.elements - state.light.forest->patch_count()) / 4 * 3;
+    r.total_power = radiated_power(state.inputs, state.light);
+    r.escaped_power = state.light.escaped_power;
     const ErrorEstimate error = estimate_error(state);
     r.error_estimate = error.total();
     r.noise_estimate = error.noise;
     r.discretisation_estimate = error.discretisation;
     constexpr double share_with_more = 0.001;
-    r.largest_payload = state.payloads.largest_over_mean();
-    r.high_payload = state.payloads.quantile_over_mean(share_with_more);
-    r.discarded_hits = state.discarded_hits;
-    state.solution.iterations.push_back(r);
-    append_traffic(state, iteration);
-    if (state.monitor.on_progress)
-        state.monitor.on_progress({.rays = r.rays,
-                                   .fraction = fraction_done(state.options.limits, r),
-                                   .relative_error = r.error_estimate,
-                                   .iteration = &state.solution.iterations.back()});
+    r.largest_payload = state.sampling.payloads.largest_over_mean();
+    r.high_payload = state.sampling.payloads.quantile_over_mean(share_with_more);
+    r.discarded_hits = state.light.discarded_hits;
+    state.light.solution.iterations.push_back(r);
+    append_traffic(state.work, state.light.solution, iteration);
+    if (state.work.monitor.on_progress)
+        state.work.monitor.on_progress({.rays = r.rays,
+                                        .fraction = fraction_done(state.light.options().limits, r),
+                                        .relative_error = r.error_estimate,
+                                        .iteration = &state.light.solution.iterations.back()});
 }
 
 }  // namespace interflect::detail

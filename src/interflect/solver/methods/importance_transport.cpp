@@ -20,28 +20,29 @@ constexpr double most_received_again = 0.99;
 }  // namespace
 
 void transport_importance(SolverState& state, std::int64_t rays) {
-    Solution& solution = state.solution;
+    Solution& solution = state.light.solution;
     std::vector<float> unshot = solution.view_importance;
     BounceBudget budget(rays, 0);
-    const std::int64_t rays_before = state.importance_rays;
+    const std::int64_t rays_before = state.rays.importance;
     double left = 1, decay = 0;  // importance received in a bounce; initially all of V
     while (left > negligible_importance && !budget.has_planned_last_bounce()) {
-        TransportStep step(plan_importance(state.materials, solution, Importance(unshot),
+        TransportStep step(plan_importance(state.inputs.materials, solution, Importance(unshot),
                                            std::max<std::int64_t>(1, budget.next(left).expected)));
-        state.importance_rays += step.rays;
+        state.rays.importance += step.rays;
         unshot = run_step(state, std::move(step)).importance;
         const double before = std::exchange(left, 0);
-        for (std::uint32_t e = 0; e < state.forest->size(); ++e) {
+        for (std::uint32_t e = 0; e < state.light.forest->size(); ++e) {
             solution.indirect_importance[e] += unshot[e];
-            if (e < state.forest->patch_count()) left += static_cast<double>(unshot[e]) * state.forest->area(e);
+            if (e < state.light.forest->patch_count())
+                left += static_cast<double>(unshot[e]) * state.light.forest->area(e);
         }
         decay = std::min(most_received_again, left / before);
     }
     // The untraced bounces are a geometric series with the distribution of the last one.
     const auto rest = static_cast<float>(decay / (1 - decay));
-    for (std::uint32_t e = 0; e < state.forest->size() && rest > 0; ++e)
+    for (std::uint32_t e = 0; e < state.light.forest->size() && rest > 0; ++e)
         solution.indirect_importance[e] += rest * unshot[e];
-    state.rays_of_first_importance = state.importance_rays - rays_before;
+    state.rays.of_first_importance = state.rays.importance - rays_before;
 }
 
 }  // namespace interflect::detail

@@ -34,12 +34,12 @@ double relative_unshot(const PowerPlan& bounce, double first_power, double first
     return beta * power + (1 - beta) * relative(bounce.weighted_power, first_weighted_power);
 }
 
-Estimate zero_estimate(const SolverState& state) {
-    const std::size_t elements = state.forest->size();
+Estimate zero_estimate(const RunInputs& inputs, const LightState& light) {
+    const std::size_t elements = light.forest->size();
     Estimate zero{.irradiance = std::vector<Rgb>(elements, Rgb(0)), .variance = std::vector<float>(elements, 0.0f)};
-    zero.groups.assign(state.groups.size(), zero.irradiance);
-    const std::size_t direct_parts = std::max<std::size_t>(1, state.groups.size());  // one without groups
-    if (state.options.keep_direct) zero.direct.assign(direct_parts, zero.irradiance);
+    zero.groups.assign(inputs.groups.size(), zero.irradiance);
+    const std::size_t direct_parts = std::max<std::size_t>(1, inputs.groups.size());  // one without groups
+    if (light.options().keep_direct) zero.direct.assign(direct_parts, zero.irradiance);
     return zero;
 }
 
@@ -60,84 +60,88 @@ void add(Estimate& sum, Received& received) {
     });
 }
 
-void set_estimate(SolverState& state, Estimate estimate) {
-    state.solution.irradiance = std::move(estimate.irradiance);
-    state.solution.groups = std::move(estimate.groups);
-    state.solution.direct = std::move(estimate.direct);
-    state.escaped_power = estimate.escaped_power;
+void set_estimate(LightState& light, Estimate estimate) {
+    light.solution.irradiance = std::move(estimate.irradiance);
+    light.solution.groups = std::move(estimate.groups);
+    light.solution.direct = std::move(estimate.direct);
+    light.escaped_power = estimate.escaped_power;
 }
 
-std::int64_t rays_so_far(const SolverState& state) { return state.power_rays + state.importance_rays; }
+std::int64_t rays_so_far(const RayTotals& rays) { return rays.power + rays.importance; }
 
-bool oracle_refines_passes(const SolverState& state) {
-    return state.options.method.refines && !refines_by_variance(state.options);
+bool oracle_refines_passes(const LightState& light) {
+    return light.options().method.refines && !refines_by_variance(light.options());
 }
 
 }  // namespace
 
 void Passes::prepare(SolverState& state) {
-    set_estimate(state, zero_estimate(state));  // IterationStart keeps the light of an interrupted preparation
-    if (state.options.limits.rays < fewest_rays_with_preparation) return;
-    const bool needs_importance = importance_use(state.solution) == ImportanceUse::full;
+    set_estimate(
+        state.light,
+        zero_estimate(state.inputs, state.light));  // IterationStart keeps the light of an interrupted preparation
+    if (state.light.options().limits.rays < fewest_rays_with_preparation) return;
+    const bool needs_importance = importance_use(state.light.solution) == ImportanceUse::full;
     // With importance, all passes share an eighth of the rays. Without, meshes of 20,000 rays need an eighth each.
-    const std::int64_t passes = !needs_importance ? 1 : state.options.method.refines ? 3 : 1;
-    const std::int64_t rays = state.schedule.start_rays(passes);
+    const std::int64_t passes = !needs_importance ? 1 : state.light.options().method.refines ? 3 : 1;
+    const std::int64_t rays = state.rays.schedule.start_rays(passes);
     total_unshot_ = 0;
     if (needs_importance) transport_importance(state, rays);
     aim_outdoor_light(state);
-    if (state.options.method.refines)  // the first pass estimates the light that the oracle needs
-        for (const bool oracle_refines : {false, true}) set_estimate(state, trace_pass(state, rays, oracle_refines));
+    if (state.light.options().method.refines)  // the first pass estimates the light that the oracle needs
+        for (const bool oracle_refines : {false, true})
+            set_estimate(state.light, trace_pass(state, rays, oracle_refines));
     aim_outdoor_light(state);  // again: passes improve importance
-    state.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state));
-    if (rays_so_far(state) > 0) append_report(state, 0);
+    state.rays.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state.rays));
+    if (rays_so_far(state.rays) > 0) append_report(state, 0);
 }
 
 void Passes::update_importance(SolverState& state, TracedIteration& iteration) {
-    if (importance_use(state.solution) != ImportanceUse::full) return;
+    if (importance_use(state.light.solution) != ImportanceUse::full) return;
     if (needs_importance_) {
-        const std::int64_t rays_before = rays_so_far(state);
-        transport_importance(state, state.schedule.start_rays());
+        const std::int64_t rays_before = rays_so_far(state.rays);
+        transport_importance(state, state.rays.schedule.start_rays());
         const std::vector<OutdoorLine> outdoor_light = aim_outdoor_light(state);
         if (!view_change_.empty()) iteration.history_factor = view_change_.history_factor(state, outdoor_light);
-        iteration.rays_for_new_views = rays_so_far(state) - rays_before;
+        iteration.rays_for_new_views = rays_so_far(state.rays) - rays_before;
     }
-    if (!state.options.experimental.separate_iterations) return;
+    if (!state.light.options().experimental.separate_iterations) return;
     iteration.importance_rays =
-        std::llround(state.options.experimental.alpha * static_cast<double>(iteration.plan.rays));
+        std::llround(state.light.options().experimental.alpha * static_cast<double>(iteration.plan.rays));
     if (iteration.importance_rays == 0) return;
-    const Importance psi = importance_of(state.solution);
+    const Importance psi = importance_of(state.light.solution);
     const Received received = run_step(
-        state, TransportStep(plan_importance(state.materials, state.solution, psi, iteration.importance_rays)));
-    detail::merge(state, state.solution.indirect_importance, received.importance, iteration);
-    state.importance_rays += iteration.importance_rays;
+        state,
+        TransportStep(plan_importance(state.inputs.materials, state.light.solution, psi, iteration.importance_rays)));
+    merge_importance(state.light, state.rays, received.importance, iteration);
+    state.rays.importance += iteration.importance_rays;
 }
 
 Estimate Passes::trace(SolverState& state, TracedIteration& iteration) {
     if (iteration.plan.rays <= iteration.importance_rays) return {};
-    const std::int64_t rays_before = rays_so_far(state);
+    const std::int64_t rays_before = rays_so_far(state.rays);
     Estimate estimate =
-        trace_pass(state, iteration.plan.rays - iteration.importance_rays, oracle_refines_passes(state));
-    iteration.rays = std::max<std::int64_t>(1, iteration.importance_rays + rays_so_far(state) - rays_before);
+        trace_pass(state, iteration.plan.rays - iteration.importance_rays, oracle_refines_passes(state.light));
+    iteration.rays = std::max<std::int64_t>(1, iteration.importance_rays + rays_so_far(state.rays) - rays_before);
     iteration.weight = iteration.rays;  // > 0
     return estimate;
 }
 
 void Passes::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
-    state.schedule.count_other_rays(iteration.rays_for_new_views);
-    scale_history(state, iteration.history_factor);
+    state.rays.schedule.count_other_rays(iteration.rays_for_new_views);
+    scale_history(state.light, iteration.history_factor);
     needs_importance_ = false;  // an interrupted iteration starts over
     view_change_.clear();
     if (estimate.irradiance.empty()) return;
     estimate_noise(state, estimate, iteration.weight);
-    merge_independent(state, state.solution.irradiance, estimate.irradiance, iteration);
-    merge_independent(state, state.solution.groups, estimate.groups, iteration);
-    merge_independent(state, state.solution.direct, estimate.direct, iteration);
-    merge_escaped_power(state, estimate.escaped_power, iteration);
-    update_history(state, iteration);
+    merge_independent(state.light, state.light.solution.irradiance, estimate.irradiance, iteration);
+    merge_independent(state.light, state.light.solution.groups, estimate.groups, iteration);
+    merge_independent(state.light, state.light.solution.direct, estimate.direct, iteration);
+    merge_escaped_power(state.light, estimate.escaped_power, iteration);
+    update_history(state.light, iteration);
 }
 
 void Passes::refine(SolverState& state) {
-    if (refines_by_variance(state.options) && state.noise.is_known()) refine_by_variance(state);
+    if (refines_by_variance(state.light.options()) && state.light.noise.is_known()) refine_by_variance(state);
 }
 
 struct Passes::Pass {
@@ -157,65 +161,65 @@ struct Passes::Pass {
 
 /// @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
-    state.payloads = {};  // reported for the last pass only
+    state.sampling.payloads = {};  // reported for the last pass only
     Pass pass{rays, oracle_refines, BounceBudget(rays, total_unshot_),
-              importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance)};
-    pass.unshot.assign(state.forest->size(), Rgb(0));
-    pass.unshot_groups.assign(state.groups.size(), pass.unshot);
+              importance_weights(state.light.solution, state.sampling.neighbourhoods, state.inputs.emission,
+                                 state.sampling.part_importance)};
+    pass.unshot.assign(state.light.forest->size(), Rgb(0));
+    pass.unshot_groups.assign(state.inputs.groups.size(), pass.unshot);
     if (!oracle_refines) pass.reflecting_where_received = leaves_reflecting_where_received(state);
     while (!pass.budget.has_planned_last_bounce() && trace_bounce(state, pass)) {
     }
     total_unshot_ = pass.budget.total_unshot();
     Estimate& sum = pass.sum;
-    if (sum.irradiance.empty()) sum = zero_estimate(state);  // no power to shoot
+    if (sum.irradiance.empty()) sum = zero_estimate(state.inputs, state.light);  // no power to shoot
     if (!oracle_refines) {
         // Inner elements are still empty.
-        pull(*state.forest, sum.irradiance);
-        pull_variance(*state.forest, sum.variance);
-        pull(*state.forest, sum.groups);
-        pull(*state.forest, sum.direct);
+        pull(*state.light.forest, sum.irradiance);
+        pull_variance(*state.light.forest, sum.variance);
+        pull(*state.light.forest, sum.groups);
+        pull(*state.light.forest, sum.direct);
     }
     return std::move(sum);
 }
 
 /// @return  False if no unshot light or rays are left.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
-    Solution& solution = state.solution;
+    Solution& solution = state.light.solution;
     // The first bounce, with the most rays, transports importance.
     const bool carries_importance = pass.emits && importance_use(solution) == ImportanceUse::full &&
-                                    !state.options.experimental.separate_iterations;
-    const Radiosity light(state.materials, pass.unshot, pass.emits);
-    PowerPlan bounce =
-        plan_power(state.materials, state.emission, solution, light, pass.weights, carries_importance, /*rays=*/0);
+                                    !state.light.options().experimental.separate_iterations;
+    const Radiosity light(state.inputs.materials, pass.unshot, pass.emits);
+    PowerPlan bounce = plan_power(state.inputs.materials, state.inputs.emission, solution, light, pass.weights,
+                                  carries_importance, /*rays=*/0);
     solution.non_finite += bounce.non_finite_leaves;
     if (pass.emits) {
         pass.first_power = bounce.power;
         pass.first_weighted_power = bounce.weighted_power;
     }
     const double unshot =
-        relative_unshot(bounce, pass.first_power, pass.first_weighted_power, state.options.experimental.beta);
+        relative_unshot(bounce, pass.first_power, pass.first_weighted_power, state.light.options().experimental.beta);
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(unshot) : BounceRays();
     if (rays.expected == 0) return false;
 
     bounce.plan.rays = rays.started;  // walks trace the others
     TransportStep step = make_step(state, pass, std::move(bounce.plan));
-    const std::uint32_t old_elements = state.forest->size();
+    const std::uint32_t old_elements = state.light.forest->size();
     Received received =
         step.completes_by_walks ? run_step(state, std::move(step)) : trace_without_walks(state, std::move(step));
 
     // Eq. 11: the share alpha of the rays is sampled by importance.
-    const double importance_share = carries_importance ? state.options.experimental.alpha : 0;
+    const double importance_share = carries_importance ? state.light.options().experimental.alpha : 0;
     const std::int64_t importance_rays = std::llround(importance_share * static_cast<double>(rays.expected));
-    state.importance_rays += importance_rays;
-    state.power_rays += rays.expected - importance_rays;
-    state.payloads += received.payloads;
-    grow_pass(*state.forest, old_elements, pass);
-    if (pass.emits && state.options.keep_direct)
+    state.rays.importance += importance_rays;
+    state.rays.power += rays.expected - importance_rays;
+    state.sampling.payloads += received.payloads;
+    grow_pass(*state.light.forest, old_elements, pass);
+    if (pass.emits && state.light.options().keep_direct)
         pass.sum.direct = received.groups.empty() ? GroupLight{received.irradiance} : received.groups;
     add(pass.sum, received);
     if (carries_importance)  // at once: the oracle uses it in the next bounces
-        detail::merge(state, solution.indirect_importance, received.importance,
-                      TracedIteration{{.rays = rays.expected}});
+        merge_importance(state.light, state.rays, received.importance, TracedIteration{{.rays = rays.expected}});
     pass.emits = false;
     pass.start_points = std::move(received.start_points);
     pass.unshot = std::move(received.irradiance);
@@ -225,15 +229,15 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
 
 TransportStep Passes::make_step(const SolverState& state, Pass& pass, RayPlan plan) {
     TransportStep step(std::move(plan));
-    step.groups = group_radiosity(state, pass.unshot_groups, pass.emits);
+    step.groups = group_radiosity(state.inputs, state.light, pass.unshot_groups, pass.emits);
     step.start_points = &pass.start_points;
-    step.oracle_light = Radiosity(state.materials, state.solution.irradiance);
+    step.oracle_light = Radiosity(state.inputs.materials, state.light.solution.irradiance);
     step.completes_by_walks = pass.budget.has_planned_last_bounce();
     step.reflecting_where_received = pass.reflecting_where_received;
     step.leaves_only = !pass.oracle_refines;
     if (pass.oracle_refines)
-        step.oracle =
-            make_oracle(state.solution, state.schedule.averaged_rays() + pass.rays, state.floor.default_min_area());
+        step.oracle = make_oracle(state.light.solution, state.rays.schedule.averaged_rays() + pass.rays,
+                                  state.inputs.floor.default_min_area());
     step.reusable_buffer = &pass.unshot;  // after tracing
     return step;
 }
@@ -250,19 +254,19 @@ void Passes::grow_pass(const ElementForest& forest, std::uint32_t first, Pass& p
 
 void Passes::make_first_estimate(SolverState& state) {
     prepare(state);
-    set_estimate(state, trace_pass(state, state.schedule.start_rays(), false));
-    state.solution.direct.clear();  // the method that continues does not separate direct light
-    state.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state));
+    set_estimate(state.light, trace_pass(state, state.rays.schedule.start_rays(), false));
+    state.light.solution.direct.clear();  // the method that continues does not separate direct light
+    state.rays.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state.rays));
     append_report(state, 0);
 }
 
 void Passes::change_views(SolverState& state) {
     const bool adapts_history =
-        state.schedule.averaged_rays() > 0 && importance_use(state.solution) == ImportanceUse::full;
+        state.rays.schedule.averaged_rays() > 0 && importance_use(state.light.solution) == ImportanceUse::full;
     if (adapts_history && view_change_.empty()) view_change_.record(state);
     IterationMethod::change_views(state);
-    const bool has_begun = !state.solution.iterations.empty();  // otherwise, prepare() transports importance
-    needs_importance_ = has_begun && importance_use(state.solution) == ImportanceUse::full;
+    const bool has_begun = !state.light.solution.iterations.empty();  // otherwise, prepare() transports importance
+    needs_importance_ = has_begun && importance_use(state.light.solution) == ImportanceUse::full;
     if (!needs_importance_) view_change_.clear();
 }
 
@@ -275,7 +279,7 @@ void Passes::archive(StateArchive& archive) {
 bool Passes::fits(const SolverState& state) const { return view_change_.fits(state); }
 
 std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state) {
-    if (state.options.experimental.one_bounce) return std::make_unique<OneBounce>();
+    if (state.light.options().experimental.one_bounce) return std::make_unique<OneBounce>();
     return std::make_unique<Passes>();
 }
 

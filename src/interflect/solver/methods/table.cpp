@@ -182,7 +182,7 @@ SolveOptions resolved(const GivenSettings& given) {
 namespace detail {
 
 std::unique_ptr<IterationMethod> make_iteration_method(SolverState& state) {
-    const std::string_view name = find_method(state.options.method.name).name;
+    const std::string_view name = find_method(state.light.options().method.name).name;
     return std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.method.name == name; })->make(state);
 }
 

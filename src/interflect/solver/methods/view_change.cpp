@@ -11,10 +11,10 @@ namespace interflect::detail {
 
 namespace {
 
-std::vector<float> patch_importance(const SolverState& state) {
-    const Importance psi = importance_of(state.solution);
+std::vector<float> patch_importance(const LightState& light) {
+    const Importance psi = importance_of(light.solution);
     std::vector<float> values;
-    for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) values.push_back(psi[i]);
+    for (std::uint32_t i = 0; i < light.forest->patch_count(); ++i) values.push_back(psi[i]);
     return values;
 }
 
@@ -29,14 +29,14 @@ struct Noise {
 };
 
 /// @param importance  By patch.
-Noise noise_of_leaves(const SolverState& state, const std::vector<float>& importance, const std::vector<float>& old_q,
-                      const std::vector<float>& new_q) {
-    const ElementForest& forest = *state.forest;
-    const Radiosity light(state.materials, state.solution.irradiance);
+Noise noise_of_leaves(const RunInputs& inputs, const LightState& light, const std::vector<float>& importance,
+                      const std::vector<float>& old_q, const std::vector<float>& new_q) {
+    const ElementForest& forest = *light.forest;
+    const Radiosity radiosity(inputs.materials, light.solution.irradiance);
     Noise noise;
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
         if (!forest.is_leaf(e) || !(old_q[e] > 0) || !(new_q[e] > 0)) continue;
-        const double power = static_cast<double>(channel_sum(light.of(forest, e))) * forest.area(e);
+        const double power = static_cast<double>(channel_sum(radiosity.of(forest, e))) * forest.area(e);
         const double weighted_power = power * importance[forest.patch(e)];
         noise.before += weighted_power * power / old_q[e];
         noise.now += weighted_power * power / new_q[e];
@@ -58,13 +58,15 @@ double noise_of_lines(const Emission& emission, const std::vector<float>& part_q
 }  // namespace
 
 ViewChange::Sampling ViewChange::sampling_of(const SolverState& state) {
-    const Radiosity light(state.materials, state.solution.irradiance);
-    const ImportanceWeights weights =
-        importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
-    Sampling sampling{plan_power(state.materials, state.emission, state.solution, light, weights, false, 0).plan.q,
-                      {},
-                      state.targets};
-    const auto parts = sampling.q.begin() + state.forest->size();
+    const Radiosity light(state.inputs.materials, state.light.solution.irradiance);
+    const ImportanceWeights weights = importance_weights(state.light.solution, state.sampling.neighbourhoods,
+                                                         state.inputs.emission, state.sampling.part_importance);
+    Sampling sampling{
+        plan_power(state.inputs.materials, state.inputs.emission, state.light.solution, light, weights, false, 0)
+            .plan.q,
+        {},
+        state.inputs.targets};
+    const auto parts = sampling.q.begin() + state.light.forest->size();
     sampling.part_q.assign(parts, sampling.q.end());
     sampling.q.erase(parts, sampling.q.end());
     return sampling;
@@ -72,25 +74,25 @@ ViewChange::Sampling ViewChange::sampling_of(const SolverState& state) {
 
 void ViewChange::record(const SolverState& state) {
     old_ = sampling_of(state);
-    old_importance_ = patch_importance(state);
+    old_importance_ = patch_importance(state.light);
 }
 
 std::vector<float> ViewChange::history_factor(const SolverState& state,
                                               std::span<const OutdoorLine> outdoor_light) const {
     std::vector<float> old_q = old_.q;
-    for (auto e = static_cast<std::uint32_t>(old_q.size()); e < state.forest->size(); ++e)
-        old_q.push_back(old_q[state.forest->parent(e)] / 4);  // elements created since then
+    for (auto e = static_cast<std::uint32_t>(old_q.size()); e < state.light.forest->size(); ++e)
+        old_q.push_back(old_q[state.light.forest->parent(e)] / 4);  // elements created since then
     const Sampling now = sampling_of(state);
-    const std::vector<float> new_psi = patch_importance(state);
-    Noise of_new_views = noise_of_leaves(state, new_psi, old_q, now.q);
-    const Emission old_emission(*state.lit, old_.targets);
+    const std::vector<float> new_psi = patch_importance(state.light);
+    Noise of_new_views = noise_of_leaves(state.inputs, state.light, new_psi, old_q, now.q);
+    const Emission old_emission(*state.inputs.lit, old_.targets);
     if (old_.part_q.size() == old_emission.part_count()) {
         of_new_views.before += noise_of_lines(old_emission, old_.part_q, outdoor_light);
-        of_new_views.now += noise_of_lines(state.emission, now.part_q, outdoor_light);
+        of_new_views.now += noise_of_lines(state.inputs.emission, now.part_q, outdoor_light);
     }
     const float here = of_new_views.ratio();
-    const float there = noise_of_leaves(state, old_importance_, old_q, now.q).ratio();
-    std::vector<float> ratio(state.forest->patch_count());
+    const float there = noise_of_leaves(state.inputs, state.light, old_importance_, old_q, now.q).ratio();
+    std::vector<float> ratio(state.light.forest->patch_count());
     for (std::uint32_t i = 0; i < ratio.size(); ++i) {
         const float both = new_psi[i] + old_importance_[i], share = both > 0 ? new_psi[i] / both : 0.5f;
         ratio[i] = std::exp(share * std::log(here) + (1 - share) * std::log(there));
@@ -108,15 +110,15 @@ void ViewChange::archive(StateArchive& archive) {
 }
 
 bool ViewChange::fits(const SolverState& state) const {
-    const std::uint32_t patches = state.forest->patch_count();
-    return old_.q.empty() || (old_.q.size() >= patches && old_.q.size() <= state.forest->size() &&
+    const std::uint32_t patches = state.light.forest->patch_count();
+    return old_.q.empty() || (old_.q.size() >= patches && old_.q.size() <= state.light.forest->size() &&
                               old_.targets.size() <= max_targets && old_importance_.size() == patches);
 }
 
-void scale_history(SolverState& state, const std::vector<float>& factor) {
+void scale_history(LightState& light, const std::vector<float>& factor) {
     if (factor.empty()) return;
-    for (std::uint32_t e = 0; e < state.history.size(); ++e) state.history[e] *= factor[state.forest->patch(e)];
-    state.noise.scale_by_patch(*state.forest, factor);
+    for (std::uint32_t e = 0; e < light.history.size(); ++e) light.history[e] *= factor[light.forest->patch(e)];
+    light.noise.scale_by_patch(*light.forest, factor);
 }
 
 }  // namespace interflect::detail

@@ -36,6 +36,6 @@ class ViewChange {
     std::vector<float> old_importance_;  // by patch
 };
 
-void scale_history(SolverState& state, const std::vector<float>& factor);
+void scale_history(LightState& light, const std::vector<float>& factor);
 
 }  // namespace interflect::detail

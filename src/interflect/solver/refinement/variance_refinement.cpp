@@ -39,15 +39,15 @@ class VarianceOracle {
   public:
     explicit VarianceOracle(const SolverState& state)
         : state_(state),
-          forest_(*state.forest),
-          measure_(importance_use(state.solution) == ImportanceUse::off ? ErrorMeasure::surfaces
-                                                                        : ErrorMeasure::pictures),
-          psi_(importance_use(state.solution) == ImportanceUse::full
-                   ? std::span<const float>(state.solution.indirect_importance)
+          forest_(*state.light.forest),
+          measure_(importance_use(state.light.solution) == ImportanceUse::off ? ErrorMeasure::surfaces
+                                                                              : ErrorMeasure::pictures),
+          psi_(importance_use(state.light.solution) == ImportanceUse::full
+                   ? std::span<const float>(state.light.solution.indirect_importance)
                    : std::span<const float>()) {
         const double reference = reference_power();
-        if (state.options.refinement.criterion == RefinementCriterion::perceptual && !psi_.empty())
-            visible_.emplace(state);
+        if (state.light.options().refinement.criterion == RefinementCriterion::perceptual && !psi_.empty())
+            visible_.emplace(state.inputs, state.light);
         min_misplaced_power_ = (visible_ ? visible_->share_of_light() : negligible_misplacement) * reference;
         max_misplaced_power_ = tolerable_misplacement * reference;
     }
@@ -62,16 +62,16 @@ class VarianceOracle {
         const auto [signal, noise] = expected_children(leaf);
         if (!(signal > min_signal * noise)) return false;
         const bool blurs =
-            forest_.area(leaf) >= 4 * min_area(state_, leaf) &&
+            forest_.area(leaf) >= 4 * min_area(state_.inputs, state_.light, leaf) &&
             (visible_ ? signal > visible_->threshold(leaf) : weight(leaf) * static_cast<double>(signal) > min_gain);
         const bool misplaces = misplaced_power(leaf, signal) > min_misplaced_power_ &&
-                               forest_.area(leaf) >= 4 * state_.floor.default_min_area();
+                               forest_.area(leaf) >= 4 * state_.inputs.floor.default_min_area();
         return blurs || misplaces;
     }
 
     /// True if unknown.
     bool may_misplace(std::uint32_t leaf) const {
-        if (state_.history[leaf] == 0 || !state_.noise.is_known()) return true;
+        if (state_.light.history[leaf] == 0 || !state_.light.noise.is_known()) return true;
         return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > max_misplaced_power_;
     }
 
@@ -82,29 +82,29 @@ class VarianceOracle {
     };
     Expected expected_children(std::uint32_t leaf) const {
         if (leaf < forest_.patch_count()) {
-            const float h = luminance(state_.solution.irradiance[leaf]);
-            return {assumed_square * h * h,
-                    3 * state_.noise.variance(forest_, state_.solution.irradiance, leaf, state_.history[leaf])};
+            const float h = luminance(state_.light.solution.irradiance[leaf]);
+            return {assumed_square * h * h, 3 * state_.light.noise.variance(forest_, state_.light.solution.irradiance,
+                                                                            leaf, state_.light.history[leaf])};
         }
-        const SiblingVariation variation = sibling_variation(state_, forest_.first_child(forest_.parent(leaf)));
+        const SiblingVariation variation = sibling_variation(state_.light, forest_.first_child(forest_.parent(leaf)));
         return {expected_decay * variation.signal(), 4 * variation.noise};
     }
     double weight(std::uint32_t leaf) const {
-        double w = error_weight(state_, measure_, leaf);
+        double w = error_weight(state_.inputs, state_.light, measure_, leaf);
         if (!psi_.empty()) {
-            const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
+            const double rho = luminance(state_.inputs.materials.surface(forest_.patch(leaf), leaf).reflectance);
             w += invisible_error_weight * rho * rho * static_cast<double>(psi_[leaf]);
         }
         return w * forest_.area(leaf);
     }
     /// Returns [lm or W, times importance].
     double misplaced_power(std::uint32_t leaf, float signal) const {
-        const double rho = luminance(state_.materials.surface(forest_.patch(leaf), leaf).reflectance);
+        const double rho = luminance(state_.inputs.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
     }
     double weighted_mean_square() const {
-        const double mean = error_reference(state_, measure_);
-        double weight = measure_ == ErrorMeasure::surfaces ? 0 : state_.view.surface_share();
+        const double mean = error_reference(state_.inputs, state_.light, measure_);
+        double weight = measure_ == ErrorMeasure::surfaces ? 0 : state_.sampling.view.surface_share();
         if (measure_ == ErrorMeasure::surfaces)
             for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) weight += forest_.area(i);
         return mean * mean * weight;
@@ -112,10 +112,10 @@ class VarianceOracle {
 
     /// Light in the pictures or, without a view, all received power.
     double reference_power() const {
-        if (!psi_.empty()) return error_reference(state_, ErrorMeasure::pictures);
+        if (!psi_.empty()) return error_reference(state_.inputs, state_.light, ErrorMeasure::pictures);
         double sum = 0;
         for (std::uint32_t i = 0; i < forest_.patch_count(); ++i)
-            sum += static_cast<double>(luminance(state_.solution.irradiance[i])) * forest_.area(i);
+            sum += static_cast<double>(luminance(state_.light.solution.irradiance[i])) * forest_.area(i);
         return sum;
     }
 
@@ -130,24 +130,24 @@ class VarianceOracle {
 }  // namespace
 
 std::vector<std::uint8_t> leaves_reflecting_where_received(const SolverState& state) {
-    if (!refines_by_variance(state.options)) return {};
+    if (!refines_by_variance(state.light.options())) return {};
     const VarianceOracle oracle(state);
-    std::vector<std::uint8_t> blurs(state.forest->size(), 0);
+    std::vector<std::uint8_t> blurs(state.light.forest->size(), 0);
     parallel_for_ranges(blurs.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
-            blurs[e] = state.forest->is_leaf(e) && oracle.may_misplace(e);
+            blurs[e] = state.light.forest->is_leaf(e) && oracle.may_misplace(e);
     });
     return blurs;
 }
 
 void refine_by_variance(SolverState& state) {
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *state.light.forest;
     const VarianceOracle oracle(state);
     const double min_gain = oracle.min_gain();
     std::vector<std::uint8_t> splits(forest.size(), 0);
     parallel_for_ranges(splits.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
-            splits[e] = forest.is_leaf(e) && state.history[e] > 0 && oracle.splits(e, min_gain);
+            splits[e] = forest.is_leaf(e) && state.light.history[e] > 0 && oracle.splits(e, min_gain);
     });
     divide_leaves(state, splits);
 }

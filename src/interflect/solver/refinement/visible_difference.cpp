@@ -26,20 +26,20 @@ constexpr double best_frequency = 8;
 constexpr float jnd_of_edge = 0.2f;
 
 /// Returns the logarithmic mean of reflected light in the pictures [lm/m^2 or W/m^2]; 0 if they are dark.
-double logarithmic_mean(const SolverState& state) {
+double logarithmic_mean(const RunInputs& inputs, const LightState& light) {
     struct Sums {
         double stops = 0, weight = 0;
         Sums& operator+=(const Sums& o) { return stops += o.stops, weight += o.weight, *this; }
     };
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *light.forest;
     const Sums sums = parallel_sum(forest.size(), elements_per_task, Sums(), [&](std::size_t begin, std::size_t end) {
         Sums sum;
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            const Rgb rho = state.materials.surface(forest.patch(e), e).reflectance;
-            const float light = luminance(Rgb(rho * state.solution.irradiance[e]));
-            if (!forest.is_leaf(e) || !(light > 0)) continue;
-            const double weight = static_cast<double>(forest.area(e)) * state.solution.view_importance[e];
-            sum.stops += weight * std::log2(static_cast<double>(light));
+            const Rgb rho = inputs.materials.surface(forest.patch(e), e).reflectance;
+            const float reflected = luminance(Rgb(rho * light.solution.irradiance[e]));
+            if (!forest.is_leaf(e) || !(reflected > 0)) continue;
+            const double weight = static_cast<double>(forest.area(e)) * light.solution.view_importance[e];
+            sum.stops += weight * std::log2(static_cast<double>(reflected));
             sum.weight += weight;
         }
         return sum;
@@ -71,42 +71,43 @@ float threshold_elevation(float contrast) {
     return std::pow(1 + std::pow(response, 4.0f), 0.25f);
 }
 
-VisibleDifference::VisibleDifference(const SolverState& state) : state_(state) {
-    const double mean = logarithmic_mean(state);
+VisibleDifference::VisibleDifference(const RunInputs& inputs, const LightState& light)
+    : inputs_(inputs), light_(light) {
+    const double mean = logarithmic_mean(inputs, light);
     if (mean > 0) exposure_ = static_cast<float>(static_cast<double>(mean_over_white * display_white) / mean);
     const double contrast =
         jnd_of_edge * cone_threshold(mean_over_white * display_white) / (mean_over_white * display_white);
-    share_of_light_ = contrast * share_of_square_degree(state.options.views);
+    share_of_light_ = contrast * share_of_square_degree(light.options().views);
 }
 
 /// Returns the mean of the smallest ancestor that covers a square degree, or else of the patch [cd/m^2].
 float VisibleDifference::adapted_luminance(std::uint32_t leaf, float pixels) const {
-    const ElementForest& forest = *state_.forest;
+    const ElementForest& forest = *light_.forest;
     const std::uint32_t patch = forest.patch(leaf);
     std::uint32_t e = leaf;
     for (; e != patch && pixels < pixels_per_degree * pixels_per_degree; pixels *= 4) e = forest.parent(e);
-    const Rgb rho = state_.materials.surface(patch, e).reflectance;
-    return std::clamp(exposure_ * luminance(Rgb(rho * state_.solution.irradiance[e])), display_black, display_white);
+    const Rgb rho = inputs_.materials.surface(patch, e).reflectance;
+    return std::clamp(exposure_ * luminance(Rgb(rho * light_.solution.irradiance[e])), display_black, display_white);
 }
 
 /// Returns the root mean square difference of the leaf and its siblings caused by texture [cd/m^2].
 float VisibleDifference::masking_contrast(std::uint32_t leaf) const {
-    const ElementForest& forest = *state_.forest;
+    const ElementForest& forest = *light_.forest;
     const std::uint32_t patch = forest.patch(leaf);
     if (leaf == patch) return 0;
     const std::uint32_t first = first_sibling(forest, leaf), parent = forest.parent(leaf);
-    const auto rho = [&](std::uint32_t e) { return luminance(state_.materials.surface(patch, e).reflectance); };
+    const auto rho = [&](std::uint32_t e) { return luminance(inputs_.materials.surface(patch, e).reflectance); };
     float mean_square = 0;
     for (std::uint32_t e = first; e < first + 4; ++e) mean_square += std::pow(rho(e) - rho(parent), 2.0f) / 4;
-    return exposure_ * std::sqrt(mean_square) * std::max(0.0f, luminance(state_.solution.irradiance[parent]));
+    return exposure_ * std::sqrt(mean_square) * std::max(0.0f, luminance(light_.solution.irradiance[parent]));
 }
 
 float VisibleDifference::threshold(std::uint32_t leaf) const {
     constexpr float infinity = std::numeric_limits<float>::infinity();
-    const Rgb rho = state_.materials.surface(state_.forest->patch(leaf), leaf).reflectance;
+    const Rgb rho = inputs_.materials.surface(light_.forest->patch(leaf), leaf).reflectance;
     const float shown = exposure_ * luminance(rho);  // display luminance per irradiance
-    if (!(state_.solution.view_importance[leaf] > 0 && shown > 0)) return infinity;
-    const float pixels = state_.forest->area(leaf) / pixel_area(state_, leaf);
+    if (!(light_.solution.view_importance[leaf] > 0 && shown > 0)) return infinity;
+    const float pixels = light_.forest->area(leaf) / pixel_area(inputs_, light_, leaf);
     const float period = std::sqrt(std::max(1.0f, pixels));  // of two children, in pixels
     const float unmasked = jnd_of_edge * cone_threshold(adapted_luminance(leaf, pixels)) /
                            relative_sensitivity(static_cast<double>(pixels_per_degree / period));

@@ -2,15 +2,15 @@
 
 #include <cstdint>
 
-#include "interflect/solver/state/solver_state.h"
+#include "interflect/solver/state/light_state.h"
 
 namespace interflect::detail {
 
 /// Just noticeable differences (JND) in tone-mapped pictures on a display (docs/method/method.md, Visible differences).
 class VisibleDifference {
   public:
-    /// `state` needs full importance and must outlive this. O(elements).
-    explicit VisibleDifference(const SolverState& state);
+    /// Needs full importance. The arguments must outlive this. O(elements).
+    explicit VisibleDifference(const RunInputs& inputs, const LightState& light);
 
     /// Returns the smallest mean squared difference of a leaf's children that is visible directly [(lm/m^2)^2 or
     /// (W/m^2)^2]. Infinite for black leaves and for leaves outside all views.
@@ -24,7 +24,8 @@ class VisibleDifference {
     float adapted_luminance(std::uint32_t leaf, float pixels) const;
     float masking_contrast(std::uint32_t leaf) const;
 
-    const SolverState& state_;
+    const RunInputs& inputs_;
+    const LightState& light_;
     float exposure_ = 0;  // display luminance [cd/m^2] per reflected light [lm/m^2 or W/m^2]
     double share_of_light_ = 0;
 };

@@ -115,26 +115,26 @@ struct Region {
 
 }  // namespace
 
-ClusterShrinkage::ClusterShrinkage(const SolverState& state, const PatchClusters& clusters,
+ClusterShrinkage::ClusterShrinkage(const LightState& light, const PatchClusters& clusters,
                                    std::span<const Rgb> irradiance)
-    : state_(&state), clusters_(&clusters), irradiance_(irradiance), parts_(clusters.nodes().size()) {
+    : light_(&light), clusters_(&clusters), irradiance_(irradiance), parts_(clusters.nodes().size()) {
     measure_parts();
 }
 
-std::vector<Rgb> ClusterShrinkage::means() const {
+std::vector<Rgb> ClusterShrinkage::means(std::int64_t camera_rays) const {
     std::vector<Rgb> means = reduce();
-    keep_means_of_pictures(means);
+    keep_means_of_pictures(camera_rays, means);
     return means;
 }
 
 void ClusterShrinkage::measure_parts() {
-    const SolverState& state = *state_;
-    const ElementForest& forest = *state.forest;
+    const LightState& light = *light_;
+    const ElementForest& forest = *light.forest;
     const std::vector<Sums> sums = clusters_->sums<Sums>([&](std::uint32_t p) {
-        const double area = forest.area(p), all = luminance(state.solution.irradiance[p]),
+        const double area = forest.area(p), all = luminance(light.solution.irradiance[p]),
                      h = luminance(irradiance_[p]);
         const double of_all =
-            state.noise.variance(forest, state.solution.irradiance, p, std::max(state.history[p], 1.0f));
+            light.noise.variance(forest, light.solution.irradiance, p, std::max(light.history[p], 1.0f));
         const double variance = all > 0 ? of_all * std::clamp(h / all, 0.0, 1.0) : 0;  // fewer of the same rays
         return Sums(area, area * h, area * area * variance);
     });
@@ -234,14 +234,14 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
 
 /// Clusters preserve the mean over their area, but visible patches may be brighter than hidden ones. Scales uncertain
 /// light: of visible patches to keep the mean of the pictures, of hidden patches to keep the power.
-void ClusterShrinkage::keep_means_of_pictures(std::vector<Rgb>& means) const {
-    const ElementForest& forest = *state_->forest;
+void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vector<Rgb>& means) const {
+    const ElementForest& forest = *light_->forest;
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
-    const std::vector<float>& seen = state_->solution.view_importance;
+    const std::vector<float>& seen = light_->solution.view_importance;
     if (seen.empty()) return;
     const std::vector<double> shares =
         clusters_->sums<double>([&](std::uint32_t p) { return seen[p] * forest.area(p); });
-    const double fewest = fewest_camera_rays / static_cast<double>(state_->view.rays());
+    const double fewest = fewest_camera_rays / static_cast<double>(camera_rays);
     std::vector<Region> regions(nodes.size());
     std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
     std::vector<float> uncertainty(means.size());

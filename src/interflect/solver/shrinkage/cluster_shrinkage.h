@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "interflect/solver/clusters/patch_clusters.h"
-#include "interflect/solver/state/solver_state.h"
+#include "interflect/solver/state/light_state.h"
 
 namespace interflect::detail {
 
 /// Reduces the differences between the parts of each cluster that are mostly noise (docs/method/method.md, Clusters).
 class ClusterShrinkage {
   public:
-    /// @param state, clusters, irradiance  Must outlive this. The irradiance is all light or a part of it, by patch;
+    /// @param light, clusters, irradiance  Must outlive this. The irradiance is all light or a part of it, by patch;
     /// elements may follow.
-    ClusterShrinkage(const SolverState& state, const PatchClusters& clusters, std::span<const Rgb> irradiance);
+    ClusterShrinkage(const LightState& light, const PatchClusters& clusters, std::span<const Rgb> irradiance);
 
     struct Errors {
         float noise = 0, bias = 0;
@@ -26,7 +26,8 @@ class ClusterShrinkage {
     void measure_errors(std::span<Errors> of_patches, const Shown& shown) const;
 
     /// Returns the reduced means of the patches.
-    std::vector<Rgb> means() const;
+    /// @param camera_rays  ViewImportance::rays() of the views.
+    std::vector<Rgb> means(std::int64_t camera_rays) const;
 
   private:
     struct Part {
@@ -40,9 +41,9 @@ class ClusterShrinkage {
     void measure_parts();
     std::vector<Rgb> reduce() const;
     static Means reduce_parts(std::span<const Part> parts, const Means& own, float mean, float to_channel);
-    void keep_means_of_pictures(std::vector<Rgb>& means) const;
+    void keep_means_of_pictures(std::int64_t camera_rays, std::vector<Rgb>& means) const;
 
-    const SolverState* state_;
+    const LightState* light_;
     const PatchClusters* clusters_;
     std::span<const Rgb> irradiance_;
     std::vector<Part> parts_;  // by node

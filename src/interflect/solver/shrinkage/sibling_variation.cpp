@@ -28,47 +28,47 @@ float SiblingVariation::risk() const {
     return spread > noise ? noise + noise * (noise / (3 * spread)) : spread - noise;
 }
 
-bool uses_shrinkage(const SolverState& state) {
-    return state.options.experimental.shrinkage && refines_by_variance(state.options);
+bool uses_shrinkage(const LightState& light) {
+    return light.options().experimental.shrinkage && refines_by_variance(light.options());
 }
 
-SiblingVariation sibling_variation(const SolverState& state, std::uint32_t first) {
-    const ElementForest& forest = *state.forest;
-    const std::vector<Rgb>& irradiance = state.solution.irradiance;
-    if (state.history[first] == 0) return {0, std::numeric_limits<float>::infinity()};
+SiblingVariation sibling_variation(const LightState& light, std::uint32_t first) {
+    const ElementForest& forest = *light.forest;
+    const std::vector<Rgb>& irradiance = light.solution.irradiance;
+    if (light.history[first] == 0) return {0, std::numeric_limits<float>::infinity()};
     const float mean = luminance(irradiance[forest.parent(first)]);
     float area = 0, spread = 0, variance = 0;
     for (std::uint32_t e = first; e < first + 4; ++e) {
         const float difference = luminance(irradiance[e]) - mean, a = forest.area(e);
         area += a;
         spread += a * difference * difference;
-        variance += a * state.noise.variance(forest, irradiance, e, state.history[first]);
+        variance += a * light.noise.variance(forest, irradiance, e, light.history[first]);
     }
     SiblingVariation variation{spread / area, variance / area};
     // With few rays, shrinkage leaves more noise than signal. The parent's siblings bound the signal.
     const std::uint32_t parent = forest.parent(first);
-    if (uses_shrinkage(state) && state.history[first] < under_sampled * state.history[parent])
+    if (uses_shrinkage(light) && light.history[first] < under_sampled * light.history[parent])
         variation.assumed = parent < forest.patch_count()
                                 ? std::pow(assumed_variation * mean, 2.0f)
                                 : highest_expected_decay *
-                                      std::max(0.0f, sibling_variation(state, first_sibling(forest, parent)).signal());
+                                      std::max(0.0f, sibling_variation(light, first_sibling(forest, parent)).signal());
     return variation;
 }
 
-AddedError added_error(const SolverState& state, std::uint32_t first, const SiblingVariation& variation) {
+AddedError added_error(const LightState& light, std::uint32_t first, const SiblingVariation& variation) {
     if (!variation.is_known()) return {};  // the siblings equal their parent
-    if (!uses_shrinkage(state)) return {variation.noise, 0};
+    if (!uses_shrinkage(light)) return {variation.noise, 0};
     const float kept = variation.shrinkage(), noise = kept * kept * variation.noise;
     // Largest variance of four non-negative numbers; bounds rays with a large weight.
-    const float mean = luminance(state.solution.irradiance[state.forest->parent(first)]), most = 3 * mean * mean;
+    const float mean = luminance(light.solution.irradiance[light.forest->parent(first)]), most = 3 * mean * mean;
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }
 
 /// Applies a Wiener filter (docs/method/method.md, Shrinkage).
-Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first, const SiblingVariation& variation) {
-    const ElementForest& forest = *state.forest;
-    Shrinkage s{{1, 1, 1, 1}, state.noise.shares(forest, state.solution.irradiance, first, state.history[first])};
-    if (!uses_shrinkage(state) || !variation.is_known()) return s;
+Shrinkage shrinkage_of(const LightState& light, std::uint32_t first, const SiblingVariation& variation) {
+    const ElementForest& forest = *light.forest;
+    Shrinkage s{{1, 1, 1, 1}, light.noise.shares(forest, light.solution.irradiance, first, light.history[first])};
+    if (!uses_shrinkage(light) || !variation.is_known()) return s;
     const float kept = variation.shrinkage();
     float sum = 0, area = 0;
     for (std::uint32_t k = 0; k < 4; ++k) {
@@ -81,9 +81,9 @@ Shrinkage shrinkage_of(const SolverState& state, std::uint32_t first, const Sibl
     return s;
 }
 
-float signal_among_siblings(const SolverState& state, std::uint32_t e) {
-    if (e < state.forest->patch_count()) return 0;
-    const SiblingVariation variation = sibling_variation(state, first_sibling(*state.forest, e));
+float signal_among_siblings(const LightState& light, std::uint32_t e) {
+    if (e < light.forest->patch_count()) return 0;
+    const SiblingVariation variation = sibling_variation(light, first_sibling(*light.forest, e));
     return variation.is_known() ? variation.signal() : 0;
 }
 

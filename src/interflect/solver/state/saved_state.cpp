@@ -86,26 +86,26 @@ void require(bool holds, const char* what) {
 
 void SolverState::archive(StateArchive& archive) {
     std::vector<ReportNumbers> reports;
-    for (const IterationReport& r : solution.iterations) reports.push_back(numbers_of(r));
+    for (const IterationReport& r : light.solution.iterations) reports.push_back(numbers_of(r));
     reports = archive.by_value(reports_name, std::move(reports));
-    const std::vector<std::uint32_t> parents = archive.by_value("subdivided", forest->subdivided());
-    archive.amounts("seconds", earlier_seconds);
-    archive("irradiance", solution.irradiance);
-    archive_groups(archive, "groups", solution.groups);
-    archive_groups(archive, "direct", solution.direct);
-    archive.amounts("indirect_importance", solution.indirect_importance);
-    archive("non_finite", solution.non_finite);
-    archive.amounts("history", history);
-    view.archive(archive);
-    noise.archive(archive);
-    schedule.archive(archive);
-    archive("risk", risk_check);
-    StateArchive::require_range(risk_check.is_finite(), "risk");
-    payloads.archive(archive);
-    archive("targets", targets);
-    if (archive.reads() && !targets.empty()) {
+    const std::vector<std::uint32_t> parents = archive.by_value("subdivided", light.forest->subdivided());
+    archive.amounts("seconds", work.earlier_seconds);
+    archive("irradiance", light.solution.irradiance);
+    archive_groups(archive, "groups", light.solution.groups);
+    archive_groups(archive, "direct", light.solution.direct);
+    archive.amounts("indirect_importance", light.solution.indirect_importance);
+    archive("non_finite", light.solution.non_finite);
+    archive.amounts("history", light.history);
+    sampling.view.archive(archive);
+    light.noise.archive(archive);
+    rays.schedule.archive(archive);
+    archive("risk", light.risk_check);
+    StateArchive::require_range(light.risk_check.is_finite(), "risk");
+    sampling.payloads.archive(archive);
+    archive("targets", inputs.targets);
+    if (archive.reads() && !inputs.targets.empty()) {
         // Halves of the scene's box may exceed it by rounding.
-        Imath::Box3f box = emission.scene_box();
+        Imath::Box3f box = inputs.emission.scene_box();
         const V3f rounding(1e-5f * box.size().length());
         box.min -= rounding;
         box.max += rounding;
@@ -113,51 +113,54 @@ void SolverState::archive(StateArchive& archive) {
             return is_finite(target.min) && is_finite(target.max) && !target.isEmpty() && box.intersects(target.min) &&
                    box.intersects(target.max);
         };
-        require(emission.part_count() > 0 && targets.size() <= max_targets &&
-                    std::all_of(targets.begin(), targets.end(), is_inside),
+        require(inputs.emission.part_count() > 0 && inputs.targets.size() <= max_targets &&
+                    std::all_of(inputs.targets.begin(), inputs.targets.end(), is_inside),
                 "expected targets within the scene");
-        emission = Emission(*lit, targets);
+        inputs.emission = Emission(*inputs.lit, inputs.targets);
     }
-    archive("points/used", streams.used);
-    archive("points/used_by_parts", streams.used_by_parts);
-    archive("part_importance", part_importance);
-    for (const PartImportance& part : part_importance)
+    archive("points/used", sampling.streams.used);
+    archive("points/used_by_parts", sampling.streams.used_by_parts);
+    archive("part_importance", sampling.part_importance);
+    for (const PartImportance& part : sampling.part_importance)
         StateArchive::require_range(
             part.found >= 0 && std::isfinite(part.found) && part.rays >= 0 && std::isfinite(part.rays),
             "part_importance");
-    archive("points/allocations", streams.allocations);
-    archive("power_rays", power_rays);
-    archive("importance_rays", importance_rays);
-    archive("escaped_rays", escaped_rays);
-    archive("rays_of_other_views", rays_of_other_views);
-    archive("rays_of_first_importance", rays_of_first_importance);
-    archive("escaped_power", escaped_power);
-    archive.amounts("escaped_power_rays", escaped_power_rays);
+    archive("points/allocations", sampling.streams.allocations);
+    archive("power_rays", rays.power);
+    archive("importance_rays", rays.importance);
+    archive("escaped_rays", rays.escaped);
+    archive("rays_of_other_views", rays.of_other_views);
+    archive("rays_of_first_importance", rays.of_first_importance);
+    archive("escaped_power", light.escaped_power);
+    archive.amounts("escaped_power_rays", light.escaped_power_rays);
     if (!archive.reads()) return;
-    solution.iterations.clear();
-    for (const ReportNumbers& numbers : reports) solution.iterations.push_back(report_of(numbers));
-    forest->rebuild(parents);
-    const std::size_t elements = forest->size();
-    require(solution.irradiance.size() == elements, "expected the irradiance of every element");
-    require(solution.groups.size() == groups.size() &&
-                (solution.direct.empty() || solution.direct.size() == std::max<std::size_t>(1, groups.size())),
+    light.solution.iterations.clear();
+    for (const ReportNumbers& numbers : reports) light.solution.iterations.push_back(report_of(numbers));
+    light.forest->rebuild(parents);
+    const std::size_t elements = light.forest->size();
+    require(light.solution.irradiance.size() == elements, "expected the irradiance of every element");
+    require(light.solution.groups.size() == inputs.groups.size() &&
+                (light.solution.direct.empty() ||
+                 light.solution.direct.size() == std::max<std::size_t>(1, inputs.groups.size())),
             "expected the irradiance by every light group");
-    for (const GroupLight* light : {&solution.groups, &solution.direct})
-        for (const std::vector<Rgb>& of_group : *light)
+    for (const GroupLight* of_groups : {&light.solution.groups, &light.solution.direct})
+        for (const std::vector<Rgb>& of_group : *of_groups)
             require(of_group.size() == elements, "expected the irradiance of every element by every light group");
-    require(!options.method.is_stochastic || (history.size() == elements && noise.elements() == elements),
+    require(!light.options().method.is_stochastic ||
+                (light.history.size() == elements && light.noise.elements() == elements),
             "expected the noise of every element");
-    require(rays_of_other_views <= schedule.averaged_rays() || options.experimental.warm_up > 0,
+    require(rays.of_other_views <= rays.schedule.averaged_rays() || light.options().experimental.warm_up > 0,
             "expected a part of the averaged rays for other views");
-    require(streams.used.size() <= elements, "expected points of elements that there are");
-    require(streams.used_by_parts.size() <= emission.part_count() && part_importance.size() == emission.part_count(),
+    require(sampling.streams.used.size() <= elements, "expected points of elements that there are");
+    require(sampling.streams.used_by_parts.size() <= inputs.emission.part_count() &&
+                sampling.part_importance.size() == inputs.emission.part_count(),
             "expected the importance of every part of the luminaires");
-    require(solution.indirect_importance.size() == (view.empty() ? 0 : elements),
+    require(light.solution.indirect_importance.size() == (sampling.view.empty() ? 0 : elements),
             "expected the importance of every element");
-    require(view.fits(*forest), "expected points of views on patches of the scene");
-    if (view.empty()) return;
-    solution.view_importance = view.per_area(*forest, options.experimental.importance_at_patches);
-    require(std::all_of(solution.view_importance.begin(), solution.view_importance.end(),
+    require(sampling.view.fits(*light.forest), "expected points of views on patches of the scene");
+    if (sampling.view.empty()) return;
+    set_view_importance(light, sampling);
+    require(std::all_of(light.solution.view_importance.begin(), light.solution.view_importance.end(),
                         [](float v) { return std::isfinite(v); }),
             "expected finite importance");
 }

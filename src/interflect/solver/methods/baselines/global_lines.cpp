@@ -187,44 +187,47 @@ class LineSums {
 /// Passes with global lines (Sbert 1993, 1997; docs/method/method.md).
 class GlobalLines final : public Passes {
   public:
-    explicit GlobalLines(const SolverState& state) : domain_(state.scene), panes_(state.scene, state.ray_caster) {
-        for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i)
-            area_ += state.forest->area(i) * state.ray_caster.uncovered_share(i);
+    explicit GlobalLines(const SolverState& state)
+        : domain_(state.inputs.scene), panes_(state.inputs.scene, state.inputs.ray_caster) {
+        for (std::uint32_t i = 0; i < state.light.forest->patch_count(); ++i)
+            area_ += state.light.forest->area(i) * state.inputs.ray_caster.uncovered_share(i);
     }
 
   protected:
     Received trace_without_walks(SolverState& state, TransportStep step) override {
         const double rays_per_line = 1 + 2 * area_ / (4 * domain_.cross_section());
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
-        const ElementForest& forest = *state.forest;
+        const ElementForest& forest = *state.light.forest;
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
         // Products of dependent bounces would be biased.
-        const std::uint64_t key = mix(mix(state.options.seed, line_purpose), state.streams.allocations);
+        const std::uint64_t key =
+            mix(mix(state.light.options().seed, line_purpose), state.sampling.streams.allocations);
         PerThread<LineBundle> bundles;
         std::atomic<bool> is_cut_short{false};
         const auto trace_some = [&](std::size_t begin, std::size_t end) {
             LineBundle& bundle = bundles.local();
             bundle.lines.resize(end - begin);
-            make_lines(domain_, state.options.experimental.points, key, begin, bundle);
+            make_lines(domain_, state.light.options().experimental.points, key, begin, bundle);
             // A line crosses each flat patch at most once.
             for (std::uint32_t i = 0; i < forest.patch_count() && !bundle.lines.empty(); ++i) {
-                if (is_cut_short || state.stop.within_process().is_due()) {
+                if (is_cut_short || state.work.stop.within_process().is_due()) {
                     is_cut_short = true;
                     return;
                 }
-                find_segments(forest, state.ray_caster, panes_, bundle);
+                find_segments(forest, state.inputs.ray_caster, panes_, bundle);
                 for (const LineSegment& segment : bundle.segments) sums.add(segment);
                 for (const Panes::HitBehind& behind : bundle.behind) sums.add(bundle.segments[behind.ray], behind);
             }
         };
-        parallel_for_ranges(static_cast<std::size_t>(lines), lines_per_task, state.stop.within_process(), trace_some);
+        parallel_for_ranges(static_cast<std::size_t>(lines), lines_per_task, state.work.stop.within_process(),
+                            trace_some);
         if (is_cut_short) throw Interrupted();
-        ++state.streams.allocations;
+        ++state.sampling.streams.allocations;
         Received received = sums.received(forest);
-        state.escaped_rays += received.escaped_rays;
-        state.streams.used.resize(forest.size(), 0);
+        state.rays.escaped += received.escaped_rays;
+        state.sampling.streams.used.resize(forest.size(), 0);
         for (std::uint32_t i = 0; i < forest.size(); ++i)
-            state.streams.used[i] += static_cast<std::uint64_t>(sums.started()[i]);
+            state.sampling.streams.used[i] += static_cast<std::uint64_t>(sums.started()[i]);
         return received;
     }
 

@@ -132,10 +132,10 @@ class KeptRays : public IterationMethod {
     Estimate received(SolverState& state, Range rays, const Quotas& quotas, std::uint32_t first = 0) const;
     /// Returns the numbers of rays of the sources, which differ from quotas.
     std::vector<std::int64_t> count_rays(Range rays, std::size_t sources) const;
-    /// Adds payloads to state.contributions; returns the escaped power.
+    /// Adds payloads to state.sampling.contributions; returns the escaped power.
     RgbD scatter(SolverState& state, Range rays, const std::vector<RgbD>& payload, const PayloadUnits& units,
                  std::uint32_t first) const;
-    static Estimate collect(SolverState& state, const PayloadUnits& units);
+    static Estimate collect(const LightState& light, SamplingState& sampling, const PayloadUnits& units);
 
     Passes passes_;
     RaySet set_;
@@ -173,42 +173,41 @@ std::vector<double> raised(std::vector<double> quotas, const std::vector<float>&
 
 void KeptRays::prepare(SolverState& state) {
     passes_.make_first_estimate(state);
-    elements_ = state.forest->size();
-    targets_ = state.targets;
-    quotas_.assign(elements_ + state.emission.part_count(), 0.0);
+    elements_ = state.light.forest->size();
+    targets_ = state.inputs.targets;
+    quotas_.assign(elements_ + state.inputs.emission.part_count(), 0.0);
 }
 
 void KeptRays::update_importance(SolverState& state, TracedIteration& iteration) {
-    if (importance_use(state.solution) != ImportanceUse::full) return;
-    const std::int64_t before = state.importance_rays;
+    if (importance_use(state.light.solution) != ImportanceUse::full) return;
+    const std::int64_t before = state.rays.importance;
     if (needs_importance_) {
-        transport_importance(state, state.schedule.start_rays());
+        transport_importance(state, state.rays.schedule.start_rays());
         aim_outdoor_light(state);
-        iteration.rays_for_new_views = state.importance_rays - before;
+        iteration.rays_for_new_views = state.rays.importance - before;
     }
     iteration.importance_rays =
-        std::llround(state.options.experimental.alpha * static_cast<double>(iteration.plan.rays));
+        std::llround(state.light.options().experimental.alpha * static_cast<double>(iteration.plan.rays));
     if (iteration.importance_rays == 0) return;
-    const RayPlan rays =
-        plan_importance(state.materials, state.solution, importance_of(state.solution), iteration.importance_rays);
-    detail::merge(state, state.solution.indirect_importance, run_step(state, TransportStep(rays)).importance,
-                  iteration);
-    state.importance_rays += iteration.importance_rays;
+    const RayPlan rays = plan_importance(state.inputs.materials, state.light.solution,
+                                         importance_of(state.light.solution), iteration.importance_rays);
+    merge_importance(state.light, state.rays, run_step(state, TransportStep(rays)).importance, iteration);
+    state.rays.importance += iteration.importance_rays;
 }
 
 Estimate KeptRays::trace(SolverState& state, TracedIteration& iteration) {
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *state.light.forest;
     const std::int64_t rays = iteration.plan.rays - iteration.importance_rays;
     if (rays == 0) return {};
-    if (state.targets != targets_) drop_rays_of_parts(state);
+    if (state.inputs.targets != targets_) drop_rays_of_parts(state);
     follow_forest(forest);
-    reflected_ = state.solution.irradiance;
-    const Radiosity light(state.materials, reflected_);
-    const ImportanceWeights weights =
-        importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance);
-    PowerPlan power =
-        plan_power(state.materials, state.emission, state.solution, light, weights, /*combined=*/false, rays);
-    state.solution.non_finite += power.non_finite_leaves;
+    reflected_ = state.light.solution.irradiance;
+    const Radiosity light(state.inputs.materials, reflected_);
+    const ImportanceWeights weights = importance_weights(state.light.solution, state.sampling.neighbourhoods,
+                                                         state.inputs.emission, state.sampling.part_importance);
+    PowerPlan power = plan_power(state.inputs.materials, state.inputs.emission, state.light.solution, light, weights,
+                                 /*combined=*/false, rays);
+    state.light.solution.non_finite += power.non_finite_leaves;
     if (!(power.power > 0)) return {};
     std::vector<float>& q = power.plan.q;
     // Systematic sampling makes the number of rays of a source equal its quota in the mean, also below 1. To count the
@@ -216,7 +215,7 @@ Estimate KeptRays::trace(SolverState& state, TracedIteration& iteration) {
     next_quotas_ = raised(quotas_, q, static_cast<double>(rays));
     for (std::size_t s = 0; s < q.size(); ++s) q[s] = static_cast<float>(next_quotas_[s] - quotas_[s]);
     shoot(state, power.plan);
-    state.power_rays += rays;
+    state.rays.power += rays;
     return fresh_estimate(state, Quotas(q.begin(), q.end()));
 }
 
@@ -244,8 +243,8 @@ void KeptRays::drop_rays_of_parts(const SolverState& state) {
     merged_ = kept;
     set_.resize(kept);
     quotas_.resize(elements_);
-    quotas_.resize(elements_ + state.emission.part_count(), 0.0);
-    targets_ = state.targets;
+    quotas_.resize(elements_ + state.inputs.emission.part_count(), 0.0);
+    targets_ = state.inputs.targets;
 }
 
 void KeptRays::follow_forest(const ElementForest& forest) {
@@ -267,9 +266,9 @@ void KeptRays::follow_forest(const ElementForest& forest) {
 }
 
 void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
-    const ElementForest& forest = *state.forest;
-    const RayMaker maker(forest, state.ray_caster, plan, state.streams);
-    const Panes panes(state.scene, state.ray_caster);
+    const ElementForest& forest = *state.light.forest;
+    const RayMaker maker(forest, state.inputs.ray_caster, plan, state.sampling.streams);
+    const Panes panes(state.inputs.scene, state.inputs.ray_caster);
     const auto count = static_cast<std::size_t>(plan.rays);
     set_.resize(merged_ + count);
     struct Behind {
@@ -285,30 +284,31 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
         ray.end = Place(p);
         return ray;
     };
-    parallel_for_ranges(count, rays_per_task, state.stop.within_process(), [&](std::size_t begin, std::size_t end) {
-        thread_local RayBatch batch;
-        thread_local std::vector<Hit> hits;
-        thread_local std::vector<Panes::HitBehind> hits_behind;
-        maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
-        hits.resize(batch.rays.size());
-        state.ray_caster.trace(batch.rays, hits);
-        panes.trace(batch.rays, hits, hits_behind);
-        auto next = hits_behind.begin();
-        for (const SourceRays& of_source : batch.sources) {
-            const bool is_part = of_source.source >= forest.size();
-            const std::uint8_t kind = is_part ? RaySet::from_part : RaySet::from_leaf;
-            const std::uint32_t source = is_part ? of_source.source - forest.size() : of_source.source;
-            for (std::uint32_t i = of_source.begin; i < of_source.end; ++i) {
-                const KeptRay ray{source, none, is_part ? Place() : Place(batch.origins[i]), {}};
-                set_.rays[merged_ + begin + i] = kept(hits[i], ray, batch.rays[i]);
-                set_.kind[merged_ + begin + i] = kind;
-                for (; next != hits_behind.end() && next->ray == i; ++next)
-                    behind[begin / rays_per_task].push_back({kept(next->hit, ray, batch.rays[i]),
-                                                             static_cast<std::uint8_t>(kind | RaySet::behind_pane),
-                                                             next->transmittance});
+    parallel_for_ranges(
+        count, rays_per_task, state.work.stop.within_process(), [&](std::size_t begin, std::size_t end) {
+            thread_local RayBatch batch;
+            thread_local std::vector<Hit> hits;
+            thread_local std::vector<Panes::HitBehind> hits_behind;
+            maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
+            hits.resize(batch.rays.size());
+            state.inputs.ray_caster.trace(batch.rays, hits);
+            panes.trace(batch.rays, hits, hits_behind);
+            auto next = hits_behind.begin();
+            for (const SourceRays& of_source : batch.sources) {
+                const bool is_part = of_source.source >= forest.size();
+                const std::uint8_t kind = is_part ? RaySet::from_part : RaySet::from_leaf;
+                const std::uint32_t source = is_part ? of_source.source - forest.size() : of_source.source;
+                for (std::uint32_t i = of_source.begin; i < of_source.end; ++i) {
+                    const KeptRay ray{source, none, is_part ? Place() : Place(batch.origins[i]), {}};
+                    set_.rays[merged_ + begin + i] = kept(hits[i], ray, batch.rays[i]);
+                    set_.kind[merged_ + begin + i] = kind;
+                    for (; next != hits_behind.end() && next->ray == i; ++next)
+                        behind[begin / rays_per_task].push_back({kept(next->hit, ray, batch.rays[i]),
+                                                                 static_cast<std::uint8_t>(kind | RaySet::behind_pane),
+                                                                 next->transmittance});
+                }
             }
-        }
-    });
+        });
     if (!panes.empty()) set_.transmittance.resize(set_.size(), Rgb(1));
     for (const std::vector<Behind>& some : behind)
         for (const Behind& b : some) {
@@ -316,14 +316,14 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
             set_.kind.push_back(b.kind);
             set_.transmittance.push_back(b.transmittance);
         }
-    advance(state.streams, maker.allocation(), forest.size(), plan.part_count());
-    state.escaped_rays += std::count_if(set_.rays.begin() + static_cast<std::ptrdiff_t>(merged_), set_.rays.end(),
+    advance(state.sampling.streams, maker.allocation(), forest.size(), plan.part_count());
+    state.rays.escaped += std::count_if(set_.rays.begin() + static_cast<std::ptrdiff_t>(merged_), set_.rays.end(),
                                         [](const KeptRay& ray) { return ray.receiver == none; });
 }
 
 Estimate KeptRays::received(SolverState& state, Range rays, const Quotas& quotas, std::uint32_t first) const {
-    const ElementForest& forest = *state.forest;
-    const Radiosity light(state.materials, reflected_);
+    const ElementForest& forest = *state.light.forest;
+    const Radiosity light(state.inputs.materials, reflected_);
     const std::vector<std::int64_t> count = count_rays(rays, quotas.size());
     std::vector<RgbD> payload(quotas.size(), RgbD(0));  // by source
     PayloadTotals totals;
@@ -331,15 +331,15 @@ Estimate KeptRays::received(SolverState& state, Range rays, const Quotas& quotas
         const bool is_leaf = s < forest.size() && forest.is_leaf(s);
         if (!(quotas[s] > 0) || (s < forest.size() && !is_leaf)) continue;
         const RgbD power = is_leaf ? RgbD(light.of(forest, s)) * static_cast<double>(forest.area(s))
-                                   : state.emission.power(s - forest.size());
+                                   : state.inputs.emission.power(s - forest.size());
         payload[s] = power / quotas[s];
         totals.power += static_cast<double>(count[s]) * payload[s];
         totals.square += static_cast<double>(count[s]) * std::pow(luminance(payload[s]), 2);
     }
     const PayloadUnits units(totals, rays.end - rays.begin);
     const RgbD escaped = scatter(state, rays, payload, units, first);
-    Estimate estimate = collect(state, units);
-    estimate.escaped_power = escaped - state.emission.repeated_power();
+    Estimate estimate = collect(state.light, state.sampling, units);
+    estimate.escaped_power = escaped - state.inputs.emission.repeated_power();
     return estimate;
 }
 
@@ -357,10 +357,10 @@ std::vector<std::int64_t> KeptRays::count_rays(Range rays, std::size_t sources) 
 
 RgbD KeptRays::scatter(SolverState& state, Range rays, const std::vector<RgbD>& payload, const PayloadUnits& units,
                        std::uint32_t first) const {
-    const std::uint32_t elements = state.forest->size();
+    const std::uint32_t elements = state.light.forest->size();
     std::vector<Contribution> contribution(payload.size());
     for (std::size_t s = 0; s < payload.size(); ++s) contribution[s] = units.contribution_of(payload[s]);
-    ContributionSums& sums = state.contributions;
+    ContributionSums& sums = state.sampling.contributions;
     sums.begin_step(elements);
     using ScatterBuffer = ContributionSums::ScatterBuffer;
     PerThread<ScatterBuffer> buffers([&] { return ScatterBuffer(sums); });
@@ -387,14 +387,14 @@ RgbD KeptRays::scatter(SolverState& state, Range rays, const std::vector<RgbD>& 
     return units.power(escaped);
 }
 
-Estimate KeptRays::collect(SolverState& state, const PayloadUnits& units) {
-    const ElementForest& forest = *state.forest;
+Estimate KeptRays::collect(const LightState& light, SamplingState& sampling, const PayloadUnits& units) {
+    const ElementForest& forest = *light.forest;
     Estimate estimate;
     estimate.irradiance.resize(forest.size());
     estimate.variance.resize(forest.size());
     parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
-            const Contribution sum = state.contributions.take(e);
+            const Contribution sum = sampling.contributions.take(e);
             const float area = forest.area(e);
             estimate.irradiance[e] = Rgb(units.power(sum)) / area;
             estimate.variance[e] = static_cast<float>(units.square(sum) / area / area);
@@ -406,7 +406,7 @@ Estimate KeptRays::collect(SolverState& state, const PayloadUnits& units) {
 }
 
 void KeptRays::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
-    state.schedule.count_other_rays(iteration.rays_for_new_views);
+    state.rays.schedule.count_other_rays(iteration.rays_for_new_views);
     needs_importance_ = false;
     if (estimate.irradiance.empty()) return;
     estimate_noise(state, estimate, iteration.weight);
@@ -418,30 +418,31 @@ void KeptRays::merge(SolverState& state, const Estimate& estimate, const TracedI
 
 void KeptRays::receive_again(SolverState& state, std::uint32_t first) {
     Estimate total = received(state, {0, set_.size()}, quotas_, first);
-    state.history.assign(state.forest->size(), static_cast<float>(all_rays_));
-    state.noise.set_variance(total.variance, state.history, first);
-    std::copy(total.irradiance.begin() + first, total.irradiance.end(), state.solution.irradiance.begin() + first);
-    pull(*state.forest, state.solution.irradiance);
-    state.escaped_power = total.escaped_power;
+    state.light.history.assign(state.light.forest->size(), static_cast<float>(all_rays_));
+    state.light.noise.set_variance(total.variance, state.light.history, first);
+    std::copy(total.irradiance.begin() + first, total.irradiance.end(),
+              state.light.solution.irradiance.begin() + first);
+    pull(*state.light.forest, state.light.solution.irradiance);
+    state.light.escaped_power = total.escaped_power;
 }
 
 void KeptRays::refine(SolverState& state) {
     constexpr int rounds = 2;
-    if (!refines_by_variance(state.options) || !state.noise.is_known()) return;
+    if (!refines_by_variance(state.light.options()) || !state.light.noise.is_known()) return;
     // Rays give the light of new elements, too. The others keep theirs, because parts of a source have its payload.
     for (int i = 0; i < rounds; ++i) {
         const std::uint32_t first = elements_;
         refine_by_variance(state);
-        if (state.forest->size() == first) return;
-        follow_forest(*state.forest);
+        if (state.light.forest->size() == first) return;
+        follow_forest(*state.light.forest);
         receive_again(state, first);
     }
 }
 
 void KeptRays::change_views(SolverState& state) {
     IterationMethod::change_views(state);
-    const bool has_begun = !state.solution.iterations.empty();  // otherwise, prepare() transports importance
-    needs_importance_ = has_begun && importance_use(state.solution) == ImportanceUse::full;
+    const bool has_begun = !state.light.solution.iterations.empty();  // otherwise, prepare() transports importance
+    needs_importance_ = has_begun && importance_use(state.light.solution) == ImportanceUse::full;
 }
 
 void KeptRays::archive(StateArchive& archive) {
@@ -458,11 +459,11 @@ void KeptRays::archive(StateArchive& archive) {
 }
 
 bool KeptRays::fits(const SolverState& state) const {
-    const std::size_t parts = state.emission.part_count();
-    if (!passes_.fits(state) || elements_ > state.forest->size() || merged_ != set_.size()) return false;
+    const std::size_t parts = state.inputs.emission.part_count();
+    if (!passes_.fits(state) || elements_ > state.light.forest->size() || merged_ != set_.size()) return false;
     if (set_.kind.size() != set_.size()) return false;
     if (!set_.transmittance.empty() && set_.transmittance.size() != set_.size()) return false;
-    if (elements_ > 0 && targets_ == state.targets && quotas_.size() != elements_ + parts) return false;
+    if (elements_ > 0 && targets_ == state.inputs.targets && quotas_.size() != elements_ + parts) return false;
     for (std::size_t i = 0; i < set_.size(); ++i) {
         const KeptRay& ray = set_.rays[i];
         if (set_.source(i, elements_) >= quotas_.size() || (!set_.is_from_part(i) && ray.source >= elements_))

@@ -81,14 +81,14 @@ struct PowerSeries {
 
 /// @return  Whether another step follows.
 bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *state.light.forest;
     double unshot = 0;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i)
-        unshot += static_cast<double>(state.materials.mean_reflectance(i) * series.unshot[i]) * forest.area(i);
+        unshot += static_cast<double>(state.inputs.materials.mean_reflectance(i) * series.unshot[i]) * forest.area(i);
     if (!(unshot > 0)) return false;
     if (series.budget.shot == 0) series.first = unshot;
     unshot /= series.first;
-    TransportStep step(plan_importance(state.materials, state.solution, Importance(series.unshot), 0));
+    TransportStep step(plan_importance(state.inputs.materials, state.light.solution, Importance(series.unshot), 0));
     std::vector<float> chosen = step.q;
     choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
@@ -101,7 +101,7 @@ bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
     step.rays = is_last ? series.budget.left : series.budget.share(weight, unshot);
     const std::int64_t rays = step.rays;
     const Received received = run_step(state, std::move(step));
-    state.importance_rays += rays;
+    state.rays.importance += rays;
     series.budget.left -= rays;
     series.budget.shot += weight;
     replace_shot(series.unshot, chosen, received.importance);
@@ -110,22 +110,22 @@ bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
 }
 
 bool shoot_some_power(SolverState& state, PowerSeries& series) {
-    const Radiosity light(state.materials, series.unshot, series.emits);
-    auto [plan, power, weighted_power, lost] =
-        plan_power(state.materials, state.emission, state.solution, light, series.weights, false, 0);
+    const Radiosity light(state.inputs.materials, series.unshot, series.emits);
+    auto [plan, power, weighted_power, lost] = plan_power(state.inputs.materials, state.inputs.emission,
+                                                          state.light.solution, light, series.weights, false, 0);
     if (!(power > 0)) return false;
     TransportStep step(std::move(plan));
     if (series.emits) {
         series.first_power = power;
         series.first_weighted_power = weighted_power;
     }
-    const double beta = series.first_weighted_power > 0 ? state.options.experimental.beta : 1;
+    const double beta = series.first_weighted_power > 0 ? state.light.options().experimental.beta : 1;
     const double unshot =
         beta * ratio(power, series.first_power) + (1 - beta) * ratio(weighted_power, series.first_weighted_power);
     std::vector<float> chosen = step.q;
     if (series.emits)
-        for (std::uint32_t i = 0; i < state.forest->size(); ++i)
-            chosen[i] = channel_sum(state.materials.exitance(i)) > 0 ? chosen[i] : 0;
+        for (std::uint32_t i = 0; i < state.light.forest->size(); ++i)
+            chosen[i] = channel_sum(state.inputs.materials.exitance(i)) > 0 ? chosen[i] : 0;
     else
         choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
@@ -140,9 +140,9 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     step.completes_by_walks = is_last;
     step.rays = is_last ? series.budget.walks() : rays;
     const Received received = run_step(state, std::move(step));
-    state.power_rays += rays;
-    state.payloads += received.payloads;
-    state.solution.non_finite += lost;
+    state.rays.power += rays;
+    state.sampling.payloads += received.payloads;
+    state.light.solution.non_finite += lost;
     series.fresh.escaped_power += received.escaped_power;
     series.budget.left -= rays;
     series.budget.shot += weight;
@@ -160,9 +160,9 @@ class ProgressiveRefinement final : public IterationMethod {
   public:
     void prepare(SolverState& state) override {
         current_.importance_history = 0;
-        shoot_importance(state,
-                         std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
-        state.schedule.record_start(0, state.importance_rays);
+        shoot_importance(state, std::min(state.rays.schedule.start_rays(),
+                                         lacking_importance(state, state.light.options().limits.rays)));
+        state.rays.schedule.record_start(0, state.rays.importance);
     }
     void update_importance(SolverState& state, TracedIteration& iteration) override;
     Estimate trace(SolverState& state, TracedIteration& iteration) override;
@@ -183,46 +183,47 @@ class ProgressiveRefinement final : public IterationMethod {
 };
 
 std::int64_t ProgressiveRefinement::lacking_importance(const SolverState& state, std::int64_t planned) const {
-    if (importance_use(state.solution) != ImportanceUse::full) return 0;
-    const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));
+    if (importance_use(state.light.solution) != ImportanceUse::full) return 0;
+    const std::int64_t share = std::llround(state.light.options().experimental.alpha * static_cast<double>(planned));
     return std::max<std::int64_t>(0, share - current_.importance_history);
 }
 
 void ProgressiveRefinement::shoot_importance(SolverState& state, std::int64_t rays) {
     if (rays <= 0) return;
-    ImportanceSeries series{{rays, current_.importance_shots}, state.solution.view_importance, {}};
+    ImportanceSeries series{{rays, current_.importance_shots}, state.light.solution.view_importance, {}};
     series.fresh.assign(series.unshot.size(), 0.0f);
     while (shoot_some_importance(state, series)) {
     }
     current_.importance_shots = series.budget.measured();
     current_.importance_history += rays;
     const auto tau = static_cast<float>(static_cast<double>(rays) / static_cast<double>(current_.importance_history));
-    std::vector<float>& psi = state.solution.indirect_importance;
+    std::vector<float>& psi = state.light.solution.indirect_importance;
     for (std::size_t i = 0; i < psi.size(); ++i) psi[i] += tau * (series.fresh[i] - psi[i]);
 }
 
 void ProgressiveRefinement::update_importance(SolverState& state, TracedIteration& iteration) {
     before_ = current_;
     iteration.importance_rays =
-        std::min(iteration.plan.rays, lacking_importance(state, state.schedule.rays() + iteration.plan.rays));
-    const std::int64_t rays_before = state.importance_rays;
+        std::min(iteration.plan.rays, lacking_importance(state, state.rays.schedule.rays() + iteration.plan.rays));
+    const std::int64_t rays_before = state.rays.importance;
     shoot_importance(state, iteration.importance_rays);
-    iteration.rays = state.importance_rays - rays_before;
+    iteration.rays = state.rays.importance - rays_before;
 }
 
 Estimate ProgressiveRefinement::trace(SolverState& state, TracedIteration& iteration) {
-    const std::vector<Rgb> dark(state.forest->size(), Rgb(0));
+    const std::vector<Rgb> dark(state.light.forest->size(), Rgb(0));
     PowerSeries series{{iteration.plan.rays - iteration.importance_rays, current_.power_shots},
-                       importance_weights(state.solution, state.neighbourhoods, state.emission, state.part_importance),
+                       importance_weights(state.light.solution, state.sampling.neighbourhoods, state.inputs.emission,
+                                          state.sampling.part_importance),
                        dark,
                        {dark, std::vector<float>(dark.size(), 0.0f), {}}};
     if (series.budget.left > 0) {
-        const std::int64_t rays_before = state.power_rays;
-        state.payloads = {};
+        const std::int64_t rays_before = state.rays.power;
+        state.sampling.payloads = {};
         while (shoot_some_power(state, series)) {
         }
         current_.power_shots = series.budget.measured();
-        iteration.rays += state.power_rays - rays_before;
+        iteration.rays += state.rays.power - rays_before;
     }
     // Rays stay unused if no surface reflects importance or light.
     iteration.rays = std::max<std::int64_t>(1, iteration.rays);
@@ -234,9 +235,9 @@ void ProgressiveRefinement::merge(SolverState& state, const Estimate& estimate, 
     of_power.weight -= iteration.importance_rays;
     if (of_power.weight == 0) return;
     if (!iteration.plan.warms_up) estimate_noise(state, estimate, of_power.weight);
-    detail::merge(state, state.solution.irradiance, estimate.irradiance, of_power);
-    merge_escaped_power(state, estimate.escaped_power, of_power);
-    update_history(state, of_power);
+    detail::merge(state.light, state.light.solution.irradiance, estimate.irradiance, of_power);
+    merge_escaped_power(state.light, estimate.escaped_power, of_power);
+    update_history(state.light, of_power);
 }
 
 void ProgressiveRefinement::change_views(SolverState& state) {

@@ -14,14 +14,14 @@
 namespace interflect::detail {
 
 WellDistributedRays::WellDistributedRays(const SolverState& state)
-    : shot_(state.forest->size(), 0.0), received_(state.forest->size(), Rgb(0)) {}
+    : shot_(state.light.forest->size(), 0.0), received_(state.light.forest->size(), Rgb(0)) {}
 
 void WellDistributedRays::prepare(SolverState& state) {
-    if (!state.options.experimental.one_bounce) passes_.make_first_estimate(state);
-    shot_.assign(state.forest->size(), 0.0);
-    shot_by_parts_.assign(state.emission.part_count(), 0.0);
-    received_.assign(state.forest->size(), Rgb(0));
-    received_groups_.assign(state.groups.size(), received_);
+    if (!state.light.options().experimental.one_bounce) passes_.make_first_estimate(state);
+    shot_.assign(state.light.forest->size(), 0.0);
+    shot_by_parts_.assign(state.inputs.emission.part_count(), 0.0);
+    received_.assign(state.light.forest->size(), Rgb(0));
+    received_groups_.assign(state.inputs.groups.size(), received_);
 }
 
 void WellDistributedRays::archive(StateArchive& archive) {
@@ -63,30 +63,31 @@ void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::in
 }
 
 Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iteration) {
-    const ElementForest& forest = *state.forest;
-    const Radiosity light(state.materials, state.solution.irradiance);
-    PowerPlan power =
-        plan_power(state.materials, state.emission, state.solution, light, {}, false, iteration.plan.rays);
+    const ElementForest& forest = *state.light.forest;
+    const Radiosity light(state.inputs.materials, state.light.solution.irradiance);
+    PowerPlan power = plan_power(state.inputs.materials, state.inputs.emission, state.light.solution, light, {}, false,
+                                 iteration.plan.rays);
     TransportStep step(std::move(power.plan));
     step.equal_payloads = true;
-    step.groups = group_radiosity(state, state.solution.groups);
+    step.groups = group_radiosity(state.inputs, state.light, state.light.solution.groups);
     // Without importance, the weights are shares of all power.
-    const double all_power = channel_sum(radiated_power(state));
+    const double all_power = channel_sum(radiated_power(state.inputs, state.light));
     keep_lacking_rays(forest, total_ + iteration.plan.rays, step);
     const std::int64_t rays = iteration.weight = iteration.rays = step.rays;
-    if (state.options.method.refines)
-        step.oracle = make_oracle(state.solution, total_ + rays, state.floor.default_min_area());
+    if (state.light.options().method.refines)
+        step.oracle = make_oracle(state.light.solution, total_ + rays, state.inputs.floor.default_min_area());
 
-    std::vector<std::uint64_t> used_before = state.streams.used, used_by_parts_before = state.streams.used_by_parts;
+    std::vector<std::uint64_t> used_before = state.sampling.streams.used,
+                               used_by_parts_before = state.sampling.streams.used_by_parts;
     used_by_parts_before.resize(shot_by_parts_.size(), 0);
     used_before.resize(iteration.plan.old_elements, 0);
     const Received received = run_step(state, std::move(step));
     total_ += rays;
-    state.solution.non_finite += power.non_finite_leaves;
+    state.light.solution.non_finite += power.non_finite_leaves;
     for (std::uint32_t e = 0; e < iteration.plan.old_elements; ++e)
-        shot_[e] += static_cast<double>(state.streams.used[e] - used_before[e]);
+        shot_[e] += static_cast<double>(state.sampling.streams.used[e] - used_before[e]);
     for (std::size_t i = 0; i < shot_by_parts_.size(); ++i)
-        shot_by_parts_[i] += static_cast<double>(state.streams.used_by_parts[i] - used_by_parts_before[i]);
+        shot_by_parts_[i] += static_cast<double>(state.sampling.streams.used_by_parts[i] - used_by_parts_before[i]);
     shot_.resize(forest.size());
     for (std::uint32_t e = iteration.plan.old_elements; e < forest.size(); ++e)
         shot_[e] = shot_[forest.parent(e)] * forest.area(e) / forest.area(forest.parent(e));
@@ -113,12 +114,12 @@ void WellDistributedRays::merge(SolverState& state, const Estimate& estimate, co
     const double power_per_ray = estimate.shot_power / static_cast<double>(total_);
     estimate_noise(state, estimate, iteration.weight);
     for (std::size_t e = 0; e < received_.size(); ++e)
-        state.solution.irradiance[e] = static_cast<float>(power_per_ray) * received_[e];
-    state.solution.groups = received_groups_;
-    scale(state.solution.groups, static_cast<float>(power_per_ray));
-    state.history.assign(state.forest->size(), static_cast<float>(total_));
-    state.power_rays += iteration.weight;
-    state.escaped_power = escaped_ * power_per_ray;
+        state.light.solution.irradiance[e] = static_cast<float>(power_per_ray) * received_[e];
+    state.light.solution.groups = received_groups_;
+    scale(state.light.solution.groups, static_cast<float>(power_per_ray));
+    state.light.history.assign(state.light.forest->size(), static_cast<float>(total_));
+    state.rays.power += iteration.weight;
+    state.light.escaped_power = escaped_ * power_per_ray;
 }
 
 std::unique_ptr<IterationMethod> make_well_distributed_rays(SolverState& state) {

@@ -22,11 +22,11 @@ class WellDistributedRays : public IterationMethod {
     void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) override;
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override {
-        const std::size_t elements = state.forest->size(), parts = state.emission.part_count();
+        const std::size_t elements = state.light.forest->size(), parts = state.inputs.emission.part_count();
         const bool is_whole =
             shot_.size() == elements && received_.size() == elements && shot_by_parts_.size() == parts;
         const auto has_elements = [&](const auto& numbers) { return numbers.size() == elements; };
-        const bool has_groups = received_groups_.size() == state.groups.size() &&
+        const bool has_groups = received_groups_.size() == state.inputs.groups.size() &&
                                 std::all_of(received_groups_.begin(), received_groups_.end(), has_elements);
         return passes_.fits(state) && (has_groups || total_ == 0) && (is_whole || total_ == 0);
     }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t patches_per_task = 8;
 
-bool emits(const SolverState& state, std::uint32_t patch) { return channel_sum(state.materials.exitance(patch)) > 0; }
+bool emits(const RunInputs& inputs, std::uint32_t patch) { return channel_sum(inputs.materials.exitance(patch)) > 0; }
 
 /// Upper bound for surfaces inside two spheres [m^2].
 double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double area_b) {
@@ -25,8 +25,11 @@ double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double 
 /// Chooses the effort for pairs of patches.
 class PatchPairs {
   public:
-    PatchPairs(const SolverState& state, const ExchangeEstimator& estimator)
-        : state_(state), forest_(*state.forest), estimator_(estimator) {
+    PatchPairs(const RunInputs& inputs, const LightState& light, const ExchangeEstimator& estimator)
+        : inputs_(inputs),
+          forest_(*light.forest),
+          epsilon_(light.options().experimental.epsilon),
+          estimator_(estimator) {
         for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) {
             spheres_.push_back(sphere_around(forest_, i));
             surface_ += forest_.area(i);
@@ -41,13 +44,13 @@ class PatchPairs {
   private:
     /// A reflector of average brightness sends at most the threshold over this exchange.
     bool is_weak(std::uint32_t i, std::uint32_t j) const {
-        return !emits(state_, i) && !emits(state_, j) &&
-               largest_exchange(spheres_[i], spheres_[j], forest_.area(i), forest_.area(j)) <
-                   state_.options.experimental.epsilon * surface_;
+        return !emits(inputs_, i) && !emits(inputs_, j) &&
+               largest_exchange(spheres_[i], spheres_[j], forest_.area(i), forest_.area(j)) < epsilon_ * surface_;
     }
 
-    const SolverState& state_;
+    const RunInputs& inputs_;
     const ElementForest& forest_;
+    double epsilon_;
     const ExchangeEstimator& estimator_;
     std::vector<Sphere> spheres_;
     double surface_ = 0;  // [m^2]
@@ -81,21 +84,21 @@ struct PairDivision {
 
 }  // namespace
 
-std::vector<std::uint32_t> patches_to_cluster(const SolverState& state) {
+std::vector<std::uint32_t> patches_to_cluster(const RunInputs& inputs, const LightState& light) {
     std::vector<std::uint32_t> patches;
-    if (!state.options.experimental.clusters || state.forest->capacity() > first_cluster) return patches;
-    for (std::uint32_t p = 0; p < state.forest->patch_count(); ++p)
-        if (!emits(state, p)) patches.push_back(p);
+    if (!light.options().experimental.clusters || light.forest->capacity() > first_cluster) return patches;
+    for (std::uint32_t p = 0; p < light.forest->patch_count(); ++p)
+        if (!emits(inputs, p)) patches.push_back(p);
     return patches;
 }
 
 std::vector<LinkCandidate> pairs_of_patches(const SolverState& state, const ExchangeEstimator& estimator,
                                             std::size_t limit) {
-    const PatchPairs pairs(state, estimator);
-    const std::uint32_t patches = state.forest->patch_count();
+    const PatchPairs pairs(state.inputs, state.light, estimator);
+    const std::uint32_t patches = state.light.forest->patch_count();
     std::vector<std::vector<LinkCandidate>> of_patch(patches);
     std::atomic<std::size_t> count{0};
-    parallel_for_ranges(of_patch.size(), patches_per_task, state.stop.within_process(),
+    parallel_for_ranges(of_patch.size(), patches_per_task, state.work.stop.within_process(),
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t i = begin; i < end && count <= limit; ++i) {
                                 for (auto b = static_cast<std::uint32_t>(i + 1); b < patches; ++b)
@@ -110,16 +113,16 @@ std::vector<LinkCandidate> pairs_of_patches(const SolverState& state, const Exch
     return candidates;
 }
 
-std::vector<LinkCandidate> pairs_of_clusters(const SolverState& state, const ExchangeEstimator& estimator,
-                                             const PatchTree& tree, const ClusterExchange& exchange,
-                                             std::size_t limit) {
-    const PatchPairs of_patches(state, estimator);
+std::vector<LinkCandidate> pairs_of_clusters(const RunInputs& inputs, const LightState& light,
+                                             const ExchangeEstimator& estimator, const PatchTree& tree,
+                                             const ClusterExchange& exchange, std::size_t limit) {
+    const PatchPairs of_patches(inputs, light, estimator);
     PairDivision division{tree, exchange, of_patches, limit};
-    const std::uint32_t patches = state.forest->patch_count();
+    const std::uint32_t patches = light.forest->patch_count();
     for (std::uint32_t a = 0; a < patches && division.candidates.size() <= limit; ++a)
-        if (emits(state, a))
+        if (emits(inputs, a))
             for (std::uint32_t b = 0; b < patches; ++b)
-                if (b != a && (b > a || !emits(state, b))) division.add(a, b);
+                if (b != a && (b > a || !emits(inputs, b))) division.add(a, b);
     division.add_within(first_cluster);
     return std::move(division.candidates);
 }

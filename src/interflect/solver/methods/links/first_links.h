@@ -17,14 +17,15 @@ struct LinkCandidate {
 
 /// Returns the patches to group. Emitters are not grouped and keep one link to each patch, for accurate direct light.
 /// Empty without ExperimentalOptions::clusters.
-std::vector<std::uint32_t> patches_to_cluster(const SolverState& state);
+std::vector<std::uint32_t> patches_to_cluster(const RunInputs& inputs, const LightState& light);
 
 /// Returns all pairs of patches that face each other; stops beyond `limit`.
 std::vector<LinkCandidate> pairs_of_patches(const SolverState& state, const ExchangeEstimator& estimator,
                                             std::size_t limit);
 
 /// Returns pairs of clusters or patches that cover all pairs of patches that face each other; stops beyond `limit`.
-std::vector<LinkCandidate> pairs_of_clusters(const SolverState& state, const ExchangeEstimator& estimator,
-                                             const PatchTree& tree, const ClusterExchange& exchange, std::size_t limit);
+std::vector<LinkCandidate> pairs_of_clusters(const RunInputs& inputs, const LightState& light,
+                                             const ExchangeEstimator& estimator, const PatchTree& tree,
+                                             const ClusterExchange& exchange, std::size_t limit);
 
 }  // namespace interflect::detail

@@ -78,15 +78,15 @@ std::vector<T> gather(const ElementForest& forest, const ClusterExchange& cluste
 }
 
 /// Counts non-finite values and sets them to 0.
-std::vector<Rgb> present_radiosity(SolverState& state) {
-    const Radiosity light(state.materials, state.solution.irradiance);
+std::vector<Rgb> present_radiosity(const RunInputs& inputs, LightState& light) {
+    const Radiosity radiosity(inputs.materials, light.solution.irradiance);
     std::vector<Rgb> b;
-    b.reserve(state.forest->size());
-    for (std::uint32_t e = 0; e < state.forest->size(); ++e) {
-        b.push_back(light.of(*state.forest, e));
-        state.solution.non_finite += light.is_not_finite(*state.forest, e);
+    b.reserve(light.forest->size());
+    for (std::uint32_t e = 0; e < light.forest->size(); ++e) {
+        b.push_back(radiosity.of(*light.forest, e));
+        light.solution.non_finite += radiosity.is_not_finite(*light.forest, e);
     }
-    if (state.materials.has_textures()) pull(*state.forest, b);
+    if (inputs.materials.has_textures()) pull(*light.forest, b);
     return b;
 }
 
@@ -107,16 +107,16 @@ class RelativeChange {
 
 LinkedElements::LinkedElements(SolverState& state, std::size_t link_limit)
     : state_(state),
-      forest_(*state.forest),
-      estimator_(state.scene, *state.forest, state.ray_caster, state.options.seed),
-      tree_(*state.forest, patches_to_cluster(state)),
-      clusters_(*state.forest, tree_, estimator_, state.options.seed),
+      forest_(*state.light.forest),
+      estimator_(state.inputs.scene, *state.light.forest, state.inputs.ray_caster, state.light.options().seed),
+      tree_(*state.light.forest, patches_to_cluster(state.inputs, state.light)),
+      clusters_(*state.light.forest, tree_, estimator_, state.light.options().seed),
       link_limit_(link_limit),
-      refines_(state.options.method.refines) {}
+      refines_(state.light.options().method.refines) {}
 
 void LinkedElements::require_room_for(std::size_t more) const {
     if (links_.size() + more <= link_limit_) return;
-    throw InputError("'" + state_.scene.name + "' needs more than " + std::to_string(link_limit_) +
+    throw InputError("'" + state_.inputs.scene.name + "' needs more than " + std::to_string(link_limit_) +
                      " links between its " + std::to_string(forest_.patch_count()) + " patches and their elements, " +
                      std::to_string(sizeof(Link)) +
                      " bytes each: raise epsilon or min_area, lower rays, or use a method without links, such as "
@@ -131,10 +131,11 @@ void LinkedElements::prepare(SolverState&) {
 /// Links all pairs of patches if that leaves most of the rays for refinement, else clusters.
 void LinkedElements::find_first_links() {
     const double pairs = 0.5 * forest_.patch_count() * (forest_.patch_count() - 1.0);
-    const auto rays = static_cast<double>(std::min(state_.options.limits.rays, SolveOptions().limits.rays));
+    const auto rays = static_cast<double>(std::min(state_.light.options().limits.rays, SolveOptions().limits.rays));
     const bool links_patches = tree_.clusters().empty() || pairs * rays_of_quick_link <= share_of_pairs * rays;
-    candidates_ = links_patches ? pairs_of_patches(state_, estimator_, link_limit_)
-                                : pairs_of_clusters(state_, estimator_, tree_, clusters_, link_limit_);
+    candidates_ = links_patches
+                      ? pairs_of_patches(state_, estimator_, link_limit_)
+                      : pairs_of_clusters(state_.inputs, state_.light, estimator_, tree_, clusters_, link_limit_);
 }
 
 Exchange LinkedElements::estimate(const LinkCandidate& candidate, std::int64_t& rays) const {
@@ -147,7 +148,7 @@ void LinkedElements::link_candidates() {
     require_room_for(candidates_.size());
     std::vector<Link> made(candidates_.size());
     std::atomic<std::int64_t> rays{0};
-    parallel_for_ranges(made.size(), pairs_per_task, state_.stop.within_process(),
+    parallel_for_ranges(made.size(), pairs_per_task, state_.work.stop.within_process(),
                         [&](std::size_t begin, std::size_t end) {
                             std::int64_t used = 0;
                             for (std::size_t i = begin; i < end; ++i)
@@ -161,34 +162,35 @@ void LinkedElements::link_candidates() {
 }
 
 RgbD LinkedElements::gather_light() {
-    const std::vector<Rgb> b = present_radiosity(state_);
+    const std::vector<Rgb> b = present_radiosity(state_.inputs, state_.light);
     const std::vector<RgbD> received =
         gather(forest_, clusters_, links_, std::vector<RgbD>(b.begin(), b.end()), &Link::area);
     RelativeChange change;
     RgbD escaped = integral(forest_, b);
     for (std::uint32_t e = 0; e < forest_.size(); ++e) {
-        Rgb& irradiance = state_.solution.irradiance[e];
+        Rgb& irradiance = state_.light.solution.irradiance[e];
         change.add(forest_.area(e), channel_sum(RgbD(irradiance)), channel_sum(received[e]));
         irradiance = Rgb(received[e]);
         const RgbD power = received[e] * static_cast<double>(forest_.area(e));
         if (e < forest_.patch_count()) escaped -= power;
         // A pane and the surface behind both receive transmitted light.
-        if (forest_.is_leaf(e)) escaped += RgbD(state_.materials.surface(forest_.patch(e), e).transmittance) * power;
+        if (forest_.is_leaf(e))
+            escaped += RgbD(state_.inputs.materials.surface(forest_.patch(e), e).transmittance) * power;
     }
     light_change_ = change.value();
     return escaped;
 }
 
 void LinkedElements::gather_importance() {
-    const std::vector<float> psi = total_importance(state_.solution);
+    const std::vector<float> psi = total_importance(state_.light.solution);
     std::vector<double> reflected(psi.size());
     for (std::uint32_t e = 0; e < forest_.size(); ++e)
-        reflected[e] = static_cast<double>(state_.materials.mean_reflectance(forest_.patch(e), e)) * psi[e];
-    if (state_.materials.has_textures()) pull(forest_, reflected);
+        reflected[e] = static_cast<double>(state_.inputs.materials.mean_reflectance(forest_.patch(e), e)) * psi[e];
+    if (state_.inputs.materials.has_textures()) pull(forest_, reflected);
     const std::vector<double> received = gather(forest_, clusters_, links_, reflected, &Link::mean_area);
     RelativeChange change;
     for (std::uint32_t e = 0; e < forest_.size(); ++e) {
-        float& importance = state_.solution.indirect_importance[e];
+        float& importance = state_.light.solution.indirect_importance[e];
         change.add(forest_.area(e), importance, received[e]);
         importance = static_cast<float>(received[e]);
     }
@@ -252,8 +254,9 @@ double error_bound(const Exchange& exchange, float spread) {
 
 /// Each end has an error bound as receiver, with the other's radiosity, and as source, with the range of its own.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
-    const Solution& solution = state_.solution;
-    const EndValues<Rgb> b = mean_values(forest_, tree_, radiosity(state_.materials, forest_, solution.irradiance));
+    const Solution& solution = state_.light.solution;
+    const EndValues<Rgb> b =
+        mean_values(forest_, tree_, radiosity(state_.inputs.materials, forest_, solution.irradiance));
     const RadiosityRange range(forest_, tree_, b.of_element);
     const ImportanceUse use = importance_use(solution);
     const EndValues<float> psi =
@@ -261,7 +264,7 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
                     use == ImportanceUse::off ? std::vector<float>(forest_.size(), 1.0f) : total_importance(solution));
     std::vector<Rgb> of_element;
     for (std::uint32_t e = 0; e < forest_.size(); ++e)
-        of_element.push_back(state_.materials.surface(forest_.patch(e), e).reflectance);
+        of_element.push_back(state_.inputs.materials.surface(forest_.patch(e), e).reflectance);
     const EndValues<Rgb> rho = mean_values(forest_, tree_, std::move(of_element));
     const double threshold = solution.options.experimental.epsilon * reference_power(solution) *
                              (use == ImportanceUse::off ? 1 : reference_importance(solution, psi.of_element));
@@ -291,11 +294,11 @@ std::uint32_t LinkedElements::divided_end(const ElementPair& ends, double over_a
 }
 
 bool LinkedElements::may_divide(std::uint32_t end) const {
-    return is_cluster(end) || forest_.area(end) >= 4.0 * static_cast<double>(state_.floor.default_min_area());
+    return is_cluster(end) || forest_.area(end) >= 4.0 * static_cast<double>(state_.inputs.floor.default_min_area());
 }
 
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
-    const std::int64_t rays = std::max<std::int64_t>(0, state_.options.limits.rays - rays_);
+    const std::int64_t rays = std::max<std::int64_t>(0, state_.light.options().limits.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);
     if (candidates.size() <= affordable) return;
     const auto comes_first = [](const RefinementCandidate& x, const RefinementCandidate& y) {
@@ -306,12 +309,12 @@ void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidate
 }
 
 void LinkedElements::describe_new_elements(std::uint32_t first) {
-    Solution& solution = state_.solution;
+    Solution& solution = state_.light.solution;
     inherit(forest_, first, solution.irradiance);
-    state_.materials.grow(forest_);
-    if (state_.view.empty()) return;
+    state_.inputs.materials.grow(forest_);
+    if (state_.sampling.view.empty()) return;
     inherit(forest_, first, solution.indirect_importance);
-    solution.view_importance = state_.view.per_area(forest_, state_.options.experimental.importance_at_patches);
+    set_view_importance(state_.light, state_.sampling);
 }
 
 bool LinkedElements::refine_links() {
@@ -346,8 +349,8 @@ void LinkedElements::subdivide_links() {
 }
 
 bool LinkedElements::is_fulfilled(const SolverState& state) const {
-    return is_settled_ ||
-           (state.options.experimental.iterations > 0 && sweeps_ >= state.options.experimental.iterations);
+    return is_settled_ || (state.light.options().experimental.iterations > 0 &&
+                           sweeps_ >= state.light.options().experimental.iterations);
 }
 
 IterationPlan LinkedElements::plan(SolverState& state) {
@@ -357,33 +360,33 @@ IterationPlan LinkedElements::plan(SolverState& state) {
 Estimate LinkedElements::trace(SolverState&, TracedIteration& iteration) {
     if (refines_next_) refines_ = refine_links();
     refines_next_ = false;
-    state_.escaped_power = gather_light();
-    if (importance_use(state_.solution) == ImportanceUse::full) gather_importance();
+    state_.light.escaped_power = gather_light();
+    if (importance_use(state_.light.solution) == ImportanceUse::full) gather_importance();
     ++sweeps_;
     const double change = std::max(light_change_, importance_change_);
     if (refines_)
         refines_next_ = change <= settled;
     else
         is_settled_ = change <= negligible_change;
-    iteration.rays = rays_ - state_.power_rays;
-    state_.power_rays = rays_;
+    iteration.rays = rays_ - state_.rays.power;
+    state_.rays.power = rays_;
     return {};
 }
 
 void LinkedElements::finish(SolverState& state) const {
     for (std::vector<float> Solution::*numbers :
          {&Solution::standard_error, &Solution::discretisation_error, &Solution::rays})
-        (state.solution.*numbers).assign(state.forest->size(), 0.0f);
+        (state.light.solution.*numbers).assign(state.light.forest->size(), 0.0f);
 }
 
 void LinkedElements::change_views(SolverState& state) {
     compute_view_importance(state);
-    refines_ = state_.options.method.refines;
+    refines_ = state_.light.options().method.refines;
     refines_next_ = is_settled_ = false;
 }
 
 bool LinkedElements::fits(const SolverState& state) const {
-    const std::uint32_t elements = state.forest->size();
+    const std::uint32_t elements = state.light.forest->size();
     const auto exists = [&](std::uint32_t end) {
         return is_cluster(end) ? end - first_cluster < tree_.clusters().size() : end < elements;
     };

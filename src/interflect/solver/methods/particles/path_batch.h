@@ -126,13 +126,13 @@ struct Wavefront {
 class PathBatch {
   public:
     PathBatch(const SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key)
-        : forest_(*state.forest),
+        : forest_(*state.light.forest),
           elements_(forest_.size()),
-          emission_(state.emission),
-          ray_caster_(state.ray_caster),
-          panes_(state.scene, state.ray_caster),
-          stop_(state.stop.within_process()),
-          first_points_(state.options.experimental.points),
+          emission_(state.inputs.emission),
+          ray_caster_(state.inputs.ray_caster),
+          panes_(state.inputs.scene, state.inputs.ray_caster),
+          stop_(state.work.stop.within_process()),
+          first_points_(state.light.options().experimental.points),
           payload_(payload),
           paths_(paths),
           key_(key),

@@ -18,14 +18,14 @@ constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
 BatchResult follow_paths(SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key) {
     PathBatch batch(state, payload, paths, key);
     PathSums sums = batch.follow();
-    state.escaped_rays += sums.escaped_rays;
-    state.streams.used.resize(sums.started.size(), 0);
+    state.rays.escaped += sums.escaped_rays;
+    state.sampling.streams.used.resize(sums.started.size(), 0);
     BatchResult arrived;
     for (std::uint32_t i = 0; i < sums.received.size(); ++i) {
-        arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / state.forest->area(i));
-        state.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
+        arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / state.light.forest->area(i));
+        state.sampling.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
     }
-    pull(*state.forest, arrived.irradiance);
+    pull(*state.light.forest, arrived.irradiance);
     arrived.hits = std::move(sums.hits);
     arrived.escaped = sums.unit.to_colour(sums.escaped);
     arrived.rays = sums.rays;
@@ -54,15 +54,16 @@ BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t ray
     return arrived;
 }
 
-WalkSource light_source(const SolverState& state) {
-    const ElementForest& forest = *state.forest;
+WalkSource light_source(const RunInputs& inputs, const LightState& light) {
+    const ElementForest& forest = *light.forest;
     WalkSource payload;
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
-        const MeanSurface surface = state.materials.surface(forest.patch(e), e);
+        const MeanSurface surface = inputs.materials.surface(forest.patch(e), e);
         payload.emitted.push_back(forest.is_leaf(e) ? surface.exitance * forest.area(e) : Rgb(0));
         payload.reflectance.push_back(surface.reflectance);
     }
-    for (std::size_t i = 0; i < state.emission.part_count(); ++i) payload.emitted.emplace_back(state.emission.power(i));
+    for (std::size_t i = 0; i < inputs.emission.part_count(); ++i)
+        payload.emitted.emplace_back(inputs.emission.power(i));
     payload.density.assign(payload.emitted.size(), 1.0f);
     return payload;
 }

@@ -32,6 +32,6 @@ struct BatchResult {
 BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t rays, PathSeries& series);
 
 /// Returns the emission of leaves and luminaires, with density 1.
-WalkSource light_source(const SolverState& state);
+WalkSource light_source(const RunInputs& inputs, const LightState& light);
 
 }  // namespace interflect::detail

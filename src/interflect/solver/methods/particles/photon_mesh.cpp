@@ -37,7 +37,7 @@ constexpr double large_share = 1e-3;
 class PhotonMesh final : public IterationMethod {
   public:
     explicit PhotonMesh(const SolverState& state)
-        : current_{sub_key(state.options.seed, WalkPurpose::light)}, hits_(state.forest->size()) {}
+        : current_{sub_key(state.light.options().seed, WalkPurpose::light)}, hits_(state.light.forest->size()) {}
 
     void prepare(SolverState& state) override;
     void update_importance(SolverState&, TracedIteration&) override { before_ = current_; }
@@ -47,9 +47,9 @@ class PhotonMesh final : public IterationMethod {
     void discard() override { current_ = before_; }
     void archive(StateArchive& archive) override;
     bool fits(const SolverState& state) const override {
-        return hits_.size() == state.forest->size() && std::all_of(hits_.begin(), hits_.end(), [](const HitSum& hits) {
-                   return hits.sum() >= 0 && hits.squares() >= 0;
-               });
+        return hits_.size() == state.light.forest->size() &&
+               std::all_of(hits_.begin(), hits_.end(),
+                           [](const HitSum& hits) { return hits.sum() >= 0 && hits.squares() >= 0; });
     }
 
   private:
@@ -66,27 +66,27 @@ class PhotonMesh final : public IterationMethod {
 /// so these are divided, too.
 void PhotonMesh::prepare(SolverState& state) {
     before_ = current_;
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *state.light.forest;
     double total_area = 0;
     for (std::uint32_t i = 0; i < forest.patch_count(); ++i) total_area += forest.area(i);
     for (const double least_area : {0.0, large_share * total_area}) {
         std::vector<std::uint8_t> splits(forest.size());
         for (std::uint32_t e = 0; e < splits.size(); ++e)
-            splits[e] = forest.is_leaf(e) && forest.area(e) >= 4 * min_area(state, e) &&
+            splits[e] = forest.is_leaf(e) && forest.area(e) >= 4 * min_area(state.inputs, state.light, e) &&
                         forest.area(forest.patch(e)) > least_area;
         divide_leaves(state, splits);
     }
-    hits_.assign(state.forest->size(), {});
+    hits_.assign(state.light.forest->size(), {});
 }
 
 Estimate PhotonMesh::trace(SolverState& state, TracedIteration& iteration) {
-    WalkSource light = light_source(state);
+    WalkSource light = light_source(state.inputs, state.light);
     light.starts_at_hits = true;
     BatchResult batch = walk(state, light, iteration.plan.rays, current_);
-    state.power_rays += batch.rays;
+    state.rays.power += batch.rays;
     if (batch.rays > 0) iteration.rays = batch.rays;
     fresh_hits_ = std::move(batch.hits);
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *state.light.forest;
     Estimate estimate{.irradiance = std::move(batch.irradiance), .escaped_power = batch.escaped};
     estimate.variance.assign(forest.size(), 0.0f);
     for (std::uint32_t e = 0; e < forest.size(); ++e) {
@@ -100,16 +100,16 @@ Estimate PhotonMesh::trace(SolverState& state, TracedIteration& iteration) {
 
 /// Weighted by planned rays, as in RandomWalks.
 void PhotonMesh::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
-    const bool shows_error = iteration.weight >= state.schedule.start_rays();  // a remainder is too small
+    const bool shows_error = iteration.weight >= state.rays.schedule.start_rays();  // a remainder is too small
     if (shows_error) estimate_noise(state, estimate, iteration.weight);
-    merge_independent(state, state.solution.irradiance, estimate.irradiance, iteration);
-    merge_escaped_power(state, estimate.escaped_power, iteration);
-    update_history(state, iteration);
+    merge_independent(state.light, state.light.solution.irradiance, estimate.irradiance, iteration);
+    merge_escaped_power(state.light, estimate.escaped_power, iteration);
+    update_history(state.light, iteration);
     for (std::size_t e = 0; e < hits_.size(); ++e) hits_[e] += fresh_hits_[e];
 }
 
 bool PhotonMesh::has_quarters_to_divide(const SolverState& state, std::uint32_t e) const {
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *state.light.forest;
     const std::uint32_t first = forest.first_child(e);
     if (first == none) return false;
     std::array<HitSum, 4> hits;
@@ -118,13 +118,13 @@ bool PhotonMesh::has_quarters_to_divide(const SolverState& state, std::uint32_t 
         const std::uint32_t quarter = first + k;
         hits[k] = hits_[quarter];
         areas[k] = forest.area(quarter);
-        if (!forest.is_leaf(quarter) || areas[k] < 4 * min_area(state, quarter)) return false;
+        if (!forest.is_leaf(quarter) || areas[k] < 4 * min_area(state.inputs, state.light, quarter)) return false;
     }
     return quarters_differ(hits, areas);
 }
 
 void PhotonMesh::refine(SolverState& state) {
-    const ElementForest& forest = *state.forest;
+    const ElementForest& forest = *state.light.forest;
     std::vector<std::uint8_t> splits(forest.size(), 0);
     parallel_for_ranges(splits.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
@@ -132,7 +132,7 @@ void PhotonMesh::refine(SolverState& state) {
     });
     divide_leaves(state, splits);
     hits_.resize(forest.size());
-    state.discarded_hits = discarded_share(forest);
+    state.light.discarded_hits = discarded_share(forest);
 }
 
 /// An element's hits before its division are in its mean, but not among its quarters. They are lost when the quarters

@@ -15,12 +15,12 @@ namespace interflect::detail {
 namespace {
 
 /// Assumes equal, independent contributions.
-Estimate independent_contributions(const SolverState& state, const BatchResult& batch) {
-    const double power = luminance(integral(*state.forest, batch.irradiance));
+Estimate independent_contributions(const LightState& light, const BatchResult& batch) {
+    const double power = luminance(integral(*light.forest, batch.irradiance));
     Estimate estimate{.irradiance = batch.irradiance, .escaped_power = batch.escaped};
     for (std::uint32_t i = 0; i < batch.irradiance.size(); ++i)
         estimate.variance.push_back(static_cast<float>(luminance(batch.irradiance[i]) * power /
-                                                       (static_cast<double>(batch.rays) * state.forest->area(i))));
+                                                       (static_cast<double>(batch.rays) * light.forest->area(i))));
     return estimate;
 }
 
@@ -52,74 +52,76 @@ std::vector<float> particle_density(const Solution& so_far, const std::vector<Rg
     return density;
 }
 
-WalkSource light(const SolverState& state) {
-    WalkSource payload = light_source(state);
-    const std::vector<Rgb> of_patches(payload.emitted.begin(), payload.emitted.begin() + state.forest->patch_count());
-    const std::vector<float> density = particle_density(state.solution, of_patches);
+WalkSource particles_of_light(const RunInputs& inputs, const LightState& light) {
+    WalkSource payload = light_source(inputs, light);
+    const std::vector<Rgb> of_patches(payload.emitted.begin(), payload.emitted.begin() + light.forest->patch_count());
+    const std::vector<float> density = particle_density(light.solution, of_patches);
     std::copy(density.begin(), density.end(), payload.density.begin());  // parts keep the mean: importance is unknown
     return payload;
 }
 
-WalkSource importance_from_cameras(const SolverState& state) {
+WalkSource importance_from_cameras(const RunInputs& inputs, const LightState& light) {
     WalkSource payload;
     payload.is_grey = true;
-    for (std::uint32_t i = 0; i < state.forest->patch_count(); ++i) {
-        const float rho = state.materials.mean_reflectance(i);
-        payload.emitted.emplace_back(rho * state.solution.view_importance[i] * state.forest->area(i));
+    for (std::uint32_t i = 0; i < light.forest->patch_count(); ++i) {
+        const float rho = inputs.materials.mean_reflectance(i);
+        payload.emitted.emplace_back(rho * light.solution.view_importance[i] * light.forest->area(i));
         payload.reflectance.emplace_back(rho);
     }
-    payload.density.assign(state.forest->patch_count(), 1.0f);
+    payload.density.assign(light.forest->patch_count(), 1.0f);
     return payload;
 }
 
 }  // namespace
 
 RandomWalks::RandomWalks(const SolverState& state)
-    : current_{{sub_key(state.options.seed, WalkPurpose::light)},
-               {sub_key(state.options.seed, WalkPurpose::importance)}} {}
+    : current_{{sub_key(state.light.options().seed, WalkPurpose::light)},
+               {sub_key(state.light.options().seed, WalkPurpose::importance)}} {}
 
 void RandomWalks::prepare(SolverState& state) {
     before_ = current_;
     current_.importance.batches = 0;
     current_.importance.pilot_rays = 0;
     current_.importance_history = 0;
-    walk_importance(state, std::min(state.schedule.start_rays(), lacking_importance(state, state.options.limits.rays)));
-    state.schedule.record_start(0, state.importance_rays);
+    walk_importance(state, std::min(state.rays.schedule.start_rays(),
+                                    lacking_importance(state, state.light.options().limits.rays)));
+    state.rays.schedule.record_start(0, state.rays.importance);
 }
 
 std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {
-    if (importance_use(state.solution) != ImportanceUse::full) return 0;
-    const std::int64_t share = std::llround(state.options.experimental.alpha * static_cast<double>(planned));
+    if (importance_use(state.light.solution) != ImportanceUse::full) return 0;
+    const std::int64_t share = std::llround(state.light.options().experimental.alpha * static_cast<double>(planned));
     return std::max<std::int64_t>(0, share - current_.importance_history);
 }
 
 void RandomWalks::walk_importance(SolverState& state, std::int64_t rays) {
     if (rays <= 0) return;
-    const BatchResult arrived = walk(state, importance_from_cameras(state), rays, current_.importance);
-    state.importance_rays += arrived.rays;
+    const BatchResult arrived =
+        walk(state, importance_from_cameras(state.inputs, state.light), rays, current_.importance);
+    state.rays.importance += arrived.rays;
     current_.importance_history += rays;
     const auto tau = static_cast<float>(static_cast<double>(rays) / static_cast<double>(current_.importance_history));
-    std::vector<float>& psi = state.solution.indirect_importance;
+    std::vector<float>& psi = state.light.solution.indirect_importance;
     for (std::size_t i = 0; i < psi.size(); ++i) psi[i] += tau * (arrived.irradiance[i].x - psi[i]);
 }
 
 void RandomWalks::update_importance(SolverState& state, TracedIteration& iteration) {
     before_ = current_;
     iteration.importance_rays =
-        std::min(iteration.plan.rays, lacking_importance(state, state.schedule.rays() + iteration.plan.rays));
-    const std::int64_t rays_before = state.importance_rays;
+        std::min(iteration.plan.rays, lacking_importance(state, state.rays.schedule.rays() + iteration.plan.rays));
+    const std::int64_t rays_before = state.rays.importance;
     walk_importance(state, iteration.importance_rays);
-    iteration.rays = state.importance_rays - rays_before;
+    iteration.rays = state.rays.importance - rays_before;
 }
 
 Estimate RandomWalks::trace(SolverState& state, TracedIteration& iteration) {
     Estimate estimate;
     if (iteration.plan.rays > iteration.importance_rays) {
-        const BatchResult batch =
-            walk(state, light(state), iteration.plan.rays - iteration.importance_rays, current_.light);
-        state.power_rays += batch.rays;
+        const BatchResult batch = walk(state, particles_of_light(state.inputs, state.light),
+                                       iteration.plan.rays - iteration.importance_rays, current_.light);
+        state.rays.power += batch.rays;
         iteration.rays += batch.rays;
-        estimate = independent_contributions(state, batch);
+        estimate = independent_contributions(state.light, batch);
     }
     if (iteration.rays == 0) iteration.rays = iteration.plan.rays;  // no visible surface reflects
     return estimate;
@@ -127,15 +129,16 @@ Estimate RandomWalks::trace(SolverState& state, TracedIteration& iteration) {
 
 void RandomWalks::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
     if (estimate.irradiance.empty()) return;
-    const bool shows_error = iteration.weight >= state.schedule.start_rays();  // a remainder is too small
+    const bool shows_error = iteration.weight >= state.rays.schedule.start_rays();  // a remainder is too small
     if (shows_error) estimate_noise(state, estimate, iteration.weight);
-    const double before = state.history[0], now = before + static_cast<double>(iteration.weight);
+    const double before = state.light.history[0], now = before + static_cast<double>(iteration.weight);
     const double tau = iteration.plan.warms_up ? 1 : static_cast<double>(iteration.weight) / now;  // Eq. 6
-    for (std::uint32_t i = 0; i < state.forest->size(); ++i)
-        state.solution.irradiance[i] +=
-            static_cast<float>(tau) * (estimate.irradiance[i] - state.solution.irradiance[i]);
-    state.escaped_power += tau * (estimate.escaped_power - state.escaped_power);
-    std::fill(state.history.begin(), state.history.end(), iteration.plan.warms_up ? 0.0f : static_cast<float>(now));
+    for (std::uint32_t i = 0; i < state.light.forest->size(); ++i)
+        state.light.solution.irradiance[i] +=
+            static_cast<float>(tau) * (estimate.irradiance[i] - state.light.solution.irradiance[i]);
+    state.light.escaped_power += tau * (estimate.escaped_power - state.light.escaped_power);
+    std::fill(state.light.history.begin(), state.light.history.end(),
+              iteration.plan.warms_up ? 0.0f : static_cast<float>(now));
 }
 
 void RandomWalks::change_views(SolverState& state) {
