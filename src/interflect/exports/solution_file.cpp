@@ -31,7 +31,7 @@ namespace {
 
 /// Version 3 adds origin, contacts and surfaces of patches; 4 checksums, options and result; 5 all iterations; 6
 /// direct light.
-constexpr int format_version = 6, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
+constexpr int format_version = 7, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
               first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 

@@ -174,7 +174,7 @@ class Solution(CommandTest):
         self.assertEqual(report["result"], self.iterations[-1])
         self.assertEqual(report["history"], self.iterations)
         self.assertGreater(len(self.iterations), 1)
-        self.assertEqual((report["format_version"], report["interrupted"]), (6, False))
+        self.assertEqual((report["format_version"], report["interrupted"]), (7, False))
         checksums = [f"{zlib.crc32(self.bytes(name)):08x}" for name in report["files"]]
         self.assertEqual(report["file_checksums"], checksums)
         self.assertEqual(report["files"], ["room.mgf", "room.views.json"])

@@ -137,7 +137,7 @@ class Report(CommandTest):
 
     def test_draws_the_views_of_the_scene(self):
         page = self.report()
-        self.assertEqual(page.text.count("and illuminance on what is seen"), 1)
+        self.assertEqual(page.text.count("and illuminance of the visible surfaces"), 1)
         self.interflect("report", "rooms.h5", "-o", "view.html", *FEW, 16, "--eye", "1,1,1", "--look-at", "3,1,1")
         self.assertEqual((self.folder / "view.html").read_text().count("data:image/png"), 2 + 2)
 

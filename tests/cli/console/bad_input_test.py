@@ -44,6 +44,7 @@ class BadScene(BadInput):
         self.assert_refused("bad.mgf: this is a folder")
 
     def test_pipes_and_devices(self):
+        self.write("room.mgf", room())
         for make in (os.mkfifo, lambda path: path.symlink_to("/dev/zero")):
             for name, arguments in (
                 ("bad.mgf", ("solve", "bad.mgf", "-o", "out.h5")),

@@ -62,7 +62,7 @@ class Interrupt(CommandTest):
         process.send_signal(by)
         rest = process.communicate(timeout=SOON)[1]
         self.assertEqual(process.returncode, INTERRUPTED, rest)
-        self.assertIn("stopping, keeping what is usable", rest)
+        self.assertIn("stopping, and keeping usable results", rest)
 
     def test_solve_keeps_a_solution_that_can_be_drawn(self):
         self.interrupt_after_first_progress(
@@ -204,7 +204,7 @@ class Interrupt(CommandTest):
     def test_a_signal_while_the_result_is_written_loses_nothing(self):
         process = self.start_writing_into_a_pipe()
         process.send_signal(signal.SIGINT)
-        self.assertIn("stopping, keeping what is usable", process.stderr.readline())
+        self.assertIn("stopping, and keeping usable results", process.stderr.readline())
         (self.folder / "out.h5").write_bytes((self.folder / "pipe.h5").read_bytes())
         self.assertEqual(process.wait(timeout=SOON), INTERRUPTED)
         self.interflect("render", "out.h5", "-o", "out.exr", *VIEW, *SMALL)
@@ -221,7 +221,7 @@ class Interrupt(CommandTest):
     def test_the_second_ends_at_once_and_leaves_nothing(self):
         process = self.start_writing_into_a_pipe()
         process.send_signal(signal.SIGINT)
-        self.assertIn("stopping, keeping what is usable", process.stderr.readline())
+        self.assertIn("stopping, and keeping usable results", process.stderr.readline())
         self.assertNotEqual(self.temporary_files(), [])
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=SOON), -signal.SIGINT)

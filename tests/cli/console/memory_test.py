@@ -138,7 +138,7 @@ class Predictions(CommandTest):
     def test_of_curved_surfaces(self):
         self.write("ball.mgf", vertices((0, 0, 0)) + LAMP + "sph v0 1\n")
         said = self.refused("info", "ball.mgf", "--curve-divisions", "1000")
-        self.assertRegex(said, r"ball\.mgf:\d+: this would give more than \d+ patches .* there is memory for no more")
+        self.assertRegex(said, r"ball\.mgf:\d+: this would give more than \d+ patches .* the memory does not suffice for more")
         self.assertIn("--curve-divisions", said)
 
     def test_of_lightmaps(self):

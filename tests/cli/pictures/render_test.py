@@ -211,7 +211,7 @@ class PlansAndSections(RenderTest):
     def test_a_cut_beyond_the_scene(self):
         self.solve()
         said = self.said("out.exr", "--plan", "-3", *SMALL)
-        self.assertIn("warning: plan: nothing of the scene lies beyond the cut", said)
+        self.assertIn("warning: plan: the whole scene lies in front of the cut", said)
         self.assertIn("warning: the view shows no light: it meets no surface", said)
 
     def test_exr_has_the_extent(self):
@@ -491,7 +491,7 @@ class Camera(CommandTest):
 
     def test_looking_away(self):
         said = self.said(room(), view=("--eye", "1,-4,1.2", "--look-at", "1,-9,1.2"))
-        self.assertRegex(said, self.WARNING + ": 100% of the picture shows nothing")
+        self.assertRegex(said, self.WARNING + ": 100% of the picture is empty")
         self.assertIn("the view shows no light: it meets no surface", said)
 
     def test_inside_a_closed_object(self):

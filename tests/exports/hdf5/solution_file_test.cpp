@@ -231,7 +231,7 @@ void drop_surfaces_of_patches(const std::filesystem::path& path) {
 std::string as_version_3(std::string bytes) {
     bytes.erase(0, checksum_block_size);
     for (const auto& [now, before] :
-         {std::pair<std::string, std::string>{"\"format_version\": 6", "\"format_version\": 3"},
+         {std::pair<std::string, std::string>{"\"format_version\": 7", "\"format_version\": 3"},
           {"\"version\": ", "\"nothing\": "},
           {"\"files\": ", "\"nothi\": "},
           {"\"options\": ", "\"nothing\": "},

@@ -53,7 +53,7 @@ class Pages(unittest.TestCase):
         options = set(re.findall(r"^  (?:-\w,)?--([a-z][\w-]*)", commands["solve"], re.MULTILINE))
         self.assertGreater(len(options), 40)
         missing = {option for option in options - listed if option.replace("-", "_") not in arguments}
-        self.assertEqual(missing, {"help", "output"})
+        self.assertEqual(missing, {"help", "help-all", "output"})
 
     def test_a_picture_of_another_size_has_the_bits_of_the_command(self) -> None:
         maze = self.folder / "maze.mgf"
