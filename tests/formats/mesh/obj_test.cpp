@@ -257,7 +257,7 @@ INSTANTIATE_TEST_SUITE_P(, MtlBadText,
                                          BadText{"Spectrum", "Kd spectral a.rfl 1",
                                                  "a.mtl:2: expected a finite number, not ..."},
                                          BadText{"NoShare", "d 2", "d is 2; expected 0 to 1"},
-                                         BadText{"TooBright", "Ke 1e20 0 0", "of the material 'a' the exitance"},
+                                         BadText{"TooBright", "Ke 1e20 0 0", "material 'a': the exitance"},
                                          BadText{"LongName", "newmtl " + std::string(1000, 'a'), "is too long"}),
                          testing::PrintToStringParamName());
 
