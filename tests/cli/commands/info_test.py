@@ -183,7 +183,7 @@ class Solution(CommandTest):
     def test_text_tells_the_same(self):
         text = self.interflect("info", "room.h5").stdout
         result = self.json("info", "room.h5")["result"]
-        words = ("room.mgf", "version 6", "ihsrr, seed 7", "epsilon_decay 0.5", "1000 lm", "floor")
+        words = ("room.mgf", "version 7", "ihsrr, seed 7", "epsilon_decay 0.5", "1000 lm", "floor")
         for word in (*words, str(result["rays"]), str(result["elements"]), "noise ", "mesh "):
             self.assertIn(word, text)
         self.assertNotIn("alpha", text, "only what differs from the defaults")

@@ -148,7 +148,7 @@ class Predictions(CommandTest):
 
     def refused_lightmap(self, *options):
         said = self.refused("export", "room.h5", "-o", "out.glb", "--lightmap", *options, exit_code=BAD_INPUT)
-        self.assertRegex(said, r"million texels need \d+ MiB of memory, the limit \(max_bytes\) is \d+ MiB")
+        self.assertRegex(said, r"million texels need \d+ MiB of memory, more than the limit of \d+ MiB \(max_bytes\)")
         self.assertIn("--texels-per-metre", said)
 
     def test_where_there_is_none_the_message_says_what_to_do(self):
