@@ -43,7 +43,7 @@ class WaysBack {
     WaysBack(const Scene& scene, const RayCaster& ray_caster)
         : scene_(scene), ray_caster_(ray_caster), materials_(scene, ray_caster) {}
 
-    /// @param source  The patch that the ray leaves, or `none` for a luminaire.
+    /// @param source  The patch that the ray leaves; for a luminaire the index `none`.
     void add(const Ray& ray, std::uint32_t source, double power) {
         Hit hit = trace(ray);
         if (hit.patch == none) return;

@@ -161,8 +161,8 @@ PlanarArea find_surface(const Scene& scene, const std::string& object, const std
     std::vector<PlanarArea> planes = planes_of(scene, std::move(patches), object);
     if (planes.size() > 1 && planes[1].area > (1 - equal_areas) * planes[0].area)
         throw InputError(scene.name, 0,
-                         fmt::format("'{}' has several planar surfaces of {:.3g} m2: expected the way that the one to "
-                                     "measure on the faces of one of {}",
+                         fmt::format("'{}' has several planar surfaces of {:.3g} m2: expected the direction that the "
+                                     "measured one faces: {}",
                                      object, planes[0].area, text_of_directions(planes)));
     return std::move(planes.front());
 }
