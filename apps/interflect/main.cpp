@@ -27,7 +27,7 @@ std::string usage_message(const CLI::App* app, const CLI::Error& error) {
     } else {
         command += " " + chosen.front()->get_name();
     }
-    return "error: " + interflect::detail::escaped(message) + "\n`" + command + " --help` lists the options.\n";
+    return "error: " + interflect::detail::escaped(message) + "\n`" + command + " --help-all` lists the options.\n";
 }
 
 constexpr const char* footer =
