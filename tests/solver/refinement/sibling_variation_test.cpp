@@ -214,7 +214,7 @@ TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
                     s.state.light
                         .history[e - (e - s.state.light.forest->patch_count()) % 4];  // siblings share a history
         const Estimate fresh = s.iteration(100, {1, 1, 1}, 2, no_signal);
-        merge_independent(s.state.light, s.state.light.solution.irradiance, fresh.irradiance, {100, false});
+        merge_independent(s.state.light, s.state.light.solution.irradiance, fresh.irradiance, {.plan = {.rays = 100}});
     }
     std::vector<Rgb> means = s.state.light.solution.irradiance;
     pull(*s.state.light.forest, means);
