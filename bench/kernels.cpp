@@ -83,8 +83,8 @@ void shoot_rays_from_a_patch(benchmark::State& state) {
     std::vector<Parameters> origins(rays_each);
     std::uint64_t first = 0;
     for (auto _ : state) {
-        shoot_rays(m.forest.geometry(0), Cell(), m.ray_caster.ray_offset(0), PointSet::sobol, 1, first += rays_each,
-                   points, rays, origins);
+        shoot_rays(m.forest.geometry(PatchIndex(0)), Cell(), m.ray_caster.ray_offset(PatchIndex(0)), PointSet::sobol, 1,
+                   first += rays_each, points, rays, origins);
         benchmark::DoNotOptimize(rays.back());
     }
     count_items(state, rays_each);

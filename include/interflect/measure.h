@@ -93,10 +93,10 @@ inline constexpr double usual_boundary = 0.5;
 
 /// Coplanar faces, on or above which light is measured.
 struct PlanarArea {
-    std::string name;                    ///< Name of the object that contains them.
-    V3f normal{0, 0, 1};                 ///< Unit length, towards the lit side.
-    std::vector<std::uint32_t> patches;  ///< Its faces: indices into Scene::patches.
-    double area = 0;                     ///< Area of the faces [m^2].
+    std::string name;                 ///< Name of the object that contains them.
+    V3f normal{0, 0, 1};              ///< Unit length, towards the lit side.
+    std::vector<PatchIndex> patches;  ///< Its faces: indices into Scene::patches.
+    double area = 0;                  ///< Area of the faces [m^2].
 };
 
 /// Finds the planar surface of an object: its faces in the plane with the largest total area. Includes nested objects:

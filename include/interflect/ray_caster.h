@@ -26,8 +26,8 @@ struct Ray {
 
 /// First hit of a ray.
 struct Hit {
-    std::uint32_t patch = none;  ///< The side that was hit; none if the ray escapes.
-    float distance = 0;          ///< [m]
+    PatchIndex patch{};  ///< The side that was hit; none if the ray escapes.
+    float distance = 0;  ///< [m]
 };
 
 /// Ray tracer for a scene, based on Embree. Immutable and thread-safe.
@@ -51,11 +51,11 @@ class RayCaster {
     /// robust test, which subtracts the start point from corners at a distance of up to 2 c. For coincident faces the
     /// offset is at least 4 times the distance within which they coincide, 4 u times the larger face's c: 16 u where 8
     /// are needed. Independent of all other faces.
-    float ray_offset(std::uint32_t patch) const { return ray_offsets_[patch]; }
+    float ray_offset(PatchIndex patch) const { return ray_offsets_[patch]; }
 
     /// Fraction of a patch's area, in [0, 1], that rays can hit, and from which light may be emitted. Below 1 if
     /// coincident faces cover it.
-    float uncovered_share(std::uint32_t patch) const;
+    float uncovered_share(PatchIndex patch) const;
     /// Whether uncovered_share() is below 1 anywhere.
     bool has_covered_patches() const;
 

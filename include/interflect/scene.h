@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "interflect/core.h"
+#include "interflect/indices.h"
 #include "interflect/light_sources.h"
 
 namespace interflect {
@@ -90,9 +91,6 @@ std::vector<LightGroup> groups_by_name(const Scene& scene);
 /// @param factors  One per group of source_groups(scene); >= 0.
 Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<float>& factors);
 
-/// Invalid index.
-inline constexpr std::uint32_t none = 0xffffffffu;
-
 /// Material of a surface; the same on both sides of a two-sided face.
 struct Material {
     std::string name;
@@ -120,9 +118,9 @@ struct Patch {
     /// Counter-clockwise seen from the lit side; [3] == none for a triangle.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
     std::uint32_t material = 0;
-    std::uint32_t other_side = none;  ///< Patch on the back of the face; none if one-sided.
-    std::uint32_t object = 0;         ///< Index into Scene::objects.
-    std::uint32_t surface = none;     ///< Equal within a flat surface with cut faces; none: derived from edges.
+    PatchIndex other_side{};       ///< Patch on the back of the face; none if one-sided.
+    std::uint32_t object = 0;      ///< Index into Scene::objects.
+    std::uint32_t surface = none;  ///< Equal within a flat surface with cut faces; none: derived from edges.
 
     bool is_triangle() const { return vertices[3] == none; }
     int vertex_count() const { return is_triangle() ? 3 : 4; }
@@ -166,7 +164,7 @@ struct Scene {
     /// share vertices. Rays meet the flat patches; normals decide where shading is smooth and how it varies within a
     /// patch that bends with its neighbours. Plane faces ignore them (docs/method/method.md, Curved surfaces).
     std::vector<V3f> normals;
-    std::vector<Patch> patches;
+    PerPatch<Patch> patches;
     std::vector<Contact> contacts;  ///< Shading is discontinuous along these; see cut_at_contacts().
     std::vector<Material> materials;
     std::vector<Texture> textures;

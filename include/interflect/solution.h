@@ -84,10 +84,10 @@ struct Solution {
 
 /// A leaf of the mesh: a patch that is not divided, or a piece of one.
 struct Leaf {
-    std::uint32_t element = 0;  ///< Index into the vectors of Solution.
-    std::uint32_t patch = 0;    ///< Index into Scene::patches.
-    int level = 0;              ///< Number of divisions of the patch; 0: the patch itself.
-    int vertex_count = 4;       ///< 3 or 4.
+    ElementIndex element{};  ///< Index into the vectors of Solution.
+    PatchIndex patch{};      ///< Index into Scene::patches.
+    int level = 0;           ///< Number of divisions of the patch; 0: the patch itself.
+    int vertex_count = 4;    ///< 3 or 4.
     /// World coordinates [m], counter-clockwise seen from the lit side. A triangle repeats the last.
     std::array<Imath::V3d, 4> vertices{};
     float area = 0;                  ///< Area [m^2].

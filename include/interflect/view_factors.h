@@ -16,7 +16,7 @@ namespace interflect {
 /// Patches that exchange radiation as one surface.
 struct FaceGroup {
     std::string name;
-    std::vector<std::uint32_t> patches;  ///< Indices into Scene::patches, each at most once.
+    std::vector<PatchIndex> patches;  ///< Indices into Scene::patches, each at most once.
 };
 
 /// Appends a black back without names for every one-sided face, so that it blocks from both sides. Otherwise rays pass

@@ -26,7 +26,7 @@ FaceSides sides_of(const std::string& name) {
 }
 
 /// Indices of patches of a group: integers, or one boolean per patch.
-std::vector<std::uint32_t> patches_of(const py::handle& value, const std::string& name, std::size_t patches) {
+std::vector<PatchIndex> patches_of(const py::handle& value, const std::string& name, std::size_t patches) {
     const py::array array = py::array::ensure(value);
     const char kind = array ? array.dtype().kind() : 'x';
     if (!array || array.ndim() != 1 || (kind != 'i' && kind != 'u' && kind != 'b') ||
@@ -38,7 +38,7 @@ std::vector<std::uint32_t> patches_of(const py::handle& value, const std::string
                   .setting = "groups"});
     }
     const py::array chosen = kind == 'b' ? py::array(array.attr("nonzero")().cast<py::tuple>()[0]) : array;
-    std::vector<std::uint32_t> result;
+    std::vector<PatchIndex> result;
     for (const py::handle& index : chosen) {
         const auto i = argument<std::int64_t>(index, "groups", "indices of faces");
         if (i < 0 || i >= static_cast<std::int64_t>(patches))

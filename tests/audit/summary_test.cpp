@@ -21,7 +21,7 @@ Scene lit_room() {
     Scene scene = closed_box({2, 3, 4}, 2, {paint, paint, paint, paint, lamp, paint});
     const std::uint32_t sign = add_material(scene, Rgb(0.2f), Rgb(10));
     scene.objects.emplace_back("sign");
-    const std::uint32_t first = add_rectangle(scene, {0.5f, 1, 1}, {1, 0, 0}, {0, 1, 0}, sign, 1, 1, true);
+    const PatchIndex first = add_rectangle(scene, {0.5f, 1, 1}, {1, 0, 0}, {0, 1, 0}, sign, 1, 1, true);
     scene.patches[first].object = scene.patches[first + 1].object =
         static_cast<std::uint32_t>(scene.objects.size() - 1);
     return scene;

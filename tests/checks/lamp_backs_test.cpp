@@ -87,7 +87,7 @@ TEST(LampBacks, Housing) {
         const std::size_t first = scene.patches.size();
         add_box(scene, {1, 1, 2.94f}, {1.3f, 1.3f, 2.96f}, 0);
         const std::uint32_t lamp = add_lamp_material(scene);
-        std::vector<Patch> kept(scene.patches.begin(), scene.patches.begin() + static_cast<std::ptrdiff_t>(first));
+        PerPatch<Patch> kept(scene.patches.begin(), scene.patches.begin() + static_cast<std::ptrdiff_t>(first));
         for (std::size_t i = first; i < scene.patches.size(); ++i) {
             Patch patch = scene.patches[i];
             const auto is_at = [&](float z) {

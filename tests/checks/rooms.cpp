@@ -43,10 +43,10 @@ void open_ceiling(Scene& scene, V2f low, V2f high) {
             return x.z == ceiling && x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y;
         });
     };
-    std::vector<Patch> left;
+    PerPatch<Patch> left;
     for (const Patch& patch : scene.patches)
         if (!is_within(patch)) left.push_back(patch);
-    for (std::uint32_t i = 0; i < left.size(); ++i) left[i].other_side = i % 2 == 0 ? i + 1 : i - 1;
+    for (std::uint32_t i = 0; i < left.size(); ++i) left[i].other_side = PatchIndex(i % 2 == 0 ? i + 1 : i - 1);
     scene.patches = std::move(left);
 }
 

@@ -41,9 +41,9 @@ void subdivide_at_random(ElementForest& forest, int count, unsigned seed) {
     }
 }
 
-double leaf_area(const ElementForest& forest, std::uint32_t patch) {
+double leaf_area(const ElementForest& forest, PatchIndex patch) {
     double area = 0;
-    for (const std::uint32_t e : forest.leaves()) area += forest.patch(e) == patch ? forest.area(e) : 0;
+    for (const ElementIndex e : forest.leaves()) area += forest.patch(e) == patch ? forest.area(e) : 0;
     return area;
 }
 
@@ -51,7 +51,7 @@ TEST(Forest, LeavesCoverTheirPatch) {
     const Scene scene = three_shapes();
     ElementForest forest(scene, capacity);
     subdivide_at_random(forest, 300, 1);
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
+    for (PatchIndex p{0}; p < forest.patch_count(); ++p)
         EXPECT_NEAR(leaf_area(forest, p), patch_area(scene, scene.patches[p]), 1e-5);
 }
 
@@ -59,15 +59,16 @@ TEST(Forest, CellAreaIsTheShareOfPointsThatFallIntoIt) {
     // The irregular quadrilateral: its cells differ in area though their parameter ranges are equal.
     const Scene scene = three_shapes();
     ElementForest forest(scene, capacity);
-    const std::uint32_t child = forest.subdivide(1);
+    const ElementIndex child = forest.subdivide(ElementIndex(1));
     std::mt19937 random(2);
     std::uniform_real_distribution<float> uniform(0, 1);
     constexpr int points = 100'000;
     std::array<int, 4> hits{};
     for (int i = 0; i < points; ++i)
-        ++hits[forest.leaf_at(1, forest.geometry(1).uniform_parameters(uniform(random), uniform(random))) - child];
+        ++hits[forest.leaf_at(1, forest.geometry(PatchIndex(1)).uniform_parameters(uniform(random), uniform(random))) -
+               child];
     for (std::uint32_t k = 0; k < 4; ++k) {
-        const double share = forest.area(child + k) / forest.area(1);
+        const double share = forest.area(child + k) / forest.area(ElementIndex(1));
         const double sigma = std::sqrt(share * (1 - share) / points);
         EXPECT_NEAR(static_cast<double>(hits[k]) / points, share, 4 * sigma);  // false alarm 6e-5 each
         EXPECT_GT(std::abs(share - 0.25), 8 * sigma) << "equal areas would prove nothing";
@@ -78,7 +79,7 @@ TEST(Forest, LeafAtFindsTheLeafWhoseCellHoldsThePoint) {
     const Scene scene = three_shapes();
     ElementForest forest(scene, capacity);
     subdivide_at_random(forest, 200, 3);
-    for (const std::uint32_t leaf : forest.leaves()) {
+    for (const ElementIndex leaf : forest.leaves()) {
         const bool triangle = forest.geometry(forest.patch(leaf)).is_triangle();
         EXPECT_EQ(forest.leaf_at(forest.patch(leaf), forest.cell(leaf).centre(triangle)), leaf);
     }
@@ -86,7 +87,7 @@ TEST(Forest, LeafAtFindsTheLeafWhoseCellHoldsThePoint) {
 
 std::vector<std::array<std::uint32_t, 4>> described(const ElementForest& forest) {
     std::vector<std::array<std::uint32_t, 4>> d;
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
+    for (ElementIndex e{0}; e < forest.size(); ++e)
         d.push_back({forest.patch(e), forest.path(e), forest.parent(e), forest.first_child(e)});
     return d;
 }
@@ -98,7 +99,7 @@ TEST(Forest, ThreadsThatSubdivideTogetherMakeTheForestThatOneMakes) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<float> uniform(0, 1);
         for (int i = 0; i < 500; ++i) {
-            std::uint32_t e = random() % 8;
+            ElementIndex e = random() % 8;
             const Parameters p{uniform(random), uniform(random)};
             Cell cell;
             for (int level = 0; level < 4; ++level) {
@@ -121,8 +122,8 @@ TEST(Forest, ThreadsThatSubdivideTogetherMakeTheForestThatOneMakes) {
 TEST(Forest, IsTheSameWhateverTheOrderOfSubdivision) {
     const Scene scene = three_shapes();
     ElementForest a(scene, capacity), b(scene, capacity);
-    for (const std::uint32_t patch : {0u, 1u, 2u}) a.subdivide(a.subdivide(patch) + 2);
-    for (const std::uint32_t patch : {2u, 0u, 1u}) b.subdivide(b.subdivide(patch) + 2);
+    for (const std::uint32_t patch : {0, 1, 2}) a.subdivide(a.subdivide(ElementIndex(patch)) + 2);
+    for (const std::uint32_t patch : {2, 0, 1}) b.subdivide(b.subdivide(ElementIndex(patch)) + 2);
     EXPECT_NE(described(a), described(b));
     a.put_in_order(a.patch_count());
     b.put_in_order(b.patch_count());
@@ -132,8 +133,8 @@ TEST(Forest, IsTheSameWhateverTheOrderOfSubdivision) {
 TEST(Forest, TakesBackTheLastSiblings) {
     const Scene scene = three_shapes();
     ElementForest forest(scene, capacity), smaller(scene, capacity);
-    smaller.subdivide(1);
-    const std::uint32_t child = forest.subdivide(1);
+    smaller.subdivide(ElementIndex(1));
+    const ElementIndex child = forest.subdivide(ElementIndex(1));
     forest.subdivide(child + 3);
     EXPECT_EQ(forest.drop_last_siblings(), child + 3);
     EXPECT_EQ(described(forest), described(smaller));
@@ -144,13 +145,13 @@ TEST(Forest, TakesBackTheLastSiblings) {
 TEST(Forest, RefusesWhatDoesNotFit) {
     const Scene scene = three_shapes();
     ElementForest full(scene, scene.patches.size() + 4);
-    EXPECT_NE(full.subdivide(0), none);
-    EXPECT_EQ(full.subdivide(1), none);
-    EXPECT_TRUE(full.is_leaf(1));
+    EXPECT_NE(full.subdivide(ElementIndex(0)), none);
+    EXPECT_EQ(full.subdivide(ElementIndex(1)), none);
+    EXPECT_TRUE(full.is_leaf(ElementIndex(1)));
     EXPECT_EQ(full.size(), scene.patches.size() + 4);
 
     ElementForest deep(scene, capacity);
-    std::uint32_t e = 0;
+    ElementIndex e(0);
     for (int level = 0; level < ElementForest::deepest_level; ++level) e = deep.subdivide(e);
     EXPECT_EQ(deep.level(e), ElementForest::deepest_level);
     EXPECT_EQ(deep.subdivide(e), none);
@@ -170,17 +171,17 @@ TEST(Forest, GoesFromTheRootsToTheLeavesAndBackPastNoGeneration) {
     }
     std::vector<std::uint32_t> depth(forest.size(), 0), height(forest.size(), 0);
     std::atomic<std::uint32_t> visits{0};
-    forest.for_siblings_from_roots([&](std::uint32_t first) {
-        for (std::uint32_t e = first; e < first + 4; ++e) depth[e] = depth[forest.parent(first)] + 1;
+    forest.for_siblings_from_roots([&](ElementIndex first) {
+        for (ElementIndex e = first; e < first + 4; ++e) depth[e] = depth[forest.parent(first)] + 1;
         ++visits;
     });
-    forest.for_siblings_from_leaves([&](std::uint32_t first) {
-        for (std::uint32_t e = first; e < first + 4; ++e)
+    forest.for_siblings_from_leaves([&](ElementIndex first) {
+        for (ElementIndex e = first; e < first + 4; ++e)
             height[forest.parent(first)] = std::max(height[forest.parent(first)], height[e] + 1);
         ++visits;
     });
     EXPECT_EQ(visits, 2 * (forest.size() - forest.patch_count()) / 4);
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         ASSERT_EQ(depth[e], forest.level(e));
         ASSERT_EQ(height[e] > 0, !forest.is_leaf(e));
         ASSERT_TRUE(e < forest.patch_count() || height[forest.parent(e)] > height[e]);
@@ -195,16 +196,15 @@ TEST(Forest, PushAndPullKeepTheIntegral) {
     std::mt19937 random(5);
     std::vector<float> values(forest.size());
     double integral = 0;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         values[e] = static_cast<float>(random() % 100);
         integral += static_cast<double>(values[e]) * forest.area(e);
     }
     push(forest, values);
     pull(forest, values);
     double at_leaves = 0, at_roots = 0;
-    for (const std::uint32_t e : forest.leaves()) at_leaves += static_cast<double>(values[e]) * forest.area(e);
-    for (std::uint32_t e = 0; e < forest.patch_count(); ++e)
-        at_roots += static_cast<double>(values[e]) * forest.area(e);
+    for (const ElementIndex e : forest.leaves()) at_leaves += static_cast<double>(values[e]) * forest.area(e);
+    for (ElementIndex e{0}; e < forest.patch_count(); ++e) at_roots += static_cast<double>(values[e]) * forest.area(e);
     EXPECT_NEAR(at_leaves, integral, 1e-4 * integral);
     EXPECT_NEAR(at_roots, integral, 1e-4 * integral);
 }
@@ -225,7 +225,7 @@ TEST(Forest, NewElementsInherit) {
     const Scene scene = three_shapes();
     ElementForest forest(scene, capacity);
     std::vector<float> values{1, 2, 3};
-    const std::uint32_t child = forest.subdivide(1), grandchild = forest.subdivide(child + 3);
+    const ElementIndex child = forest.subdivide(ElementIndex(1)), grandchild = forest.subdivide(child + 3);
     inherit(forest, forest.patch_count(), values);
     EXPECT_EQ(values[child], 2);
     EXPECT_EQ(values[grandchild + 1], 2);

@@ -65,10 +65,10 @@ INSTANTIATE_TEST_SUITE_P(Shapes, TextureMeansOf, testing::ValuesIn(shapes), test
 TEST_P(TextureMeansOf, CellsAreThoseOfTheirChildren) {
     const TextureMeans means(scene);
     ElementForest forest(scene, 10'000);
-    for (std::uint32_t e = 0; e < 85; ++e) forest.subdivide(e);  // three levels
-    for (std::uint32_t e = 0; e < 85; ++e) {
+    for (ElementIndex e{0}; e < 85; ++e) forest.subdivide(e);  // three levels
+    for (ElementIndex e{0}; e < 85; ++e) {
         const auto mean = [&](std::uint32_t i) {
-            return means.mean(0, scene.patches[0], forest.geometry(0), forest.cell(i)).x;
+            return means.mean(0, scene.patches[0], forest.geometry(PatchIndex(0)), forest.cell(i)).x;
         };
         float sum = 0;
         for (std::uint32_t k = 0; k < 4; ++k)

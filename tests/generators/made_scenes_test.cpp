@@ -88,7 +88,7 @@ struct Solid {
 std::vector<Solid> solids_of(const Scene& scene) {
     std::vector<Solid> solids;
     std::uint32_t next = 0;  // the first patch outside all solids so far
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         if (is_shell(scene, scene.patches[i]) || i < next) continue;
         next = i + 6;
         Solid& solid = solids.emplace_back();
@@ -214,13 +214,13 @@ TEST_P(MadeScenes, NoRayEscapes) {
     std::vector<Ray> rays;
     for (std::uint64_t i = 0; i < count; ++i) {
         const auto words = random_words(1, i);
-        const auto index = static_cast<std::uint32_t>(words[0] % scene.patches.size());
+        const PatchIndex index(words[0] % scene.patches.size());
         const Patch& patch = scene.patches[index];
         const PatchGeometry geometry(scene, patch);
         V3f direction = uniform_direction(2, i);
         if (direction.dot(geometry.normal()) < 0) direction = -direction;
         const V3f origin = geometry.point(geometry.uniform_parameters(unit_float(words[1]), unit_float(words[2])));
-        rays.push_back({origin + ray_caster.ray_offset(index) * geometry.normal(), direction});
+        rays.push_back({origin + ray_caster.ray_offset(PatchIndex(index)) * geometry.normal(), direction});
     }
     std::vector<Hit> hits(rays.size());
     ray_caster.trace(rays, hits);

@@ -58,7 +58,7 @@ TEST(Maze, ThingsAreFartherApartThanRaysAreLifted) {
     // Otherwise a ray from the underside of an object would start below its support.
     const Scene scene = make_maze({.rooms = MazeOptions::max_rooms});
     const RayCaster ray_caster(scene);
-    for (std::uint32_t i = 0; i < scene.patches.size(); i += 101) EXPECT_LT(ray_caster.ray_offset(i), building::gap);
+    for (PatchIndex i{0}; i < scene.patches.size(); i += 101) EXPECT_LT(ray_caster.ray_offset(i), building::gap);
 }
 
 TEST(Maze, FirstRoomsHaveViews) {

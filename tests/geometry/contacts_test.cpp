@@ -206,7 +206,7 @@ TEST(Contacts, OnlyTheLitSidesCount) {
         const Scene cut = cut_at_contacts(scene, any_aspect);
         expect_same_surfaces(scene, cut);
         EXPECT_EQ(count_of_material(cut, 0), two_sided ? 4u : 1u);
-        for (std::uint32_t i = 0; i < cut.patches.size(); ++i)
+        for (PatchIndex i{0}; i < cut.patches.size(); ++i)
             if (const std::uint32_t other = cut.patches[i].other_side; other != none) {
                 EXPECT_EQ(cut.patches[other].other_side, i);
                 EXPECT_EQ(cut.patches[other].surface, cut.patches[i].surface);

@@ -59,7 +59,7 @@ std::size_t pairs_in(const Scene& scene) {
 TEST(CoveredArea, IsExactForManyFacesSideBySide) {
     const Scene board = checkerboard(200);
     const auto last = static_cast<std::uint32_t>(board.patches.size() - 1);
-    EXPECT_NEAR(uncovered_area_share(board, last, all_but_last(board), 1e-7f), 0.5, 1e-5);
+    EXPECT_NEAR(uncovered_area_share(board, PatchIndex(last), all_but_last(board), 1e-7f), 0.5, 1e-5);
     EXPECT_EQ(pairs_in(board), last);
 }
 
@@ -68,7 +68,7 @@ TEST(CoveredArea, IsExactForManyFacesSideBySide) {
 TEST(CoveredArea, OfFacesThatLieInEachOtherNeedsFewIntersections) {
     const Scene nested = nested_triangles(2000);
     const double leg = 1 + 1998.0 / 1999;
-    EXPECT_NEAR(uncovered_area_share(nested, 1999, all_but_last(nested), 1e-7f), 1 - leg * leg / 4, 1e-5);
+    EXPECT_NEAR(uncovered_area_share(nested, PatchIndex(1999), all_but_last(nested), 1e-7f), 1 - leg * leg / 4, 1e-5);
 }
 
 TEST(FaceOverlap, FindsAllPairsOfFacesThatLieInEachOther) { EXPECT_EQ(pairs_in(nested_triangles(100)), 4950u); }

@@ -49,7 +49,7 @@ Scene furnished(int divisions = 1) {
     scene.objects = {"", "room.floor", "room.desk.top", "room.walls"};
     for (std::uint32_t wall = 0; wall < 4; ++wall) scene.patches[wall].object = 3;
     scene.patches[4].object = 1;
-    const std::uint32_t top = add_rectangle(scene, {1, 2, 0.75f}, {2, 0, 0}, {0, 1, 0}, 0, divisions, divisions, true);
+    const PatchIndex top = add_rectangle(scene, {1, 2, 0.75f}, {2, 0, 0}, {0, 1, 0}, 0, divisions, divisions, true);
     for (std::uint32_t i = top; i < scene.patches.size(); ++i) scene.patches[i].object = 2;
     return scene;
 }

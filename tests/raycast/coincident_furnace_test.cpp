@@ -31,7 +31,7 @@ SolveOptions furnace_options(std::uint64_t seed) {
     return options;
 }
 
-float radiosity(const Solution& solution, std::uint32_t patch) { return exitance + rho * solution.irradiance[patch].x; }
+float radiosity(const Solution& solution, PatchIndex patch) { return exitance + rho * solution.irradiance[patch].x; }
 
 // The room's floor is the middle of a larger black slab. Every ray for which the slab is reported would be lost.
 TEST(CoincidentFurnace, FloorInABlackSlabLosesNoLight) {
@@ -40,7 +40,7 @@ TEST(CoincidentFurnace, FloorInABlackSlabLosesNoLight) {
     add_rectangle(scene, {-1, -1, 0}, {4, 0, 0}, {0, 5, 0}, black);
     const std::uint32_t paint = add_material(scene, wall.reflectance, wall.exitance);
     const V3f x(1, 0, 0), y(0, 2, 0), z(0, 0, 3), o(0, 0, 0);
-    const std::uint32_t floor = add_rectangle(scene, o, x, y, paint, 3, 3);
+    const PatchIndex floor = add_rectangle(scene, o, x, y, paint, 3, 3);
     add_rectangle(scene, o, y, z, paint);
     add_rectangle(scene, x, z, y, paint);
     add_rectangle(scene, o, z, x, paint);
@@ -105,7 +105,7 @@ TEST_P(DoubledWalls, OfAFurnaceEmitOnce) {
                 const Solution solution = solve(scene, ray_caster, options);
                 EXPECT_NEAR(emitted(solution), exitance * 22, 1e-4);  // a box of 1 x 2 x 3 m has 22 m^2
                 double power = 0, area = 0;
-                for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+                for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
                     if (ray_caster.uncovered_share(i) == 0) {
                         EXPECT_EQ(solution.irradiance[i], Rgb(0)) << i;
                         continue;
@@ -128,7 +128,7 @@ TEST(DoubledWalls, OfAFurnaceEmitOnceWithLinks) {
     options.experimental.epsilon = 1e-3;
     const Solution solution = solve(scene, RayCaster(scene), options);
     EXPECT_NEAR(emitted(solution), exitance * 22, 1e-4);
-    EXPECT_NEAR(radiosity(solution, 0), exitance / (1 - rho), 0.1 * exitance / (1 - rho));
+    EXPECT_NEAR(radiosity(solution, PatchIndex(0)), exitance / (1 - rho), 0.1 * exitance / (1 - rho));
 }
 
 // The lamp comes after a face of the same corners without emission.
@@ -156,10 +156,10 @@ TEST(Lamp, CoincidentWithAnEarlierFaceLightsTheRoom) {
 // The covered part of the floor, 0.05% of the surface, does not emit.
 TEST(CoincidentFurnace, DecalOnAFloorGetsItsLight) {
     Scene scene = closed_box({1, 2, 3}, 1, {wall});
-    const std::uint32_t decal = add_rectangle(scene, {0.4f, 0.9f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, 0);
+    const PatchIndex decal = add_rectangle(scene, {0.4f, 0.9f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}, 0);
     std::vector<double> sample;
     for (std::uint64_t seed = 1; seed <= 64; ++seed)
-        sample.push_back(radiosity(solve(scene, RayCaster(scene), furnace_options(seed)), decal));
+        sample.push_back(radiosity(solve(scene, RayCaster(scene), furnace_options(seed)), PatchIndex(decal)));
     EXPECT_GT(t_test(sample, exitance / (1 - rho)), false_alarm);
     EXPECT_LT(t_test(sample, 1.05 * exitance / (1 - rho)), false_alarm);
     EXPECT_LT(t_test(sample, 0.95 * exitance / (1 - rho)), false_alarm);

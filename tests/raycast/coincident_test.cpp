@@ -37,13 +37,13 @@ Patch reversed(Patch patch) {
 }
 
 /// Adds a face with these corners; returns its patch, or the first patch of a two-sided face.
-std::uint32_t add_face(Scene& scene, Patch front, bool two_sided) {
-    const auto index = static_cast<std::uint32_t>(scene.patches.size());
-    front.other_side = two_sided ? index + 1 : none;
+PatchIndex add_face(Scene& scene, Patch front, bool two_sided) {
+    const PatchIndex index(scene.patches.size());
+    front.other_side = PatchIndex(two_sided ? index + 1 : no_patch);
     scene.patches.push_back(front);
     if (!two_sided) return index;
     Patch back = reversed(front);
-    back.other_side = index;
+    back.other_side = PatchIndex(index);
     scene.patches.push_back(back);
     return index;
 }
@@ -97,7 +97,7 @@ TEST(Duplicates, TheFirstOfTwoSidedOnesAnswersOnBothSides) {
     for (const Patch& copy : {unit_square, rotated(unit_square, 1), rotated(unit_square, 2), reversed(unit_square),
                               rotated(reversed(unit_square), 3)}) {
         Scene scene = empty_scene();
-        const std::uint32_t first = add_face(scene, unit_square, true), second = add_face(scene, copy, true);
+        const PatchIndex first = add_face(scene, unit_square, true), second = add_face(scene, copy, true);
         EXPECT_EQ(wrong_answers(scene, square, above, first), 0);
         EXPECT_EQ(wrong_answers(scene, square, below, first + 1), 0);
         EXPECT_TRUE(CoincidentFaces(scene, 1e-5f).is_hidden(second));
@@ -115,7 +115,7 @@ TEST(Duplicates, AreFoundByPositionNotByIndex) {
 
 TEST(Duplicates, TheFirstOfOneSidedOnesAnswersOnItsFront) {
     Scene scene = empty_scene();
-    const std::uint32_t first = add_face(scene, unit_square, false);
+    const PatchIndex first = add_face(scene, unit_square, false);
     add_face(scene, rotated(unit_square, 1), false);
     EXPECT_EQ(wrong_answers(scene, square, above, first), 0);
     EXPECT_EQ(wrong_answers(scene, square, below, none), 0);
@@ -123,7 +123,7 @@ TEST(Duplicates, TheFirstOfOneSidedOnesAnswersOnItsFront) {
 
 TEST(Duplicates, OneSidedOnesThatFaceOppositeWaysAnswerEachOnItsFront) {
     Scene scene = empty_scene();
-    const std::uint32_t up = add_face(scene, unit_square, false), down = add_face(scene, reversed(unit_square), false);
+    const PatchIndex up = add_face(scene, unit_square, false), down = add_face(scene, reversed(unit_square), false);
     EXPECT_EQ(wrong_answers(scene, square, above, up), 0);
     EXPECT_EQ(wrong_answers(scene, square, below, down), 0);
     EXPECT_EQ(CoincidentFaces(scene, 1e-5f).hidden_count(), 0u);
@@ -132,7 +132,7 @@ TEST(Duplicates, OneSidedOnesThatFaceOppositeWaysAnswerEachOnItsFront) {
 TEST(Duplicates, ATwoSidedOneAnswersWhereAOneSidedOneBeforeItDoesNot) {
     Scene scene = empty_scene();
     const std::uint32_t down = add_face(scene, reversed(unit_square), false);
-    const std::uint32_t both = add_face(scene, unit_square, true);
+    const PatchIndex both = add_face(scene, unit_square, true);
     EXPECT_EQ(wrong_answers(scene, square, below, down), 0);
     EXPECT_EQ(wrong_answers(scene, square, above, both), 0);
 }
@@ -140,7 +140,7 @@ TEST(Duplicates, ATwoSidedOneAnswersWhereAOneSidedOneBeforeItDoesNot) {
 TEST(Duplicates, OfWarpedQuadrilateralsAreFound) {
     Scene scene = empty_scene();
     scene.vertices[2].z = 0.009f;  // the largest distance from the plane that a reader accepts
-    const std::uint32_t first = add_face(scene, unit_square, true);
+    const PatchIndex first = add_face(scene, unit_square, true);
     add_face(scene, rotated(unit_square, 1), true);
     const Target middle{{0.4f, 0.4f, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}};  // the flattest rays would miss the border
     EXPECT_EQ(wrong_answers(scene, middle, above, first), 0);
@@ -228,7 +228,7 @@ TEST(Decal, OnTheFrontOnlyLeavesTheTablesBack) {
     Scene scene = empty_scene();
     const std::uint32_t table = add_face(scene, unit_square, true);
     const Target paper{{0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}};
-    const std::uint32_t decal = add_rectangle(scene, paper.corner, paper.u, paper.v, 0);
+    const PatchIndex decal = add_rectangle(scene, paper.corner, paper.u, paper.v, 0);
     EXPECT_EQ(wrong_answers(scene, paper, above, decal), 0);
     EXPECT_EQ(wrong_answers(scene, paper, below, table + 1), 0);
 }
@@ -238,8 +238,8 @@ TEST(Decal, OfAStackTheSmallestAnswers) {
     const std::uint32_t table = add_face(scene, unit_square, true);
     const Target sheet{{0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}},
         note{{0.5f, 0.5f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
-    const std::uint32_t note_face = add_rectangle(scene, note.corner, note.u, note.v, 0, 1, 1, true);
-    const std::uint32_t sheet_face = add_rectangle(scene, sheet.corner, sheet.u, sheet.v, 0, 1, 1, true);
+    const PatchIndex note_face = add_rectangle(scene, note.corner, note.u, note.v, 0, 1, 1, true);
+    const PatchIndex sheet_face = add_rectangle(scene, sheet.corner, sheet.u, sheet.v, 0, 1, 1, true);
     EXPECT_EQ(wrong_answers(scene, note, above, note_face), 0);
     EXPECT_EQ(wrong_answers(scene, {sheet.corner, sheet.u, 0.4f * sheet.v}, below, sheet_face + 1), 0);
     EXPECT_EQ(wrong_answers(scene, {{0, 0, 0}, {1, 0, 0}, {0, 0.25f, 0}}, above, table), 0);
@@ -249,8 +249,8 @@ TEST(Decal, SeenFromItsBackGivesWayToTheNextOfTheStack) {
     Scene scene = empty_scene();
     add_face(scene, unit_square, true);
     const Target note{{0.5f, 0.5f, 0}, {0.1f, 0, 0}, {0, 0.1f, 0}};
-    const std::uint32_t sheet = add_rectangle(scene, {0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, 0, 1, 1, true);
-    const std::uint32_t one_sided_note = add_rectangle(scene, note.corner, note.u, note.v, 0);
+    const PatchIndex sheet = add_rectangle(scene, {0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, 0, 1, 1, true);
+    const PatchIndex one_sided_note = add_rectangle(scene, note.corner, note.u, note.v, 0);
     EXPECT_EQ(wrong_answers(scene, note, above, one_sided_note), 0);
     EXPECT_EQ(wrong_answers(scene, note, below, sheet + 1), 0);
 }
@@ -278,7 +278,7 @@ TEST(Decal, OfAThousandOnOneFloorEachAnswers) {
 
 std::uint32_t add_box(Scene& scene, V3f corner, V3f s) {
     const V3f x(s.x, 0, 0), y(0, s.y, 0), z(0, 0, s.z);
-    const std::uint32_t front = add_rectangle(scene, corner, x, z, 0, 1, 1, true);
+    const PatchIndex front = add_rectangle(scene, corner, x, z, 0, 1, 1, true);
     add_rectangle(scene, corner + y, z, x, 0, 1, 1, true);
     add_rectangle(scene, corner, z, y, 0, 1, 1, true);
     add_rectangle(scene, corner + x, y, z, 0, 1, 1, true);
@@ -297,14 +297,12 @@ TEST(Boxes, WithACommonSideAnswerByTheSmallerOneWhereTheyOverlap) {
 
 // ---- Faces that are never reported emit no power
 
-float share_left(const Scene& scene, std::uint32_t patch) {
-    return CoincidentFaces(scene, 1e-6f).uncovered_share(patch);
-}
+float share_left(const Scene& scene, PatchIndex patch) { return CoincidentFaces(scene, 1e-6f).uncovered_share(patch); }
 
 TEST(Covered, AreDuplicatesOnBothSides) {
     Scene scene = empty_scene();
-    const std::uint32_t first = add_face(scene, unit_square, true);
-    const std::uint32_t second = add_face(scene, rotated(unit_square, 1), true);
+    const PatchIndex first = add_face(scene, unit_square, true);
+    const PatchIndex second = add_face(scene, rotated(unit_square, 1), true);
     for (const std::uint32_t side : {0u, 1u}) {
         EXPECT_EQ(share_left(scene, first + side), 1);
         EXPECT_EQ(share_left(scene, second + side), 0);
@@ -313,33 +311,33 @@ TEST(Covered, AreDuplicatesOnBothSides) {
 
 TEST(Covered, AreNotFacesBackToBack) {
     Scene scene = empty_scene();
-    const std::uint32_t up = add_face(scene, unit_square, false), down = add_face(scene, reversed(unit_square), false);
-    EXPECT_EQ(share_left(scene, up), 1);
-    EXPECT_EQ(share_left(scene, down), 1);
+    const PatchIndex up = add_face(scene, unit_square, false), down = add_face(scene, reversed(unit_square), false);
+    EXPECT_EQ(share_left(scene, PatchIndex(up)), 1);
+    EXPECT_EQ(share_left(scene, PatchIndex(down)), 1);
 }
 
 TEST(Covered, IsOnlyTheSideThatTheOtherFaceHasAsItsFront) {
     Scene scene = empty_scene();
-    const std::uint32_t both = add_face(scene, unit_square, true);
+    const PatchIndex both = add_face(scene, unit_square, true);
     add_rectangle(scene, {0, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}, 0);  // faces up
     add_rectangle(scene, {0.5f, 0, 0}, {0.5f, 0, 0}, {0, 1, 0}, 0);
-    EXPECT_EQ(share_left(scene, both), 0);
+    EXPECT_EQ(share_left(scene, PatchIndex(both)), 0);
     EXPECT_EQ(share_left(scene, both + 1), 1);
 }
 
 TEST(Covered, IsTheExactShareWhereOthersOverlapEachOther) {
     Scene scene = empty_scene();
-    const std::uint32_t face = add_face(scene, unit_square, false);
+    const PatchIndex face = add_face(scene, unit_square, false);
     add_rectangle(scene, {0.1f, 0.1f, 0}, {0.4f, 0, 0}, {0, 0.2f, 0}, 0);  // 0.08
     add_rectangle(scene, {0.3f, 0.2f, 0}, {0.4f, 0, 0}, {0, 0.2f, 0}, 0);  // 0.08, with 0.02 shared with the first
     add_rectangle(scene, {0.9f, 0.9f, 0}, {0.2f, 0, 0}, {0, 0.2f, 0}, 0);  // 0.01, and the rest outside
     add_rectangle(scene, {0.6f, 0.6f, 0}, {0.1f, 0.1f, 0}, {-0.1f, 0.1f, 0}, 0);  // 0.02, rotated
-    EXPECT_NEAR(share_left(scene, face), 1 - 0.17, 1e-5);
+    EXPECT_NEAR(share_left(scene, PatchIndex(face)), 1 - 0.17, 1e-5);
 }
 
 TEST(Covered, IsAllOfAFaceUnderManyTilesAndNothingOfTheTiles) {
     Scene scene = empty_scene();
-    const std::uint32_t face = add_face(scene, unit_square, true);
+    const PatchIndex face = add_face(scene, unit_square, true);
     const std::uint32_t tiles = static_cast<std::uint32_t>(scene.patches.size());
     for (int i = 0; i < 70; ++i)
         for (int j = 0; j < 30; ++j) {
@@ -350,7 +348,7 @@ TEST(Covered, IsAllOfAFaceUnderManyTilesAndNothingOfTheTiles) {
     const CoincidentFaces faces(scene, 1e-6f);
     EXPECT_EQ(faces.uncovered_share(face), 0);
     EXPECT_EQ(faces.uncovered_share(face + 1), 0);
-    for (std::uint32_t i = tiles; i < scene.patches.size(); ++i) ASSERT_EQ(faces.uncovered_share(i), 1);
+    for (PatchIndex i(tiles); i < scene.patches.size(); ++i) ASSERT_EQ(faces.uncovered_share(i), 1);
 }
 
 std::uint32_t add_lamp(Scene& scene) { return add_material(scene, Rgb(0), Rgb(100)); }
@@ -363,14 +361,14 @@ TEST(Lamp, InThePlaceOfAnEqualFaceAnswersWhereItEmits) {
             scene.materials[0].exitance = Rgb(0);
             Patch lamp = rotated(unit_square, 2);
             lamp.material = add_lamp(scene);
-            std::uint32_t lamp_face = none, ceiling = none;
+            PatchIndex lamp_face, ceiling;
             if (lamp_first) lamp_face = add_face(scene, lamp, lamp_is_two_sided);
             ceiling = add_face(scene, unit_square, true);
             if (!lamp_first) lamp_face = add_face(scene, lamp, lamp_is_two_sided);
             EXPECT_EQ(wrong_answers(scene, square, above, lamp_face), 0);
             EXPECT_EQ(wrong_answers(scene, square, below, lamp_is_two_sided ? lamp_face + 1 : ceiling + 1), 0);
-            EXPECT_EQ(share_left(scene, lamp_face), 1);
-            EXPECT_EQ(share_left(scene, ceiling), 0);
+            EXPECT_EQ(share_left(scene, PatchIndex(lamp_face)), 1);
+            EXPECT_EQ(share_left(scene, PatchIndex(ceiling)), 0);
             EXPECT_EQ(share_left(scene, ceiling + 1), lamp_is_two_sided ? 0 : 1);
         }
 }
@@ -380,9 +378,9 @@ TEST(Lamp, UnderASmallerFaceEmitsBesideIt) {
     scene.materials[0].exitance = Rgb(0);
     Patch lamp = unit_square;
     lamp.material = add_lamp(scene);
-    const std::uint32_t face = add_face(scene, lamp, false);
+    const PatchIndex face = add_face(scene, lamp, false);
     add_rectangle(scene, {0.25f, 0.25f, 0}, {0.5f, 0, 0}, {0, 0.5f, 0}, 0, 1, 1, true);
-    EXPECT_NEAR(share_left(scene, face), 0.75, 1e-5);
+    EXPECT_NEAR(share_left(scene, PatchIndex(face)), 0.75, 1e-5);
 }
 
 TEST(Neighbours, ThatShareEdgesOnlyAreNotContested) {
@@ -391,7 +389,7 @@ TEST(Neighbours, ThatShareEdgesOnlyAreNotContested) {
     add_rectangle(scene, {3, -2, 1}, {6, 0, 8}, {-0.8f, 10, 0.6f}, 0, 300, 300);  // rounding moves every corner
     std::vector<float> tolerance;
     const RayCaster ray_caster(scene);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) tolerance.push_back(0.25f * ray_caster.ray_offset(i));
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) tolerance.push_back(0.25f * ray_caster.ray_offset(i));
     const CoincidentFaces faces(scene, tolerance);
     EXPECT_EQ(faces.pair_count(), 0u);
     EXPECT_EQ(faces.hidden_count(), 0u);

@@ -146,7 +146,7 @@ TEST_P(ClosedBox, LetsNoRayOutThatStartsOnAWall) {
     Random random(3);
     std::vector<Ray> rays;
     float offset = 0;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const PatchGeometry geometry(scene, scene.patches[p]);
         offset = std::max(offset, ray_caster.ray_offset(p));
         for (int i = 0; i < 1000; ++i) {
@@ -181,7 +181,7 @@ TEST_P(ClosedBox, HitsLieOnThePatchThatWasHit) {
 /// Lit from above (or also from below).
 std::uint32_t add_horizontal(Scene& scene, float height, bool up, bool two_sided, bool as_triangle) {
     const V3f x(2, 0, 0), y(0, 2, 0), corner(-1, -1, height);
-    const std::uint32_t first = add_rectangle(scene, corner, up ? x : y, up ? y : x, 0, 1, 1, two_sided);
+    const PatchIndex first = add_rectangle(scene, corner, up ? x : y, up ? y : x, 0, 1, 1, two_sided);
     for (std::uint32_t p = first; as_triangle && p < scene.patches.size(); ++p) {
         auto& v = scene.patches[p].vertices;
         v = {v[0], v[1], v[3], none};
@@ -271,7 +271,7 @@ TEST_P(Faces, RayThatStartsOnAFaceHitsNeitherItNorItsDuplicates) {
         scene = placed(scene, uniform(random, 0, 6), far * direction_on_sphere(random));
         const RayCaster ray_caster(scene);
         std::vector<Ray> rays;
-        for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
             const PatchGeometry geometry(scene, scene.patches[p]);
             for (int i = 0; i < 500; ++i) {
                 const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
@@ -288,7 +288,7 @@ std::ptrdiff_t escaped_from(const Scene& scene, int rays_per_patch) {
     const RayCaster ray_caster(scene);
     Random random(11);
     std::vector<Ray> rays;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const PatchGeometry geometry(scene, scene.patches[p]);
         for (int i = 0; i < rays_per_patch; ++i) {
             const V3f x = geometry.point(geometry.uniform_parameters(uniform(random), uniform(random)));
@@ -318,14 +318,14 @@ TEST(RayOffset, DependsOnNothingFarAway) {
     with_stray.vertices.emplace_back(-1e8f, 0.0f, 0.0f);  // used by no face
     EXPECT_EQ(escaped_from(box, 1000), 0);
     const RayCaster alone(box), together(with_stray);
-    for (std::uint32_t p = 0; p < box.patches.size(); ++p) EXPECT_EQ(alone.ray_offset(p), together.ray_offset(p));
+    for (PatchIndex p{0}; p < box.patches.size(); ++p) EXPECT_EQ(alone.ray_offset(p), together.ray_offset(p));
 }
 
 // The shadow at the foot of a screen: rays from the floor, a tenth of a millimetre beside it, hit the screen.
 TEST(RayOffset, KeepsContactShadows) {
     Scene scene = empty_scene();
-    const std::uint32_t floor = add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0);
-    const std::uint32_t screen = add_rectangle(scene, {2, 0, 1e-4f}, {0, 4, 0}, {0, 0, 0.01f}, 0, 1, 1, true);
+    const PatchIndex floor = add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0);
+    const PatchIndex screen = add_rectangle(scene, {2, 0, 1e-4f}, {0, 4, 0}, {0, 0, 0.01f}, 0, 1, 1, true);
     add_rectangle(scene, {-1e5f, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
     const RayCaster ray_caster(scene);
     const V3f start(1.9999f, 2, ray_caster.ray_offset(floor));
@@ -339,7 +339,7 @@ TEST(RayOffset, OfASmallFaceOnALargeOneClearsTheLargeOne) {
         Scene scene = empty_scene();
         const V3f u = V3f(1, 0, 0) + tilt, v = V3f(0, 1, 0) - tilt;
         add_rectangle(scene, -100.0f * u - 100.0f * v, 200.0f * u, 200.0f * v, 0);
-        const std::uint32_t decal = add_rectangle(scene, {0, 0, 0}, 0.01f * u, 0.01f * v, 0);
+        const PatchIndex decal = add_rectangle(scene, {0, 0, 0}, 0.01f * u, 0.01f * v, 0);
         const RayCaster ray_caster(scene);
         const PatchGeometry geometry(scene, scene.patches[decal]);
         Random random(12);

@@ -18,8 +18,8 @@ inline std::pair<double, double> powers(const detail::ElementForest& forest, con
     constexpr float low = 0.5f - 0.5f * std::numbers::inv_sqrt3_v<float>, high = 1 - low;
     const detail::SmoothField field(forest, vertices, values);
     double power = 0, of_field = 0;
-    for (const std::uint32_t leaf : forest.leaves()) {
-        const std::uint32_t patch = forest.patch(leaf);
+    for (const ElementIndex leaf : forest.leaves()) {
+        const PatchIndex patch = forest.patch(leaf);
         const detail::PatchGeometry& geometry = forest.geometry(patch);
         const detail::Cell cell = forest.cell(leaf);
         const double area = forest.area(leaf);

@@ -114,7 +114,7 @@ TEST_P(ReproducibleMesh, SameSeedSameBitsForAnyNumberOfThreads) {
     for (const int threads : {2, 3}) {
         const Solution s = solved_on_threads(threads, scene, options);
         ASSERT_EQ(s.forest->size(), expected.forest->size());
-        for (std::uint32_t e = 0; e < s.forest->size(); ++e) {
+        for (ElementIndex e{0}; e < s.forest->size(); ++e) {
             ASSERT_EQ(s.forest->patch(e), expected.forest->patch(e));
             ASSERT_EQ(s.forest->path(e), expected.forest->path(e));
         }
@@ -135,7 +135,7 @@ TEST(Solve, SameSeedSameBitsForAnyNumberOfThreadsWhereTheMeshMeetsItsLimit) {
     for (const int threads : {2, 3}) {
         const Solution s = solved_on_threads(threads, scene, options);
         ASSERT_EQ(s.forest->size(), expected.forest->size());
-        for (std::uint32_t e = 0; e < s.forest->size(); ++e) ASSERT_EQ(s.forest->parent(e), expected.forest->parent(e));
+        for (ElementIndex e{0}; e < s.forest->size(); ++e) ASSERT_EQ(s.forest->parent(e), expected.forest->parent(e));
         EXPECT_EQ(s.irradiance, expected.irradiance) << threads;
     }
 }

@@ -169,7 +169,7 @@ TEST(Window, KeepsItsFlux) {
             const Solution solution = solve(room.scene, ray_caster,
                                             {.method = find_method("srr"), .limits = {.rays = 150'000}, .seed = seed});
             double flux = 0;
-            for (std::uint32_t i = 0; i < room.scene.patches.size(); i += 2)
+            for (PatchIndex i{0}; i < room.scene.patches.size(); i += 2)
                 flux += static_cast<double>(solution.irradiance[i].x) * patch_area(room.scene, room.scene.patches[i]);
             return std::vector{flux, static_cast<double>(solution.irradiance[0].x)};
         });

@@ -82,7 +82,7 @@ void add_disc(Scene& scene, float radius, float z, int sides, bool faces_up, std
         const auto first = static_cast<std::uint32_t>(scene.vertices.size());
         for (const V3f& x : {V3f(0, 0, z), corner(faces_up ? k : k + 1), corner(faces_up ? k + 1 : k)})
             scene.vertices.push_back(x);
-        scene.patches.push_back({{first, first + 1, first + 2, none}, 0, none, object, none});
+        scene.patches.push_back({{first, first + 1, first + 2, none}, 0, no_patch, object, none});
     }
 }
 
@@ -274,11 +274,13 @@ std::string fault_of(const std::vector<FaceGroup>& groups, std::int64_t rays = 1
 }
 
 TEST(ViewFactors, RefuseFaultyGroups) {
-    EXPECT_THAT(fault_of({{"a", {0}}, {"b", {1, 0}}}), HasSubstr("patch 0 belongs to the groups 'a' and 'b'"));
-    EXPECT_THAT(fault_of({{"a", {0, 0}}}), HasSubstr("patch 0 belongs to the groups 'a' and 'a'"));
-    EXPECT_THAT(fault_of({{"a", {2}}}), HasSubstr("group 'a' has patch 2; the scene has 2 patches"));
+    EXPECT_THAT(fault_of({{"a", {PatchIndex(0)}}, {"b", {PatchIndex(1), PatchIndex(0)}}}),
+                HasSubstr("patch 0 belongs to the groups 'a' and 'b'"));
+    EXPECT_THAT(fault_of({{"a", {PatchIndex(0), PatchIndex(0)}}}),
+                HasSubstr("patch 0 belongs to the groups 'a' and 'a'"));
+    EXPECT_THAT(fault_of({{"a", {PatchIndex(2)}}}), HasSubstr("group 'a' has patch 2; the scene has 2 patches"));
     EXPECT_THAT(fault_of({}), HasSubstr("expected at least one group of faces"));
-    EXPECT_THAT(fault_of({{"a", {0}}}, 0), HasSubstr("rays: expected a positive number, found 0"));
+    EXPECT_THAT(fault_of({{"a", {PatchIndex(0)}}}, 0), HasSubstr("rays: expected a positive number, found 0"));
 }
 
 TEST(ViewFactors, StopOnRequest) {

@@ -43,7 +43,7 @@ Escapes find_escapes(const Scene& scene, const RayCaster& ray_caster, const Solu
     const float distance = distance_beside * core_bounds(scene).size().length();
     Escapes escapes;
     PointBlock points;
-    for (const std::uint32_t leaf : sample_sources(scene, ray_caster, solution).leaves) {
+    for (const ElementIndex leaf : sample_sources(scene, ray_caster, solution).leaves) {
         const auto sample = static_cast<std::uint64_t>(escapes.rays++);
         const Ray ray = ray_from(leaf, *solution.forest, ray_caster, sample, points);
         Hit hit;

@@ -44,7 +44,7 @@ class WaysBack {
         : scene_(scene), ray_caster_(ray_caster), materials_(scene, ray_caster) {}
 
     /// @param source  The patch that the ray leaves; for a luminaire the index `none`.
-    void add(const Ray& ray, std::uint32_t source, double power) {
+    void add(const Ray& ray, PatchIndex source, double power) {
         Hit hit = trace(ray);
         if (hit.patch == none) return;
         received_ += power;
@@ -78,10 +78,10 @@ class WaysBack {
         ray_caster_.trace({&ray, 1}, {&hit, 1});
         return hit;
     }
-    V3f normal(std::uint32_t patch) const { return PatchGeometry(scene_, scene_.patches[patch]).normal(); }
+    V3f normal(PatchIndex patch) const { return PatchGeometry(scene_, scene_.patches[patch]).normal(); }
 
     /// Returns the patch that hides the start of a light ray from `place`, or `none`.
-    std::uint32_t face_between(const V3f& start, std::uint32_t source, const V3f& place, std::uint32_t patch) const {
+    std::uint32_t face_between(const V3f& start, std::uint32_t source, const V3f& place, PatchIndex patch) const {
         constexpr float rounding = 1e-4f, offsets = 8;
         const float offset = ray_caster_.ray_offset(patch), distance = (start - place).length();
         if (!(distance > 0)) return none;  // in a corner
@@ -93,7 +93,7 @@ class WaysBack {
 
     /// Samples how often light is received from `place` on, by a random walk. It ends at one-way lines of sight, so
     /// light inside closed solids counts 0.
-    double spread(V3f place, std::uint32_t patch) {
+    double spread(V3f place, PatchIndex patch) {
         constexpr float longest_walk = 1000;
         float sum = 0;
         while (sum < longest_walk) {
@@ -123,7 +123,7 @@ void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solutio
     PointBlock points;
     std::uint64_t sample = 0;
     const SampledSources from = sample_sources(scene, ray_caster, solution);
-    for (const std::uint32_t leaf : from.leaves)
+    for (const ElementIndex leaf : from.leaves)
         ways.add(ray_from(leaf, *solution.forest, ray_caster, sample++, points), solution.forest->patch(leaf),
                  from.power_of_each());
 }
@@ -138,7 +138,7 @@ void add_luminaires(const Scene& scene, WaysBack& ways) {
         const double power = channel_sum(emission.power(part));
         rays.resize(static_cast<std::size_t>(std::ceil(audit_rays * (power / total))));
         emission.shoot(part, PointSet::random, audit_seed, 0, points, rays);
-        for (const Ray& ray : rays) ways.add(ray, none, power / static_cast<double>(rays.size()));
+        for (const Ray& ray : rays) ways.add(ray, no_patch, power / static_cast<double>(rays.size()));
     }
 }
 

@@ -14,11 +14,11 @@ SampledSources sample_sources(const Scene& scene, const RayCaster& ray_caster, c
     Materials materials(scene, ray_caster);
     materials.grow(forest);
     const std::vector<Rgb> b = radiosity(materials, forest, solution.irradiance);
-    const std::vector<std::uint32_t> leaves = forest.leaves();
+    const std::vector<ElementIndex> leaves = forest.leaves();
     std::vector<double> cumulative;
     cumulative.reserve(leaves.size());
     SampledSources result;
-    for (const std::uint32_t leaf : leaves) {
+    for (const ElementIndex leaf : leaves) {
         const float sum = channel_sum(b[leaf]);
         if (std::isfinite(sum)) result.power += static_cast<double>(sum * forest.area(leaf));
         cumulative.push_back(result.power);
@@ -32,9 +32,9 @@ SampledSources sample_sources(const Scene& scene, const RayCaster& ray_caster, c
     return result;
 }
 
-Ray ray_from(std::uint32_t leaf, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t sample,
+Ray ray_from(ElementIndex leaf, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t sample,
              PointBlock& points) {
-    const std::uint32_t patch = forest.patch(leaf);
+    const PatchIndex patch = forest.patch(leaf);
     Ray ray;
     Parameters origin;
     shoot_rays(forest.geometry(patch), forest.cell(leaf), ray_caster.ray_offset(patch), PointSet::random, audit_seed,

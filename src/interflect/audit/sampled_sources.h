@@ -18,7 +18,7 @@ inline constexpr std::int64_t audit_rays = 1 << 16;
 
 /// Leaves sampled systematically in proportion to their power.
 struct SampledSources {
-    std::vector<std::uint32_t> leaves;
+    std::vector<ElementIndex> leaves;
     double power = 0;  ///< Sum of channels and leaves.
 
     double power_of_each() const { return power / static_cast<double>(leaves.size()); }
@@ -28,7 +28,7 @@ struct SampledSources {
 SampledSources sample_sources(const Scene& scene, const RayCaster& ray_caster, const Solution& solution);
 
 /// Samples a ray from a leaf. @param sample  Index of the ray's random numbers. @param points  Working memory.
-Ray ray_from(std::uint32_t leaf, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t sample,
+Ray ray_from(ElementIndex leaf, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t sample,
              PointBlock& points);
 
 }  // namespace interflect::detail

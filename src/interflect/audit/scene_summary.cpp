@@ -22,7 +22,7 @@ void add_shape(const Scene& scene, const Patch& patch, SceneSummary& summary) {
 }
 
 /// Adds area and reflectance of each face once.
-void add_face(const Scene& scene, const Materials& materials, std::uint32_t i, SceneSummary& summary,
+void add_face(const Scene& scene, const Materials& materials, PatchIndex i, SceneSummary& summary,
               MaterialSummary& of_material) {
     const double area = patch_area(scene, scene.patches[i]);
     summary.area += area;
@@ -30,7 +30,7 @@ void add_face(const Scene& scene, const Materials& materials, std::uint32_t i, S
     of_material.reflectance += RgbD(materials.reflectance(i)) * area;
 }
 
-void add_emission(const Scene& scene, const Materials& materials, std::uint32_t i, SceneSummary& summary,
+void add_emission(const Scene& scene, const Materials& materials, PatchIndex i, SceneSummary& summary,
                   MaterialSummary& of_material) {
     const double area = patch_area(scene, scene.patches[i]);
     const RgbD power = RgbD(materials.exitance(i)) * area;
@@ -48,7 +48,7 @@ SceneSummary summarise(const Scene& scene, const RayCaster& ray_caster) {
     SceneSummary summary;
     std::map<std::uint32_t, MaterialSummary> by_material;
     EmittingObjects objects;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         MaterialSummary& of_material = by_material[patch.material];
         add_shape(scene, patch, summary);

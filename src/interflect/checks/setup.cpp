@@ -112,7 +112,7 @@ void add_contradicting_normals(const Scene& scene, std::size_t places, std::vect
                           0,
                           {}});
     const CornerNormals normals(scene, find_smooth_surfaces(scene));
-    for (const std::uint32_t patch : normals.contradicted_patches(scene, least_degrees)) contradicting.add_patch(patch);
+    for (const PatchIndex patch : normals.contradicted_patches(scene, least_degrees)) contradicting.add_patch(patch);
     contradicting.append_to(findings);
 }
 

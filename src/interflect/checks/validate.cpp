@@ -63,21 +63,21 @@ class Validator {
         if (finding.count > 0) findings_.push_back(std::move(finding));
     }
 
-    bool is_back(std::uint32_t i) const {
+    bool is_back(PatchIndex i) const {
         return scene_.patches[i].other_side != none && scene_.patches[i].other_side < i;
     }
 
     void add_coincident_faces() {
         constexpr float offset_over_tolerance = 4;  // of RayCaster
         std::vector<float> tolerance(scene_.patches.size());
-        for (std::uint32_t i = 0; i < tolerance.size(); ++i)
+        for (PatchIndex i{0}; i < tolerance.size(); ++i)
             tolerance[i] = ray_caster_.ray_offset(i) / offset_over_tolerance;
         const CoincidentFaces coincident(scene_, tolerance);
         Finder duplicates = finder("duplicate-face", "faces have the same corners as another face, which hides them",
                                    "remove one face of each pair");
         Finder overlaps = finder("coincident-face", "faces lie in the plane of another, which covers a part of them",
                                  "the smaller one is seen there; move the other away where that is not meant", false);
-        for (std::uint32_t i = 0; i < scene_.patches.size(); ++i) {
+        for (PatchIndex i{0}; i < scene_.patches.size(); ++i) {
             if (is_back(i)) continue;
             if (coincident.is_hidden(i)) duplicates.add_patch(i);
             if (coincident.is_overlapped(i) && !coincident.is_hidden(i)) overlaps.add_patch(i);
@@ -86,15 +86,15 @@ class Validator {
         overlaps.append_to(findings_);
     }
 
-    bool emits(std::uint32_t i) const {
+    bool emits(PatchIndex i) const {
         return largest_channel(scene_.materials[scene_.patches[i].material].exitance) > 0;
     }
 
     template <class Condition>
-    std::vector<std::uint32_t> sampled_patches(const Condition& condition) const {
+    std::vector<PatchIndex> sampled_patches(const Condition& condition) const {
         constexpr std::size_t most = 4096;
-        std::vector<std::uint32_t> all, result;
-        for (std::uint32_t i = 0; i < scene_.patches.size(); ++i)
+        std::vector<PatchIndex> all, result;
+        for (PatchIndex i{0}; i < scene_.patches.size(); ++i)
             if (condition(i)) all.push_back(i);
         const std::size_t step = (all.size() + most - 1) / most;
         for (std::size_t k = 0; k < all.size(); k += step) result.push_back(all[k]);
@@ -106,8 +106,8 @@ class Validator {
     void add_inverted_faces() {
         Finder inverted = finder("inverted-face", "one-sided faces have the scene only behind them",
                                  "turn them round: reverse the order of their vertices");
-        for (const std::uint32_t i :
-             sampled_patches([&](std::uint32_t k) { return scene_.patches[k].other_side == none && !emits(k); })) {
+        for (const PatchIndex i :
+             sampled_patches([&](PatchIndex k) { return scene_.patches[k].other_side == none && !emits(k); })) {
             const Surroundings front = surroundings_.measure(i, Side::front),
                                back = surroundings_.measure(i, Side::back);
             if (front.escaped == 1 && back.escaped == 0 && 2 * back.one_way < 1) inverted.add_patch(i);
@@ -122,12 +122,12 @@ class Validator {
         Finder hidden = finder("hidden-lamp", "lamps are covered or closely enclosed, and light nothing",
                                "move them into the open, or make their enclosure transparent");
         Finder dark = finder("zero-power-lamp", "lamps emit nothing", "remove them, or give them an intensity");
-        for (const std::uint32_t i : sampled_patches([&](std::uint32_t k) { return emits(k); })) {
+        for (const PatchIndex i : sampled_patches([&](PatchIndex k) { return emits(k); })) {
             if (ray_caster_.uncovered_share(i) == 0) {
                 hidden.add_patch(i);
                 continue;
             }
-            const std::uint32_t other = scene_.patches[i].other_side;
+            const PatchIndex other = scene_.patches[i].other_side;
             if (other != none && emits(other)) continue;
             const Surroundings front = surroundings_.measure(i, Side::front),
                                back = surroundings_.measure(i, Side::back);

@@ -36,7 +36,7 @@ ElementForest::ElementForest(const Scene& scene, std::size_t capacity)
     parallel_for_ranges(scene.patches.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             geometry_[i] = PatchGeometry(scene, scene.patches[i]);
-            nodes_[i] = {none, geometry_[i].area()};
+            nodes_[i] = {no_element, geometry_[i].area()};
         }
     });
     size_ = patch_count();
@@ -47,18 +47,18 @@ void ElementForest::require_made_for(const Scene& scene) const {
     detail::require_made_for(scene, scene_fingerprint_, "the forest");
 }
 
-int ElementForest::level(std::uint32_t e) const { return (std::bit_width(path(e)) - 1) / 2; }
+int ElementForest::level(ElementIndex e) const { return (std::bit_width(path(e)) - 1) / 2; }
 
-std::uint32_t ElementForest::at_path(std::uint32_t patch, std::uint32_t path) const {
-    std::uint32_t e = patch;
-    for (int digit = (std::bit_width(path) - 1) / 2 - 1; digit >= 0 && e != none; --digit) {
-        const std::uint32_t child = first_child(e);
-        e = child == none ? none : child + (path >> (2 * digit) & 3u);
+ElementIndex ElementForest::at_path(PatchIndex patch, std::uint32_t path) const {
+    ElementIndex e = patch;
+    for (int digit = (std::bit_width(path) - 1) / 2 - 1; digit >= 0 && e != no_element; --digit) {
+        const ElementIndex child = first_child(e);
+        e = child == no_element ? no_element : child + (path >> (2 * digit) & 3u);
     }
     return e;
 }
 
-Cell ElementForest::cell(std::uint32_t e) const {
+Cell ElementForest::cell(ElementIndex e) const {
     const bool triangle = geometry_[patch(e)].is_triangle();
     const std::uint32_t way = path(e);
     Cell cell;
@@ -66,16 +66,16 @@ Cell ElementForest::cell(std::uint32_t e) const {
     return cell;
 }
 
-std::vector<std::uint32_t> ElementForest::leaves() const {
-    std::vector<std::uint32_t> leaves;
-    for (std::uint32_t e = 0; e < size(); ++e)
+std::vector<ElementIndex> ElementForest::leaves() const {
+    std::vector<ElementIndex> leaves;
+    for (ElementIndex e{0}; e < size(); ++e)
         if (is_leaf(e)) leaves.push_back(e);
     return leaves;
 }
 
-std::uint32_t ElementForest::leaf_below(std::uint32_t e, Cell cell, Parameters p, std::uint32_t limit) const {
+ElementIndex ElementForest::leaf_below(ElementIndex e, Cell cell, Parameters p, std::uint32_t limit) const {
     const bool triangle = geometry_[patch(e)].is_triangle();
-    for (std::uint32_t child = first_child(e); child < limit; child = first_child(e)) {
+    for (ElementIndex child = first_child(e); child < limit; child = first_child(e)) {
         const unsigned k = cell.child_at(p, triangle);
         cell = cell.child(k, triangle);
         e = child + k;
@@ -83,21 +83,21 @@ std::uint32_t ElementForest::leaf_below(std::uint32_t e, Cell cell, Parameters p
     return e;
 }
 
-std::uint32_t ElementForest::subdivide(std::uint32_t e) {
-    std::atomic_ref<std::uint32_t> slot(nodes_[e].first_child);
+ElementIndex ElementForest::subdivide(ElementIndex e) {
+    std::atomic_ref<std::uint32_t> slot(nodes_[e].first_child.value);
     std::uint32_t state = none;
     if (level(e) >= deepest_level || !slot.compare_exchange_strong(state, being_made, std::memory_order_acquire)) {
         while (state == being_made) {  // another thread needs tens of nanoseconds
             std::this_thread::yield();
             state = slot.load(std::memory_order_acquire);
         }
-        return state;
+        return ElementIndex(state);
     }
     const std::uint32_t first = size_.fetch_add(4, std::memory_order_acq_rel);
     if (first + 4 > capacity()) {
         size_.fetch_sub(4, std::memory_order_acq_rel);
         slot.store(none, std::memory_order_release);
-        return none;
+        return no_element;
     }
     const PatchGeometry& geometry = geometry_[patch(e)];
     const Cell parent = cell(e);
@@ -106,13 +106,13 @@ std::uint32_t ElementForest::subdivide(std::uint32_t e) {
         const Cell cell = parent.child(k, geometry.is_triangle());
         // Exact, because the Jacobian is linear.
         const float area = geometry.jacobian(cell.centre(geometry.is_triangle())) * cell.size * cell.size;
-        nodes_[first + k] = {none, geometry.is_triangle() ? 0.5f * area : area};
+        nodes_[first + k] = {no_element, geometry.is_triangle() ? 0.5f * area : area};
     }
     slot.store(first, std::memory_order_release);
-    return first;
+    return ElementIndex(first);
 }
 
-std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
+std::vector<ElementIndex> ElementForest::put_in_order(std::uint32_t first) {
     const std::uint32_t last = size();
     const auto number = [&](std::uint32_t e) { return (e - patch_count()) / 4; };
     struct Siblings {
@@ -131,25 +131,26 @@ std::vector<std::uint32_t> ElementForest::put_in_order(std::uint32_t first) {
         return key(a) < key(b);
     });
 
-    std::vector<std::uint32_t> renumbered(last - first);
-    for (std::uint32_t i = 0; i < renumbered.size(); ++i) renumbered[made[i / 4].first + i % 4 - first] = first + i;
-    const auto new_number = [&](std::uint32_t e) { return e == none || e < first ? e : renumbered[e - first]; };
+    std::vector<ElementIndex> renumbered(last - first);
+    for (std::uint32_t i = 0; i < renumbered.size(); ++i)
+        renumbered[made[i / 4].first + i % 4 - first] = ElementIndex(first + i);
+    const auto new_number = [&](ElementIndex e) { return e == no_element || e < first ? e : renumbered[e - first]; };
     for (std::uint32_t e = first; e < last; e += 4) {
         const Siblings& s = made[(e - first) / 4];
-        const std::uint32_t parent = new_number(s.block.parent);
+        const ElementIndex parent = new_number(s.block.parent);
         blocks_[number(e)] = {parent, s.block.patch, s.block.parent_path};
         for (std::uint32_t k = 0; k < 4; ++k) nodes_[e + k] = {new_number(s.nodes[k].first_child), s.nodes[k].area};
-        nodes_[parent].first_child = e;
+        nodes_[parent].first_child = ElementIndex(e);
         if (parent >= generations_.back()) generations_.push_back(e);
     }
     if (last > first) generations_.push_back(last);
-    std::vector<std::uint32_t> old_numbers = std::move(renumbered);  // the inverse, in the same memory
-    for (std::uint32_t i = 0; i < old_numbers.size(); ++i) old_numbers[i] = made[i / 4].first + i % 4;
+    std::vector<ElementIndex> old_numbers = std::move(renumbered);  // the inverse, in the same memory
+    for (std::uint32_t i = 0; i < old_numbers.size(); ++i) old_numbers[i] = ElementIndex(made[i / 4].first + i % 4);
     return old_numbers;
 }
 
-void ElementForest::rebuild(std::span<const std::uint32_t> parents) {
-    for (const std::uint32_t parent : parents) {
+void ElementForest::rebuild(std::span<const ElementIndex> parents) {
+    for (const ElementIndex parent : parents) {
         const std::uint32_t next = size();
         if (parent >= next || subdivide(parent) != next)
             throw InputError(fmt::format("element {} cannot be subdivided there", parent));
@@ -158,16 +159,16 @@ void ElementForest::rebuild(std::span<const std::uint32_t> parents) {
     if (!parents.empty()) generations_.push_back(size());
 }
 
-std::vector<std::uint32_t> ElementForest::subdivided() const {
-    std::vector<std::uint32_t> parents;
+std::vector<ElementIndex> ElementForest::subdivided() const {
+    std::vector<ElementIndex> parents;
     parents.reserve((size() - patch_count()) / 4);
-    for (std::uint32_t e = patch_count(); e < size(); e += 4) parents.push_back(parent(e));
+    for (std::uint32_t e = patch_count(); e < size(); e += 4) parents.push_back(parent(ElementIndex(e)));
     return parents;
 }
 
-std::uint32_t ElementForest::drop_last_siblings() {
-    const std::uint32_t parent = this->parent(size() - 1);
-    nodes_[parent].first_child = none;
+ElementIndex ElementForest::drop_last_siblings() {
+    const ElementIndex parent = this->parent(ElementIndex(size() - 1));
+    nodes_[parent].first_child = no_element;
     size_ -= 4;
     if (generations_.back() > size()) generations_.back() = size();
     if (generations_.size() > 1 && generations_.end()[-2] == size()) generations_.pop_back();

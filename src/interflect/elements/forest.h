@@ -9,6 +9,7 @@
 #include "interflect/base/threads/parallel.h"
 #include "interflect/elements/cell.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/indices.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
@@ -35,54 +36,54 @@ class ElementForest {
     std::uint32_t size() const { return size_.load(std::memory_order_acquire); }
     std::size_t capacity() const { return nodes_.capacity(); }
 
-    std::uint32_t patch(std::uint32_t e) const { return is_root(e) ? e : block_of(e).patch; }
-    std::uint32_t parent(std::uint32_t e) const { return is_root(e) ? none : block_of(e).parent; }
-    float area(std::uint32_t e) const { return nodes_[e].area; }  ///< [m^2]
-    int level(std::uint32_t e) const;
+    PatchIndex patch(ElementIndex e) const { return is_root(e) ? PatchIndex(e.value) : block_of(e).patch; }
+    ElementIndex parent(ElementIndex e) const { return is_root(e) ? no_element : block_of(e).parent; }
+    float area(ElementIndex e) const { return nodes_[e].area; }  ///< [m^2]
+    int level(ElementIndex e) const;
     /// Returns the path from the root: 1, then two bits per level, the index of the child.
-    std::uint32_t path(std::uint32_t e) const {
+    std::uint32_t path(ElementIndex e) const {
         return is_root(e) ? 1 : block_of(e).parent_path << 2 | number_in_block(e);
     }
     /// Returns the element with this path(), or none.
-    std::uint32_t at_path(std::uint32_t patch, std::uint32_t path) const;
-    Cell cell(std::uint32_t e) const;
-    const PatchGeometry& geometry(std::uint32_t patch) const { return geometry_[patch]; }
-    void prefetch(std::uint32_t e) const { __builtin_prefetch(&nodes_[e]); }
-    void prefetch_geometry(std::uint32_t patch) const {
+    ElementIndex at_path(PatchIndex patch, std::uint32_t path) const;
+    Cell cell(ElementIndex e) const;
+    const PatchGeometry& geometry(PatchIndex patch) const { return geometry_[patch]; }
+    void prefetch(ElementIndex e) const { __builtin_prefetch(&nodes_[e]); }
+    void prefetch_geometry(PatchIndex patch) const {
         const char* geometry = reinterpret_cast<const char*>(&geometry_[patch]);
         __builtin_prefetch(geometry);
         __builtin_prefetch(geometry + 64);
     }
 
-    std::uint32_t first_child(std::uint32_t e) const {
-        const std::uint32_t child = std::atomic_ref(nodes_[e].first_child).load(std::memory_order_acquire);
-        return child >= being_made ? none : child;
+    ElementIndex first_child(ElementIndex e) const {
+        const std::uint32_t child = std::atomic_ref(nodes_[e].first_child.value).load(std::memory_order_acquire);
+        return child >= being_made ? no_element : ElementIndex(child);
     }
-    bool is_leaf(std::uint32_t e) const { return first_child(e) == none; }
-    std::vector<std::uint32_t> leaves() const;
+    bool is_leaf(ElementIndex e) const { return first_child(e) == no_element; }
+    std::vector<ElementIndex> leaves() const;
     /// Returns the leaf that contains `p`, ignoring elements from `limit` on.
-    std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const {
+    ElementIndex leaf_at(PatchIndex root, Parameters p, std::uint32_t limit = none) const {
         return leaf_below(root, Cell(), p, limit);
     }
     /// The same from `e`; its cell must contain `p`.
-    std::uint32_t leaf_below(std::uint32_t e, Cell cell, Parameters p, std::uint32_t limit = none) const;
+    ElementIndex leaf_below(ElementIndex e, Cell cell, Parameters p, std::uint32_t limit = none) const;
 
     /// Creates the children of `e` unless they exist. Thread-safe.
     /// @return  First child; none if the forest is full or `e` is at the deepest level.
-    std::uint32_t subdivide(std::uint32_t e);
+    ElementIndex subdivide(ElementIndex e);
 
     /// Sorts the elements from `first` on by level, patch and path. Not thread-safe.
     /// @return  Old index of each element first + i.
-    std::vector<std::uint32_t> put_in_order(std::uint32_t first);
+    std::vector<ElementIndex> put_in_order(std::uint32_t first);
 
     /// Returns the order of division, for rebuild().
-    std::vector<std::uint32_t> subdivided() const;
+    std::vector<ElementIndex> subdivided() const;
     /// Divides `parents` in this order, in a forest of roots.
     /// @throws InputError if an element cannot be subdivided.
-    void rebuild(std::span<const std::uint32_t> parents);
+    void rebuild(std::span<const ElementIndex> parents);
 
     /// Removes the last four leaves of an ordered forest; returns their parent. Not thread-safe.
-    std::uint32_t drop_last_siblings();
+    ElementIndex drop_last_siblings();
 
     /// Calls body(first) per block of siblings, parents first; in parallel after put_in_order().
     template <class Body>
@@ -95,24 +96,26 @@ class ElementForest {
     static constexpr std::uint32_t being_made = 0xfffffffeu;
 
     struct Node {
-        std::uint32_t first_child;
+        ElementIndex first_child;
         float area;
     };
     struct Block {
-        std::uint32_t parent, patch, parent_path;
+        ElementIndex parent;
+        PatchIndex patch;
+        std::uint32_t parent_path;
     };
 
     static_assert((4 * sizeof(Node) + sizeof(Block)) / 4 == reserved_per_element);
 
-    bool is_root(std::uint32_t e) const { return e < patch_count(); }
-    const Block& block_of(std::uint32_t e) const { return blocks_[(e - patch_count()) / 4]; }
-    std::uint32_t number_in_block(std::uint32_t e) const { return (e - patch_count()) % 4; }
+    bool is_root(ElementIndex e) const { return e < patch_count(); }
+    const Block& block_of(ElementIndex e) const { return blocks_[(e - patch_count()) / 4]; }
+    std::uint32_t number_in_block(ElementIndex e) const { return (e - patch_count()) % 4; }
 
     template <class Body>
     static void for_siblings(std::uint32_t begin, std::uint32_t end, const Body& body);
 
     std::uint64_t scene_fingerprint_;
-    std::vector<PatchGeometry> geometry_;
+    PerPatch<PatchGeometry> geometry_;
     std::uint32_t patch_count_;
     /// First element of each generation, then the end.
     std::vector<std::uint32_t> generations_;
@@ -125,44 +128,44 @@ template <class Body>
 void ElementForest::for_siblings(std::uint32_t begin, std::uint32_t end, const Body& body) {
     constexpr std::size_t at_once = 2048;
     parallel_for_ranges((end - begin) / 4, at_once, [&](std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) body(begin + 4 * static_cast<std::uint32_t>(i));
+        for (std::size_t i = first; i < last; ++i) body(ElementIndex(begin + 4 * i));
     });
 }
 
 template <class Body>
 void ElementForest::for_siblings_from_roots(const Body& body) const {
     for (std::size_t g = 0; g + 1 < generations_.size(); ++g) for_siblings(generations_[g], generations_[g + 1], body);
-    for (std::uint32_t first = generations_.back(); first < size(); first += 4) body(first);
+    for (std::uint32_t first = generations_.back(); first < size(); first += 4) body(ElementIndex(first));
 }
 
 template <class Body>
 void ElementForest::for_siblings_from_leaves(const Body& body) const {
-    for (std::uint32_t end = size(); end > generations_.back(); end -= 4) body(end - 4);
+    for (std::uint32_t end = size(); end > generations_.back(); end -= 4) body(ElementIndex(end - 4));
     for (std::size_t g = generations_.size() - 1; g > 0; --g) for_siblings(generations_[g - 1], generations_[g], body);
 }
 
 template <class T>
 void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {
     values.resize(forest.size());
-    for (std::uint32_t e = first; e < forest.size(); ++e) values[e] = values[forest.parent(e)];
+    for (ElementIndex e(first); e < forest.size(); ++e) values[e] = values[forest.parent(e)];
 }
 
 /// Adds each parent's value per area to its children.
 template <class T>
 void push(const ElementForest& forest, std::vector<T>& values) {
-    forest.for_siblings_from_roots([&](std::uint32_t first) {
+    forest.for_siblings_from_roots([&](ElementIndex first) {
         const T from_parent = values[forest.parent(first)];
-        for (std::uint32_t e = first; e < first + 4; ++e) values[e] += from_parent;
+        for (ElementIndex e = first; e < first + 4; ++e) values[e] += from_parent;
     });
 }
 
 /// Sets inner elements to the area-weighted mean of their children.
 template <class T>
 void pull(const ElementForest& forest, std::vector<T>& values) {
-    forest.for_siblings_from_leaves([&](std::uint32_t first) {
+    forest.for_siblings_from_leaves([&](ElementIndex first) {
         T sum = values[first] * forest.area(first);
         float area = forest.area(first);
-        for (std::uint32_t e = first + 1; e < first + 4; ++e) {
+        for (ElementIndex e = first + 1; e < first + 4; ++e) {
             sum += values[e] * forest.area(e);
             area += forest.area(e);
         }

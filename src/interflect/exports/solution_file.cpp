@@ -62,14 +62,14 @@ std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
     return numbers;
 }
 
-std::vector<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::size_t each) {
-    std::vector<Patch> patches(numbers.size() / each);
+PerPatch<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::size_t each) {
+    PerPatch<Patch> patches(numbers.size() / each);
     for (std::size_t i = 0; i < patches.size(); ++i) {
         const auto* n = &numbers[each * i];
         std::copy_n(n, 4, patches[i].vertices.begin());
         patches[i].material = n[4];
         patches[i].object = n[5];
-        patches[i].other_side = n[6];
+        patches[i].other_side = PatchIndex(n[6]);
         if (each == numbers_per_patch) patches[i].surface = n[7];
     }
     return patches;
@@ -92,7 +92,7 @@ std::shared_ptr<ElementForest> forest_of(const Scene& scene, const std::vector<s
     const std::size_t size = scene.patches.size() + 4 * parents.size();
     if (size >= none) throw std::runtime_error("too many elements");
     auto forest = std::make_shared<ElementForest>(scene, size);
-    forest->rebuild(parents);
+    forest->rebuild(std::vector<ElementIndex>(parents.begin(), parents.end()));
     return forest;
 }
 

@@ -41,7 +41,7 @@ void add_textures(Scene& scene, const Palette& palette, std::uint32_t floor) {
     const std::uint32_t label = add_texture(scene, make_label()), louvres = add_texture(scene, make_louvres());
     for (const std::uint32_t paper : palette.papers) scene.materials[paper].reflectance_texture = label;
     for (const std::uint32_t lamp : palette.lamps) scene.materials[lamp].exitance_texture = louvres;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i)
         if (scene.materials[scene.patches[i].material].is_textured())
             lay_image(scene, i, scene.patches[i].material == floor ? tiles : 0);
 }

@@ -67,7 +67,7 @@ std::uint32_t add_texture(Scene& scene, Texture texture) {
     return static_cast<std::uint32_t>(scene.textures.size() - 1);
 }
 
-void lay_image(Scene& scene, std::uint32_t patch, float repeat) {
+void lay_image(Scene& scene, PatchIndex patch, float repeat) {
     constexpr std::size_t corners_of_patch = 4;
     scene.texture_coordinates.resize(scene.vertices.size(), V2f(0));
     auto& v = scene.patches[patch].vertices;

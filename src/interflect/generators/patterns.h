@@ -15,6 +15,6 @@ std::uint32_t add_texture(Scene& scene, Texture texture);
 
 /// Gives a quadrilateral its own vertices with texture coordinates, from the lowest edge upwards.
 /// @param repeat  Side of the repeated image [m]; 0 covers the patch once.
-void lay_image(Scene& scene, std::uint32_t patch, float repeat = 0);
+void lay_image(Scene& scene, PatchIndex patch, float repeat = 0);
 
 }  // namespace interflect::detail

@@ -26,10 +26,10 @@ constexpr double pi = std::numbers::pi;
 
 struct Place {
     V3f towards;
-    float distance = 0;          // [m]
-    std::uint32_t patch = none;  // required hit; default: free up to `distance`
-    Rgb radiance{0, 0, 0};       // [cd/m^2]
-    double solid_angle = 0;      // [sr]
+    float distance = 0;      // [m]
+    PatchIndex patch;        // required hit; default: free up to `distance`
+    Rgb radiance{0, 0, 0};   // [cd/m^2]
+    double solid_angle = 0;  // [sr]
     double position_index = 1;
     std::size_t source = 0;
 };
@@ -55,7 +55,7 @@ class SourcePlaces {
   public:
     SourcePlaces(const Scene& scene, const Observer& observer)
         : scene_(scene), eye_(observer.eye - scene.origin), line_of_sight_(observer.line_of_sight.normalized()) {
-        for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        for (PatchIndex i{0}; i < scene.patches.size(); ++i)
             if (largest_channel(scene.materials[scene.patches[i].material].exitance) > 0) add_patch(i);
         for (const Luminaire& luminaire : scene.luminaires)
             if (const auto* light = std::get_if<MeasuredLight>(&luminaire.kind)) add_luminaire(luminaire, *light);
@@ -67,7 +67,7 @@ class SourcePlaces {
 
   private:
     /// Cells have nearly constant directions.
-    void add_patch(std::uint32_t index) {
+    void add_patch(PatchIndex index) {
         constexpr float cells_per_distance = 8;
         constexpr int fewest = 2, most = 16;
         const Patch& patch = scene_.patches[index];
@@ -117,7 +117,7 @@ class SourcePlaces {
             const int column = i % per_side, row = i / per_side;
             const Illumination seen = illumination(luminaire, eye_, (static_cast<float>(column) + 0.5f) / per_side,
                                                    (static_cast<float>(row) + 0.5f) / per_side);
-            add({seen.towards, seen.distance, none, radiance, solid_angle, p, sums_.size() - 1});
+            add({seen.towards, seen.distance, no_patch, radiance, solid_angle, p, sums_.size() - 1});
         }
     }
 

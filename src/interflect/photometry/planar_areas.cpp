@@ -36,7 +36,7 @@ bool is_part_of(const std::string& name, const std::string& object) {
     return name == object || (name.starts_with(object) && name[object.size()] == '.');
 }
 
-std::string object_name(const Scene& scene, std::uint32_t patch) {
+std::string object_name(const Scene& scene, PatchIndex patch) {
     const std::uint32_t object = scene.patches[patch].object;
     return object < scene.objects.size() ? scene.objects[object] : std::string();
 }
@@ -57,9 +57,9 @@ std::string_view without_copies(std::string_view name) {
     }
 }
 
-std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& object) {
-    std::vector<std::uint32_t> patches;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+std::vector<PatchIndex> patches_of(const Scene& scene, const std::string& object) {
+    std::vector<PatchIndex> patches;
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i)
         if (!object.empty() && is_part_of(object_name(scene, i), object)) patches.push_back(i);
     if (patches.empty())
         throw InputError(
@@ -69,10 +69,10 @@ std::vector<std::uint32_t> patches_of(const Scene& scene, const std::string& obj
     return patches;
 }
 
-std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<std::uint32_t> patches, const std::string& name) {
+std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<PatchIndex> patches, const std::string& name) {
     std::vector<PatchGeometry> geometry;
     geometry.reserve(patches.size());
-    for (const std::uint32_t i : patches) geometry.emplace_back(scene, scene.patches[i]);
+    for (const PatchIndex i : patches) geometry.emplace_back(scene, scene.patches[i]);
     std::vector<std::size_t> order(patches.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
@@ -118,7 +118,7 @@ bool is_covered(const Scene& scene, const PlanarArea& area, std::span<const Plan
             return outline.holds({outline.u.dot(d), outline.v.dot(d)});
         });
     };
-    return std::all_of(area.patches.begin(), area.patches.end(), [&](std::uint32_t i) {
+    return std::all_of(area.patches.begin(), area.patches.end(), [&](PatchIndex i) {
         const Patch& patch = scene.patches[i];
         const V3f centre = PatchGeometry(scene, patch).centre();
         return std::all_of(patch.vertices.begin(), patch.vertices.begin() + patch.vertex_count(), [&](std::uint32_t v) {
@@ -145,10 +145,10 @@ std::string text_of_directions(const std::vector<PlanarArea>& planes) {
 }  // namespace
 
 PlanarArea find_surface(const Scene& scene, const std::string& object, const std::optional<V3f>& facing) {
-    std::vector<std::uint32_t> patches = patches_of(scene, object);
+    std::vector<PatchIndex> patches = patches_of(scene, object);
     if (facing) {
         const V3f direction = facing->normalized();
-        std::erase_if(patches, [&](std::uint32_t i) {
+        std::erase_if(patches, [&](PatchIndex i) {
             return !(PatchGeometry(scene, scene.patches[i]).normal().dot(direction) > facing_cosine);
         });
         if (patches.empty())
@@ -156,7 +156,7 @@ PlanarArea find_surface(const Scene& scene, const std::string& object, const std
                              fmt::format("no face of '{}' faces {}, but {}", object, text_of_direction(direction),
                                          text_of_directions(planes_of(scene, patches_of(scene, object), object))));
     } else {
-        std::erase_if(patches, [&](std::uint32_t i) { return scene.patches[i].other_side < i; });
+        std::erase_if(patches, [&](PatchIndex i) { return scene.patches[i].other_side < i; });
     }
     std::vector<PlanarArea> planes = planes_of(scene, std::move(patches), object);
     if (planes.size() > 1 && planes[1].area > (1 - equal_areas) * planes[0].area)
@@ -168,8 +168,8 @@ PlanarArea find_surface(const Scene& scene, const std::string& object, const std
 }
 
 PlanarArea find_top(const Scene& scene, const std::string& object) {
-    std::vector<std::uint32_t> patches = patches_of(scene, object);
-    std::erase_if(patches, [&](std::uint32_t i) {
+    std::vector<PatchIndex> patches = patches_of(scene, object);
+    std::erase_if(patches, [&](PatchIndex i) {
         return !(PatchGeometry(scene, scene.patches[i]).normal().z > same_plane_cosine);
     });
     if (patches.empty())
@@ -184,8 +184,8 @@ PlanarArea find_top(const Scene& scene, const std::string& object) {
 PlanarArea find_floor(const Scene& scene, double height) {
     constexpr double height_rounding = 1e-6;
     const double highest = height + height_rounding * std::max(std::abs(height), std::abs(scene.origin.z));
-    std::vector<std::uint32_t> patches;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    std::vector<PatchIndex> patches;
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const PatchGeometry geometry(scene, scene.patches[i]);
         if (geometry.normal().z > same_plane_cosine &&
             scene.origin.z + static_cast<double>(geometry.centre().z) <= highest)
@@ -199,7 +199,7 @@ PlanarArea find_floor(const Scene& scene, double height) {
 
 std::vector<PlanarArea> divide_by_object(const Scene& scene, const PlanarArea& area) {
     std::map<std::string, PlanarArea> parts;
-    for (const std::uint32_t i : area.patches) {
+    for (const PatchIndex i : area.patches) {
         const std::string name(without_copies(object_name(scene, i)));
         PlanarArea& part = parts[name];
         part.name = name.empty() ? area.name : name;

@@ -126,7 +126,7 @@ PlanarOutline outline_of(const Scene& scene, const PlanarArea& area) {
     const auto in_world = [&](std::uint32_t vertex) { return scene.origin + V3d(scene.vertices[vertex]); };
     outline.origin = in_world(scene.patches[area.patches.front()].vertices[0]);
     std::vector<V2d> corners;
-    for (const std::uint32_t i : area.patches) {
+    for (const PatchIndex i : area.patches) {
         const Patch& patch = scene.patches[i];
         std::vector<V2d>& face = outline.faces.emplace_back();
         for (std::size_t k = 0; k < static_cast<std::size_t>(patch.vertex_count()); ++k) {

@@ -130,12 +130,12 @@ Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
     if (coincident.is_overlapped(front)) {
         const V3f x = ray.origin + distance * ray.direction;
         const float x_error = relative_hit_error * (largest_coordinate(x) + distance);
-        const std::uint32_t patch = coincident.intercepting_patch(front, x, ray.direction, x_error);
+        const PatchIndex patch = coincident.intercepting_patch(front, x, ray.direction, x_error);
         if (patch != none) return {patch, distance};
     }
     const float facing =
         query.hit.Ng_x * ray.direction.x + query.hit.Ng_y * ray.direction.y + query.hit.Ng_z * ray.direction.z;
-    return {faces.two_sided && facing > 0 ? front + 1 : front, distance};
+    return {PatchIndex(faces.two_sided && facing > 0 ? front + 1 : front), distance};
 }
 
 RayCaster::RayCaster(const Scene& scene)
@@ -150,7 +150,7 @@ RayCaster::RayCaster(const Scene& scene)
     Faces faces[2][2];  // [triangle][two-sided]
     for (const bool triangles : {false, true})
         for (const bool two_sided : {false, true}) faces[triangles][two_sided] = {{}, triangles, two_sided};
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         if (patch.other_side >= i && !embree_->coincident.is_hidden(i))
             faces[patch.is_triangle()][patch.other_side != none].fronts.push_back(i);
@@ -178,7 +178,7 @@ void RayCaster::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
     }
 }
 
-float RayCaster::uncovered_share(std::uint32_t patch) const { return embree_->coincident.uncovered_share(patch); }
+float RayCaster::uncovered_share(PatchIndex patch) const { return embree_->coincident.uncovered_share(patch); }
 
 void RayCaster::require_made_for(const Scene& scene) const {
     interflect::require_made_for(scene, scene_fingerprint_, "the ray caster");

@@ -35,7 +35,7 @@ std::vector<float> values_of(ElementQuantity quantity, const Solution& solution)
     const ElementForest& forest = *solution.forest;
     std::vector<float> values(forest.size(), 0.0f);
     const auto fill = [&](const auto& value) {
-        for (std::uint32_t e = 0; e < forest.size(); ++e) values[e] = static_cast<float>(value(e));
+        for (ElementIndex e{0}; e < forest.size(); ++e) values[e] = static_cast<float>(value(e));
     };
     const bool needs_importance =
         quantity == ElementQuantity::importance || quantity == ElementQuantity::direct_importance;
@@ -43,22 +43,22 @@ std::vector<float> values_of(ElementQuantity quantity, const Solution& solution)
         throw InputError("importance cannot be drawn: the scene was solved without a view");
     switch (quantity) {
         case ElementQuantity::irradiance:
-            fill([&](std::uint32_t e) { return luminance(solution.irradiance[e]); });
+            fill([&](ElementIndex e) { return luminance(solution.irradiance[e]); });
             break;
         case ElementQuantity::importance:
-            fill([&](std::uint32_t e) { return solution.view_importance[e] + solution.indirect_importance[e]; });
+            fill([&](ElementIndex e) { return solution.view_importance[e] + solution.indirect_importance[e]; });
             break;
         case ElementQuantity::direct_importance:
             values = solution.view_importance;
             break;
         case ElementQuantity::level:
-            fill([&](std::uint32_t e) { return forest.level(e); });
+            fill([&](ElementIndex e) { return forest.level(e); });
             break;
         case ElementQuantity::rays:
-            fill([&](std::uint32_t e) { return solution.rays[e] / forest.area(e); });
+            fill([&](ElementIndex e) { return solution.rays[e] / forest.area(e); });
             break;
         default:
-            fill([&](std::uint32_t e) {
+            fill([&](ElementIndex e) {
                 const float h = luminance(solution.irradiance[e]);
                 return h > 0 ? solution.standard_error[e] / h : 0;
             });

@@ -192,7 +192,7 @@ void check_luminaire(const Scene& scene, const Luminaire& l, Faults& faults) {
                  [&] { return fmt::format("light '{}': object {} does not exist", l.name, l.object); });
 }
 
-void check_patch(const Scene& scene, std::uint32_t i, Faults& faults) {
+void check_patch(const Scene& scene, PatchIndex i, Faults& faults) {
     const Patch& p = scene.patches[i];
     const Subject patch = numbered("patch", i);
     if (has_vertices(scene, p))
@@ -228,7 +228,7 @@ std::vector<Fault> scene_faults(const Scene& scene) {
     for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
     faults.add(sky_count_fault(scene), {}, the_scene);
     check_materials(scene, faults);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) check_patch(scene, i, faults);
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) check_patch(scene, i, faults);
     if (!scene.patches.empty()) faults.add(scene_width_fault(scene_width(scene)), {}, the_scene);
     for (const View& v : scene.views)
         faults.add(view_fault(v), named(v.name), [&] { return fmt::format("view '{}': ", v.name); });

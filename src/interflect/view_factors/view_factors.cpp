@@ -186,7 +186,7 @@ class Estimator {
             ray_caster_.trace(batch.rays, batch.hits);
             for (std::size_t i = 0; i < batch.rays.size(); ++i) {
                 const std::uint32_t escaped = batch.rays[i].direction.z > 0 ? others_.sky : others_.ground;
-                const std::uint32_t patch = batch.hits[i].patch;
+                const PatchIndex patch = batch.hits[i].patch;
                 counter.add(patch == none ? escaped : column_of_patch_[patch]);
             }
             result.rays += static_cast<std::int64_t>(batch.rays.size());

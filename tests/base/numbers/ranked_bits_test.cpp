@@ -23,7 +23,7 @@ TEST(RankedBits, KnowsItsMembersAndHowManyAreBeforeEach) {
 }
 
 TEST(RankedBits, MayHaveNoMembers) {
-    const RankedBits none_of_64(64, {}), none_at_all;
+    const RankedBits none_of_64(64, std::vector<std::uint32_t>()), none_at_all;
     for (std::uint32_t number = 0; number < 64; ++number) {
         EXPECT_FALSE(none_of_64[number]);
         EXPECT_FALSE(none_at_all[number]);

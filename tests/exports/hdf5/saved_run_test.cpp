@@ -326,7 +326,7 @@ TEST(ChangeOfViews, KeepsTheLightAndFindsImportanceAnew) {
     const Solution& after = solver.solution();
     EXPECT_EQ(after.forest->subdivided(), before.forest->subdivided());
     double difference = 0, sum = 0;
-    for (std::uint32_t i = 0; i < after.forest->patch_count(); ++i) {
+    for (PatchIndex i{0}; i < after.forest->patch_count(); ++i) {
         // Clusters keep the means of the visible patches, which are others now.
         EXPECT_NEAR(after.irradiance[i].x / before.irradiance[i].x, 1, 1e-3) << i;
         EXPECT_EQ(after.indirect_importance[i], 0);

@@ -67,7 +67,7 @@ SolvedScene refined_example() {
 void expect_equal(const ElementForest& a, const ElementForest& b) {
     ASSERT_EQ(a.size(), b.size());
     ASSERT_EQ(a.patch_count(), b.patch_count());
-    for (std::uint32_t e = 0; e < a.size(); ++e) {
+    for (ElementIndex e{0}; e < a.size(); ++e) {
         EXPECT_EQ(a.patch(e), b.patch(e)) << e;
         EXPECT_EQ(a.parent(e), b.parent(e)) << e;
         EXPECT_EQ(a.path(e), b.path(e)) << e;
@@ -130,7 +130,7 @@ std::string contents(const fs::path& path) {
 
 std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
     std::vector<std::uint32_t> parents;
-    for (std::uint32_t e = solution.forest->patch_count(); e < solution.forest->size(); e += 4)
+    for (ElementIndex e = solution.forest->patch_count(); e < solution.forest->size(); e += 4)
         parents.push_back(solution.forest->parent(e));
     return parents;
 }

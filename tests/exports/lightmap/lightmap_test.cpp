@@ -89,7 +89,7 @@ TEST_P(RoomLightmap, HasNoDarkOrBrightBorders) {
     const Scene scene = closed_box(GetParam(), 1, std::vector<Material>(6, grey));
     const Solution solution = uniform(scene, 3);
     const Lightmap lightmap = make_lightmap(scene, solution, at(20));
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
         for (std::uint64_t i = 0; i < 1000; ++i) {
             const PatchGeometry& geometry = solution.forest->geometry(p);
             ASSERT_NEAR(sample(lightmap, p, random_place(geometry, i)).x, 3, 1e-5);
@@ -100,7 +100,7 @@ TEST_P(RoomLightmap, HasNoDarkOrBrightBorders) {
 TEST_P(RoomLightmap, IsNotMirrored) {
     const Scene scene = closed_box(GetParam(), 1, std::vector<Material>(6, grey));
     const Lightmap lightmap = make_lightmap(scene, uniform(scene, 1), at(20));
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const V2f origin = lightmap.coordinate(p, {0, 0});
         EXPECT_GT((lightmap.coordinate(p, {1, 0}) - origin).cross(lightmap.coordinate(p, {0, 1}) - origin), 0);
     }
@@ -132,7 +132,7 @@ TEST(Lightmap, IsWhatSmoothShadingHas) {
     const Lightmap lightmap = make_lightmap(scene, solution, at(50));
     const ElementVertices vertices(scene, *solution.forest);
     const SmoothField smooth(*solution.forest, vertices, solution.irradiance);
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
         for (std::uint64_t i = 0; i < 1000; ++i) {
             const PatchGeometry& geometry = solution.forest->geometry(p);
             const Parameters place = random_place(geometry, i);
@@ -147,8 +147,8 @@ TEST(Lightmap, SeamsBetweenCoplanarFacesAreBelowOnePercent) {
     Scene scene;
     const std::uint32_t material = add_material(scene, Rgb(0.5f), Rgb(0));
     scene.objects = {"", "other"};
-    const std::uint32_t left = add_rectangle(scene, V3f(0), V3f(2.03f, 0, 0), V3f(0, 3, 0), material);
-    const std::uint32_t right = add_rectangle(scene, V3f(2.03f, 0, 0), V3f(0.71f, 0, 0), V3f(0, 3, 0), material);
+    const PatchIndex left = add_rectangle(scene, V3f(0), V3f(2.03f, 0, 0), V3f(0, 3, 0), material);
+    const PatchIndex right = add_rectangle(scene, V3f(2.03f, 0, 0), V3f(0.71f, 0, 0), V3f(0, 3, 0), material);
     scene.patches[right].object = 1;
     const Solution solution =
         solution_of(scene, 4, [](const V3f& x) { return Rgb(100 + 80 * std::sin(3 * x.y) * std::cos(2 * x.x)); });
@@ -188,7 +188,7 @@ TEST_P(LightmapBesideWall, LeaksNoLight) {
     const Scene scene = floor_with_wall(thickness, end);
     const Solution solution = solution_of(scene, 5, [](const V3f& x) { return Rgb(x.x < 2 ? 1000.0f : 1.0f); });
     const Lightmap lightmap = make_lightmap(scene, solution, at(texels_per_metre));
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const PatchGeometry& geometry = solution.forest->geometry(p);
         if (geometry.normal().z < 0.9f || geometry.centre().z > 0.1f) continue;  // not part of the floor
         for (std::uint64_t i = 0; i < 2000; ++i) {
@@ -227,7 +227,7 @@ TEST_P(SealedRoomsLightmap, LeaksNoLight) {
     const float radians = GetParam().options.turn * std::numbers::pi_v<float> / 180;
     const V3f across(std::cos(radians), std::sin(radians), 0);
     double lit = 0, dark = 0, of_smooth_shading = 0;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const PatchGeometry& geometry = solution.forest->geometry(p);
         if (lightmap.chart_of_patch[p] == none) {
             EXPECT_LT(geometry.area(), 2) << "only parts inside the wall and the cabinets are left out";
@@ -261,7 +261,7 @@ TEST_P(SealedRoomsLightmap, LeaksNoLightWithHybridShading) {
     const float radians = GetParam().options.turn * std::numbers::pi_v<float> / 180;
     const V3f across(std::cos(radians), std::sin(radians), 0);
     double lit = 0, dark = 0;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         if (lightmap.chart_of_patch[p] == none) continue;
         const PatchGeometry& geometry = solution.forest->geometry(p);
         for (std::uint64_t i = 0; i < 50; ++i) {
@@ -359,7 +359,8 @@ TEST(BakedLight, OfTwoColumnsHasTheMeanOfTheFace) {
     std::vector<BakedPoint> points;
     for (int i = 0; i < rows; ++i)
         for (const float u : {0.0f, 1.0f})
-            points.push_back({0, {u, (static_cast<float>(i) + 0.5f) / rows}, {Parameters{1, 0}, {0, 1.0f / rows}}});
+            points.push_back(
+                {PatchIndex(0), {u, (static_cast<float>(i) + 0.5f) / rows}, {Parameters{1, 0}, {0, 1.0f / rows}}});
     const Solution solution = uniform(scene, 0);
     const BakeOptions options{Shading::hybrid, 1024, 1};
     const BakedLight light(scene, solution, options, {&DefaultSamples::texel, 0.06, false});
@@ -386,8 +387,9 @@ class FilteredTexels : public testing::Test {
                              {"sun", 0, DirectionalLight{{0.1f, 0.2f, -1}, Rgb(100)}}};
         for (std::uint32_t i = 0; i < side * side; ++i) {
             const auto column = static_cast<float>(i % side), row = static_cast<float>(i / side);
-            points_.push_back(
-                {0, {(column + 0.5f) / side, (row + 0.5f) / side}, {Parameters{1.0f / side, 0}, {0, 1.0f / side}}});
+            points_.push_back({PatchIndex(0),
+                               {(column + 0.5f) / side, (row + 0.5f) / side},
+                               {Parameters{1.0f / side, 0}, {0, 1.0f / side}}});
             grid_.points.push_back(i);
         }
         solution_ = uniform(scene_, 0);

@@ -131,7 +131,7 @@ TEST_P(UnfoldedLightmap, HasContinuousLight) {
     const Lightmap lightmap = make_lightmap(scene_, solution, at(50));
     const ElementVertices vertices(scene_, *solution.forest);
     const SmoothField smooth(*solution.forest, vertices, solution.irradiance);
-    for (std::uint32_t p = 0; p < scene_.patches.size(); ++p)
+    for (PatchIndex p{0}; p < scene_.patches.size(); ++p)
         for (std::uint64_t i = 0; i < 40; ++i) {
             const Parameters place = random_place(solution.forest->geometry(p), i);
             ASSERT_NEAR(sample(lightmap, p, place).x / smooth.at(p, place).x, 1, 0.005) << p;

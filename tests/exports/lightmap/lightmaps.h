@@ -16,11 +16,11 @@ namespace interflect::lightmap_testing {
 template <class Field>
 Solution solution_of(const Scene& scene, int levels, const Field& field) {
     const auto forest = std::make_shared<detail::ElementForest>(scene, scene.patches.size() << (2 * levels + 1));
-    for (std::uint32_t e = 0; e < forest->size(); ++e)
+    for (ElementIndex e{0}; e < forest->size(); ++e)
         if (forest->level(e) < levels) forest->subdivide(e);
     forest->put_in_order(forest->patch_count());
     Solution solution;
-    for (std::uint32_t e = 0; e < forest->size(); ++e) {
+    for (ElementIndex e{0}; e < forest->size(); ++e) {
         const detail::PatchGeometry& geometry = forest->geometry(forest->patch(e));
         solution.irradiance.push_back(field(geometry.point(forest->cell(e).centre(geometry.is_triangle()))));
     }
@@ -42,7 +42,7 @@ inline ExportOptions at(float texels_per_metre) {
 }
 
 /// Computes the bilinear interpolation from the centres of the four nearest texels, as on a graphics card.
-inline Rgb sample(const detail::Lightmap& lightmap, std::uint32_t patch, detail::Parameters place) {
+inline Rgb sample(const detail::Lightmap& lightmap, PatchIndex patch, detail::Parameters place) {
     const Image& image = lightmap.images[static_cast<std::size_t>(lightmap.page(patch))];
     const V2f at = lightmap.coordinate(patch, place);
     const float column = at.x * static_cast<float>(image.width) - 0.5f;

@@ -35,7 +35,7 @@ Scene in_triangles(Scene scene) {
 /// Down to eight levels, to put large leaves beside small ones everywhere.
 void subdivide_at_random(ElementForest& forest) {
     constexpr int deepest = 8;
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
+    for (ElementIndex e{0}; e < forest.size(); ++e)
         if (forest.level(e) < deepest && random_double(7, e) < (forest.level(e) < 2 ? 0.9 : 0.35)) forest.subdivide(e);
     forest.put_in_order(forest.patch_count());
 }
@@ -46,10 +46,10 @@ class ElementMeshOf : public testing::TestWithParam<bool> {  // with triangles
         if (GetParam()) scene = in_triangles(std::move(scene));
         forest.emplace(scene, 1 << 20);
         subdivide_at_random(*forest);
-        for (std::uint32_t e = 0; e < forest->size(); ++e)
+        for (ElementIndex e{0}; e < forest->size(); ++e)
             irradiance.emplace_back(static_cast<float>(random_double(11, e)), 1.0f, 2.0f);
     }
-    std::vector<MeshTriangle> triangles_of(ElementMesh& mesh, std::uint32_t leaf) const {
+    std::vector<MeshTriangle> triangles_of(ElementMesh& mesh, ElementIndex leaf) const {
         std::vector<MeshTriangle> triangles;
         mesh.triangulate(leaf, triangles);
         return triangles;
@@ -65,7 +65,7 @@ class ElementMeshOf : public testing::TestWithParam<bool> {  // with triangles
 TEST_P(ElementMeshOf, ClosedBoxIsWatertight) {
     ElementMesh mesh(scene, *forest, irradiance);
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
-    for (const std::uint32_t leaf : forest->leaves())
+    for (const ElementIndex leaf : forest->leaves())
         for (const MeshTriangle& triangle : triangles_of(mesh, leaf))
             for (std::size_t c = 0; c < 3; ++c) ++edges[{triangle[c].point, triangle[(c + 1) % 3].point}];
     EXPECT_GT(edges.size(), 10'000);
@@ -77,7 +77,7 @@ TEST_P(ElementMeshOf, ClosedBoxIsWatertight) {
 
 TEST_P(ElementMeshOf, TrianglesCoverEachLeaf) {
     ElementMesh mesh(scene, *forest, irradiance);
-    for (const std::uint32_t leaf : forest->leaves()) {
+    for (const ElementIndex leaf : forest->leaves()) {
         const V3f& normal = forest->geometry(forest->patch(leaf)).normal();
         double area = 0;
         for (const MeshTriangle& triangle : triangles_of(mesh, leaf)) {
@@ -92,7 +92,7 @@ TEST_P(ElementMeshOf, CornersHaveTheIrradianceOfSmoothShading) {
     ElementMesh mesh(scene, *forest, irradiance);
     const ElementVertices vertices(scene, *forest);
     const SmoothField smooth(*forest, vertices, irradiance);
-    for (const std::uint32_t leaf : forest->leaves())
+    for (const ElementIndex leaf : forest->leaves())
         for (const MeshTriangle& triangle : triangles_of(mesh, leaf))
             for (const MeshCorner& corner : triangle) {
                 const Rgb expected = smooth.at(forest->patch(leaf), corner.at);

@@ -49,7 +49,7 @@ float exact_irradiance(const V3f& x) {
 
 std::vector<MeshTriangle> triangles_of(VertexLight& light) {
     std::vector<MeshTriangle> triangles;
-    for (const std::uint32_t leaf : light.forest->leaves()) light.mesh.triangulate(leaf, triangles);
+    for (const ElementIndex leaf : light.forest->leaves()) light.mesh.triangulate(leaf, triangles);
     return triangles;
 }
 
@@ -67,7 +67,7 @@ class VertexLightOfAFloor : public testing::TestWithParam<bool> {
         const std::vector<MeshTriangle> all = triangles_of(light);
         triangles = all.size();
         float mean = 0;  // [lux]; leaves have equal areas
-        for (const std::uint32_t leaf : solution.forest->leaves())
+        for (const ElementIndex leaf : solution.forest->leaves())
             mean += solution.irradiance[leaf].x / static_cast<float>(solution.forest->leaves().size());
         float largest = 0;
         for (std::size_t i = 0; i < all.size(); ++i) {

@@ -338,7 +338,7 @@ TEST(Mgf, CurvedLampsHaveTheirPower) {
 TEST(Mgf, LampFlushInARoundHoleKeepsItsPower) {
     const Scene scene = read(one_sided + "v a =\n n 0 0 -1\nring a 1 4\nm lamp =\n ed 100\n sides 1\nring a 0 1\n");
     const RayCaster ray_caster(scene);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const bool is_lamp = material_of(scene, i).exitance.x > 0;
         EXPECT_EQ(ray_caster.uncovered_share(i) == 1, is_lamp) << "the lamp covers the border of the hole";
     }

@@ -63,7 +63,7 @@ void expect_same(const Scene& actual, const Scene& expected) {
 void add_triangle(Scene& scene, std::uint32_t material, const V3f& at, bool two_sided = false) {
     const auto v = static_cast<std::uint32_t>(scene.vertices.size());
     scene.vertices.insert(scene.vertices.end(), {at, at + V3f(1, 0, 0), at + V3f(0, 1, 0.25f)});
-    const auto patch = static_cast<std::uint32_t>(scene.patches.size());
+    const PatchIndex patch(scene.patches.size());
     scene.patches.push_back({.vertices = {v, v + 1, v + 2, none}, .material = material});
     if (!two_sided) return;
     scene.patches.back().other_side = patch + 1;

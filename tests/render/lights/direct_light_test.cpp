@@ -63,7 +63,7 @@ std::vector<Gauge> gauges_on_floor(std::size_t count) {
         const auto words = random_words(5, i);
         gauges.push_back({.position = {unit_float(words[0]) - 0.5f, unit_float(words[1]) - 0.5f, 0},
                           .normal = {0, 0, 1},
-                          .patch = 0});
+                          .patch = PatchIndex(0)});
     }
     return gauges;
 }
@@ -191,7 +191,7 @@ double noise_beside(Hidden hidden, bool has_patch, int samples) {
     std::vector<Gauge> gauges;
     for (Gauge g : gauges_on_floor(2000)) {
         g.position += V3f(2.8f, 1.5f, 0.01f);
-        g.patch = none;
+        g.patch = no_patch;
         gauges.push_back(g);
     }
     PictureOptions options{.samples = samples, .quantity = PictureQuantity::irradiance};

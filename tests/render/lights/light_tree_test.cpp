@@ -58,7 +58,7 @@ void expect_stated_probabilities(const Scene& scene, const LightTree& tree) {
             ++chosen[choice.index];
             ASSERT_FLOAT_EQ(choice.probability, tree.probability(choice.index, x, n));
         }
-        for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+        for (PatchIndex p{0}; p < scene.patches.size(); ++p)
             EXPECT_NEAR(static_cast<float>(chosen[p]) / count, tree.probability(p, x, n), 1e-4) << "patch " << p;
     }
 }

@@ -54,7 +54,7 @@ struct House {
         for (std::uint64_t i = 0; i < 20'000; ++i) {
             const auto words = random_words(7, i);
             const V3f x(1 + 2 * unit_float(words[0]), 1 + 2 * unit_float(words[1]), 2 + unit_float(words[2]));
-            points.push_back({x, {0, 0, -1}, none, 0.01f});
+            points.push_back({x, {0, 0, -1}, no_patch, 0.01f});
         }
     }
 
@@ -89,7 +89,7 @@ TEST(SeenLight, SamplesManySmallPatchesAlike) {
     add_rectangle(scene, {1, 1, 2.9f}, {0, 2, 0}, {2, 0, 0}, 0, 400, 400);
     std::vector<Rgb> irradiance(scene.patches.size(), Rgb(100));
     std::fill_n(irradiance.begin(), dim, Rgb(1));
-    const std::vector<SurfacePoint> points(100'000, {{2, 2, 0.01f}, {0, 0, 1}, none, 0.01f});
+    const std::vector<SurfacePoint> points(100'000, {{2, 2, 0.01f}, {0, 0, 1}, no_patch, 0.01f});
     with_known_light(scene, irradiance, points, [&](const KnownLight& light) {
         const std::span<const float> powers = light.sampling_powers().subspan(dim);
         const auto [least, most] = std::minmax_element(powers.begin(), powers.end());

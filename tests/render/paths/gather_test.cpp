@@ -134,12 +134,12 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     std::vector<PatchGeometry> geometry;
     for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
     ElementForest forest(scene, 1000);
-    forest.subdivide(0);
-    forest.subdivide(forest.first_child(0) + 2);
-    forest.subdivide(7);
+    forest.subdivide(ElementIndex(0));
+    forest.subdivide(forest.first_child(ElementIndex(0)) + 2);
+    forest.subdivide(ElementIndex(7));
     std::vector<Rgb> irradiance(forest.size(), Rgb(1));
-    for (std::uint32_t patch = 0; patch < forest.patch_count(); patch += 5) irradiance[patch] = Rgb(20);
-    const std::uint32_t first = forest.first_child(7);
+    for (PatchIndex patch(0); patch < forest.patch_count(); patch += 5) irradiance[patch] = Rgb(20);
+    const ElementIndex first = forest.first_child(EElementIndex(lementIndex)(7));
     irradiance[first + 1] = Rgb(30);
     irradiance[first + 3] = Rgb(40);
     pull(forest, irradiance);
@@ -151,7 +151,7 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     light.weigh(weights);
     const V3f x(0.5f, 1, 0), n(0, 0, 1);
     double in_front = 0;  // area of the bright leaves
-    for (const std::uint32_t leaf : forest.leaves())
+    for (const ElementIndex leaf : forest.leaves())
         if (irradiance[leaf].x > 1 && geometry[forest.patch(leaf)].normal().z < 1) in_front += forest.area(leaf);
     constexpr int samples = 200'000;
     double sum = 0, squares = 0;
@@ -180,7 +180,7 @@ TEST(KnownLight, LeavesEvenLightToDirections) {
     KnownLight light(scene, geometry, forest, irradiance);
     light.sample_brighter_than(3);
     EXPECT_EQ(light.sample({0.5f, 1, 0}, {0, 0, 1}, 0.5, 0.5f, 0.5f).place.patch, none);
-    EXPECT_EQ(light.density({0, 0, {0.5f, 0.5f}}, {0.5f, 1, 0}, {0, 0, 1}), 0);
+    EXPECT_EQ(light.density({PatchIndex(0), ElementIndex(0), {0.5f, 0.5f}}, {0.5f, 1, 0}, {0, 0, 1}), 0);
 }
 
 /// A wall, 1 m away and evenly lit, without noise.

@@ -76,7 +76,7 @@ TEST_P(EveryMethod, FillsAFurnaceThroughGlass) {
     if (options.method.importance != ImportanceUse::off) options.views = {{along, 1, 1.5f, 48}};
     if (GetParam() == "global-lines") options.limits.rays *= 4;  // few lines cross the small patches
     const Solution solution = solve(scene, ray_caster, options);
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
         for (int c = 0; c < 3; ++c) {
             const float expected = 30 / (1 - scene.materials[0].reflectance[c]);
             EXPECT_NEAR(solution.irradiance[p][c] / expected, 1, 0.03) << "patch " << p << ", channel " << c;
@@ -95,7 +95,7 @@ TEST(Glass, ManyPanesInARowDoNotMultiplyWalks) {
                       true);
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 300'000}});
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
         EXPECT_NEAR(solution.irradiance[p].x / 60, 1, 0.03) << "patch " << p;
 }
 

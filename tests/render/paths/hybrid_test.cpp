@@ -240,19 +240,20 @@ TEST(Hybrid, HasEqualNoiseInARoomWithSunlitGroundOutside) {
     Scene scene = closed_box({4, 3, 2.5f}, 4, {Material{"", Rgb(0.5f)}});
     std::vector<Rgb> irradiance;
     for (std::size_t i = 0; i < scene.patches.size(); ++i) irradiance.emplace_back(i % 2 == 0 ? 1.8f : 0.2f);
-    const std::uint32_t ground = add_rectangle(scene, {100, 0, 0}, {50, 0, 0}, {0, 50, 0}, 0, 1, 1);
+    const PatchIndex ground = add_rectangle(scene, {100, 0, 0}, {50, 0, 0}, {0, 50, 0}, 0, 1, 1);
     irradiance.emplace_back(1e6f);
     const RayCaster ray_caster(scene);
     const ElementForest forest(scene, scene.patches.size());
     const KnownIrradiance known{forest, irradiance, true};
     const TracedScene traced(scene, ray_caster);
     constexpr float texel = 0.005f;
-    const auto texel_at = [](float x, float y, std::uint32_t patch) {
+    const auto texel_at = [](float x, float y, PatchIndex patch) {
         return Gauge{.position = {x, y, 0.01f}, .patch = patch, .side_u = {texel, 0, 0}, .side_v = {0, texel, 0}};
     };
     std::vector<Gauge> inside;
     for (int i = 0; i < 400; ++i)
-        inside.push_back(texel_at(1 + 0.1f * static_cast<float>(i % 20), 1 + 0.05f * static_cast<float>(i / 20), none));
+        inside.push_back(
+            texel_at(1 + 0.1f * static_cast<float>(i % 20), 1 + 0.05f * static_cast<float>(i / 20), no_patch));
     std::vector<Gauge> everywhere = inside;
     for (int i = 0; i < 20; ++i) everywhere.push_back(texel_at(101 + 2 * static_cast<float>(i), 20, ground));
     const auto noise_inside = [&](const std::vector<Gauge>& gauges) {

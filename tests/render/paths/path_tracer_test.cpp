@@ -119,7 +119,7 @@ TEST(PathTracer, NoRayLeavesAClosedBox) {
     moved.patches.clear();
     for (V3f& v : moved.vertices) v = move(v);
     for (Patch front : box.patches) {
-        const auto index = static_cast<std::uint32_t>(moved.patches.size());
+        const PatchIndex index(moved.patches.size());
         Patch back = front;
         std::swap(back.vertices[1], back.vertices[3]);
         front.other_side = index + 1;

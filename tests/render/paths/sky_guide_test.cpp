@@ -77,8 +77,11 @@ std::vector<double> errors_below(const KnownSky& sky, bool has_glass, std::uint6
     for (std::uint64_t i = 0; i < 1000; ++i) {
         const auto words = random_words(seed, i);
         const V3f place(4 * unit_float(words[0]) - 2, 4 * unit_float(words[1]) - 2, 0);
-        gauges.push_back(
-            {.position = place, .normal = {0, 0, 1}, .patch = 0, .side_u = {0.05f, 0, 0}, .side_v = {0, 0.05f, 0}});
+        gauges.push_back({.position = place,
+                          .normal = {0, 0, 1},
+                          .patch = PatchIndex(0),
+                          .side_u = {0.05f, 0, 0},
+                          .side_v = {0, 0.05f, 0}});
     }
     PictureOptions options;
     options.samples = samples;
@@ -145,7 +148,7 @@ TEST(UniformSky, IsUnbiasedForAnyNumberOfSamples) {
     scene.luminaires = {{"sky", 0, UniformSky{Rgb(100)}}};
     const RayCaster ray_caster(scene);
     const TracedScene traced(scene, ray_caster);
-    std::vector<Gauge> gauges(20'000, {.normal = {0, 0, 1}, .patch = 0});
+    std::vector<Gauge> gauges(20'000, {.normal = {0, 0, 1}, .patch = PatchIndex(0)});
     for (const int count : {2, 6, 10, 16}) {
         PictureOptions options;
         options.samples = count;

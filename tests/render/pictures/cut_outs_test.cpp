@@ -66,7 +66,7 @@ TEST_P(FurnaceWithHoles, IsFilledByEveryMethod) {
     SolveOptions options{.method = find_method(GetParam()), .limits = {.rays = 1'000'000}};
     if (options.method.importance != ImportanceUse::off) options.views = {{along, 1, 1.5f, 48}};
     const Solution solution = solve(scene, ray_caster, options);
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(solution.irradiance[p][c] / light[c], 1, 0.03) << "patch " << p << ", channel " << c;
     EXPECT_NEAR(power_balance(scene, solution).relative_difference(), 0, 0.01);

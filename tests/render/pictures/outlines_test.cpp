@@ -42,7 +42,7 @@ TEST(Outlines, LeaveAPictureOfOneLeafAsItIs) {
 TEST(Outlines, LieOnTheBordersOfLeavesAsWideAsAsked) {
     const Scene scene = square(9);
     ElementForest forest(scene, 5);
-    forest.subdivide(0);
+    forest.subdivide(ElementIndex(0));
     const Image image = outlined(scene, forest, {.width = 2, .opacity = 1, .colour = red});
     const auto on_line = [](int i) { return i == size / 2 - 1 || i == size / 2; };
     for (int y = 0; y < size; ++y)
@@ -53,7 +53,7 @@ TEST(Outlines, LieOnTheBordersOfLeavesAsWideAsAsked) {
 TEST(Outlines, ThatAreThinnerThanAPixelCoverAShareOfIt) {
     const Scene scene = square(9);
     ElementForest forest(scene, 5);
-    forest.subdivide(0);
+    forest.subdivide(ElementIndex(0));
     const Image image = outlined(scene, forest, {.width = 0.5f, .opacity = 1, .colour = red});
     EXPECT_NEAR(image.at(size / 2, 3).x, 0.75f * grey.x + 0.25f * red.x, 0.02f) << "half the line, in either pixel";
     EXPECT_NEAR(image.at(size / 2 - 1, 3).x, 0.75f * grey.x + 0.25f * red.x, 0.02f);
@@ -73,7 +73,7 @@ TEST(Outlines, FollowSilhouettes) {
 TEST(Outlines, OfLeavesSmallerThanAPixelLetThePictureThrough) {
     const Scene scene = square(1);
     ElementForest forest(scene, 1 << 14);
-    for (std::uint32_t e = 0; forest.level(e) < 6; ++e) forest.subdivide(e);
+    for (ElementIndex e{0}; forest.level(e) < 6; ++e) forest.subdivide(e);
     const Rgb mixed = grey * 0.75f + red * 0.25f;
     EXPECT_EQ(outlined(scene, forest, {.width = 2, .opacity = 0.25f, .colour = red}).at(5, 5), mixed);
 }

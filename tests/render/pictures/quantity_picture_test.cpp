@@ -29,7 +29,7 @@ struct HalfPicture {
     Scene scene;
     ElementForest forest;
     RayCaster ray_caster;
-    HalfPicture() : scene(square()), forest(scene, 5), ray_caster(scene) { forest.subdivide(0); }
+    HalfPicture() : scene(square()), forest(scene, 5), ray_caster(scene) { forest.subdivide(ElementIndex(0)); }
 
     static Scene square() {
         Scene made;

@@ -100,16 +100,16 @@ TEST(Render, FlatShadingShowsTheLeafThatWasHit) {
     Scene scene;
     add_facing(scene, -1, 1, -1, 1, add_material(scene, reflectance, Rgb(0, 0, 0)));
     ElementForest forest(scene, 100);
-    for (std::uint32_t e = 0; e < 5; ++e) forest.subdivide(e);
+    for (ElementIndex e{0}; e < 5; ++e) forest.subdivide(e);
     std::vector<Rgb> h;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) h.push_back(irradiance * static_cast<float>(e));
+    for (ElementIndex e{0}; e < forest.size(); ++e) h.push_back(irradiance * static_cast<float>(e));
     const Image image =
         render(scene, forest, RayCaster(scene), view_of_plane(), h, {.width = 4, .height = 4, .shading = Shading::flat})
             .image;
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 4; ++x) {
             const Parameters centre{(static_cast<float>(x) + 0.5f) / 4, (3.5f - static_cast<float>(y)) / 4};
-            EXPECT_EQ(image.at(x, y), reflectance * h[forest.leaf_at(0, centre)] / pi) << x << ", " << y;
+            EXPECT_EQ(image.at(x, y), reflectance * h[forest.leaf_at(PatchIndex(0), centre)] / pi) << x << ", " << y;
         }
 }
 
@@ -179,9 +179,9 @@ struct UnevenBox {
 TEST_P(FlatAndSmooth, SameBitsForAnyNumberOfThreads) {
     const UnevenBox box;
     ElementForest forest(box.scene, 10'000);
-    for (std::uint32_t e = 0; forest.size() < 5'000; e += 3) forest.subdivide(e);
+    for (ElementIndex e{0}; forest.size() < 5'000; e += 3) forest.subdivide(e);
     std::vector<Rgb> h;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) h.push_back(Rgb(1, 2, 3) * static_cast<float>(1 + e % 7));
+    for (ElementIndex e{0}; e < forest.size(); ++e) h.push_back(Rgb(1, 2, 3) * static_cast<float>(1 + e % 7));
     std::vector<std::vector<Rgb>> pictures;
     for (const std::size_t threads : {1, 2, 5}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -221,7 +221,7 @@ TEST(Render, RefusesWhatDoesNotFitTogether) {
     EXPECT_THROW(picture(scene, {irradiance}, {.shading = Shading::smooth, .samples = -1}), InputError);
     EXPECT_THROW(picture(scene, {irradiance}, {.width = 0, .shading = Shading::smooth}), InputError);
     ElementForest refined(scene, 5);
-    refined.subdivide(0);
+    refined.subdivide(ElementIndex(0));
     EXPECT_THROW(render(scene, refined, RayCaster(scene), view_of_plane(), std::vector{irradiance}, smooth),
                  InputError);
     EXPECT_THROW(render(scene, ElementForest(Scene{}, 0), RayCaster(scene), view_of_plane(), {}, smooth), InputError);

@@ -62,18 +62,18 @@ Scene mixed_mesh() {
 
 /// Neighbours can differ in level by any amount.
 void refine_at_random(ElementForest& forest, int deepest, std::uint64_t seed) {
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
+    for (ElementIndex e{0}; e < forest.size(); ++e)
         if (forest.level(e) < deepest && random_double(seed, e) < 0.5) forest.subdivide(e);
 }
 
 void refine_evenly(ElementForest& forest, int deepest) {
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
+    for (ElementIndex e{0}; e < forest.size(); ++e)
         if (forest.level(e) < deepest) forest.subdivide(e);
 }
 
 std::vector<Rgb> random_values(const ElementForest& forest, std::uint64_t seed) {
     std::vector<Rgb> values;
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
+    for (ElementIndex e{0}; e < forest.size(); ++e)
         values.push_back(Rgb(1, 1, 1) * static_cast<float>(random_double(seed, e)));
     return values;
 }
@@ -81,12 +81,12 @@ std::vector<Rgb> random_values(const ElementForest& forest, std::uint64_t seed) 
 template <class ValueOf>
 std::vector<Rgb> values_of(const ElementForest& forest, const ValueOf& value_of) {
     std::vector<Rgb> values;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) values.push_back(value_of(e));
+    for (ElementIndex e{0}; e < forest.size(); ++e) values.push_back(value_of(e));
     return values;
 }
 
 /// Returns corners in the order of ElementVertices [m].
-std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
+std::vector<V3f> corner_points(const ElementForest& forest, ElementIndex e) {
     const PatchGeometry& patch = forest.geometry(forest.patch(e));
     const Cell cell = forest.cell(e);
     if (patch.is_triangle())
@@ -96,7 +96,7 @@ std::vector<V3f> corner_points(const ElementForest& forest, std::uint32_t e) {
 }
 
 std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& field, const V3f& x) {
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+    for (PatchIndex p{0}; p < forest.patch_count(); ++p) {
         const Parameters parameters = forest.geometry(p).parameters_of(x);
         if ((forest.geometry(p).point(parameters) - x).length() < 1e-6f) return field.at(p, parameters);
     }
@@ -106,7 +106,7 @@ std::optional<Rgb> value_at(const ElementForest& forest, const SmoothField& fiel
 /// Computes the largest difference across the edges of leaves, between points at `distance` [m] from the edge.
 float largest_jump(const ElementForest& forest, const SmoothField& field, float distance) {
     float largest = 0;
-    for (const std::uint32_t leaf : forest.leaves()) {
+    for (const ElementIndex leaf : forest.leaves()) {
         const std::vector<V3f> corners = corner_points(forest, leaf);
         for (std::size_t c = 0; c < corners.size(); ++c) {
             const V3f along = corners[(c + 1) % corners.size()] - corners[c];
@@ -143,13 +143,13 @@ TEST(SmoothField, AHangingVertexLiesOnTheLargeLeafsEdge) {
     Scene scene;
     add_rectangle(scene, V3f(0, 0, 0), V3f(2, 0, 0), V3f(0, 1, 0), add_material(scene, grey, black), 2, 1);
     ElementForest forest(scene, plenty);
-    forest.subdivide(1);
+    forest.subdivide(ElementIndex(1));
     const ElementVertices vertices(scene, forest);
     ASSERT_EQ(vertices.hanging().size(), 1u);
     const SmoothField field(forest, vertices, {std::vector{dark, bright, bright, bright, bright, bright}});
     for (const float t : {0.0f, 0.3f, 0.5f, 0.9f, 1.0f}) {
-        expect_near(field.at(0, {1, t}), (dark * 2 + bright) / 3);
-        expect_near(field.at(1, {0, t}), (dark * 2 + bright) / 3);
+        expect_near(field.at(PatchIndex(0), {1, t}), (dark * 2 + bright) / 3);
+        expect_near(field.at(PatchIndex(1), {0, t}), (dark * 2 + bright) / 3);
     }
 }
 
@@ -161,9 +161,9 @@ TEST(VertexValues, AreWeightedByIntegrals) {
     scene.vertices = {V3f(0, 0, 0), V3f(4, 0.5f, 0), V3f(3, 2, 0), V3f(-1, 3, 0)};
     scene.patches = {{.vertices = {0, 1, 2, 3}}};
     ElementForest forest(scene, plenty);
-    forest.subdivide(0);
+    forest.subdivide(ElementIndex(0));
     const ElementVertices vertices(scene, forest);
-    const std::uint32_t centre = vertices.corners(1)[2];
+    const std::uint32_t centre = vertices.corners(ElementIndex(1))[2];
     std::array<double, 4> integral{};
     double sum = 0;
     constexpr int steps = 100;
@@ -173,8 +173,8 @@ TEST(VertexValues, AreWeightedByIntegrals) {
                         t = (static_cast<float>(i / steps) + 0.5f) / steps;
             const Parameters x = forest.cell(1 + k).at(s, t);
             const float basis = (1 - std::abs(2 * x.u - 1)) * (1 - std::abs(2 * x.v - 1));
-            integral[k] += basis * forest.geometry(0).jacobian(x);
-            sum += basis * forest.geometry(0).jacobian(x);
+            integral[k] += basis * forest.geometry(PatchIndex(0)).jacobian(x);
+            sum += basis * forest.geometry(PatchIndex(0)).jacobian(x);
         }
     for (std::uint32_t k = 0; k < 4; ++k) {
         std::vector<Rgb> values(5, black);
@@ -191,7 +191,7 @@ TEST(VertexValues, KeepThePower) {
         ElementForest forest(scene, plenty);
         refine_at_random(forest, 5, seed);
         std::vector<Rgb> values;
-        for (std::uint32_t e = 0; e < forest.size(); ++e)
+        for (ElementIndex e{0}; e < forest.size(); ++e)
             values.emplace_back(static_cast<float>(std::pow(random_double(seed + 3, e), 4)));
         const auto [power, of_field] = powers(forest, ElementVertices(scene, forest), values);
         EXPECT_NEAR(of_field, power, 1e-5 * power);
@@ -205,7 +205,7 @@ TEST(VertexValues, AreLinear) {
     refine_at_random(forest, 5, 1);
     const ElementVertices vertices(scene, forest);
     const std::vector<Rgb> a = random_values(forest, 1), b = random_values(forest, 2);
-    const std::vector<Rgb> both = values_of(forest, [&](std::uint32_t e) { return a[e] + b[e]; });
+    const std::vector<Rgb> both = values_of(forest, [&](ElementIndex e) { return a[e] + b[e]; });
     const std::vector<Rgb> of_a = vertex_values(forest, vertices, a), of_b = vertex_values(forest, vertices, b),
                            of_both = vertex_values(forest, vertices, both);
     for (std::size_t v = 0; v < of_both.size(); ++v) expect_near(of_both[v], of_a[v] + of_b[v], 1e-6f);
@@ -224,7 +224,7 @@ TEST(ElementVertices, AreThePointsWhereElementsMeet) {
     const ElementVertices vertices(scene, forest);
     std::map<Point, std::uint32_t> vertex_at;
     std::vector<V3f> position(vertices.count());
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         const std::vector<V3f> corners = corner_points(forest, e);
         for (std::size_t c = 0; c < corners.size(); ++c) {
             const std::uint32_t vertex = vertices.corners(e)[c];
@@ -255,7 +255,7 @@ TEST(SmoothField, ReproducesALinearFieldInsideAnEvenMesh) {
         const ElementVertices vertices(scene, forest);
         EXPECT_EQ(vertices.count(), 9 * 9u);
         EXPECT_TRUE(vertices.hanging().empty());
-        const SmoothField field(forest, vertices, values_of(forest, [&](std::uint32_t e) {
+        const SmoothField field(forest, vertices, values_of(forest, [&](ElementIndex e) {
                                     const PatchGeometry& patch = forest.geometry(forest.patch(e));
                                     return linear_field(patch.point(forest.cell(e).centre(patch.is_triangle())));
                                 }));
@@ -282,7 +282,7 @@ struct Neighbours {
         add_rectangle(scene, V3f(0, 0, 0), V3f(std::cos(angle), 0, std::sin(angle)), V3f(0, 1, 0), second);
         forest.emplace(scene, plenty);
         refine_at_random(*forest, 4, 9);
-        values = values_of(*forest, [&](std::uint32_t e) { return forest->patch(e) == 0 ? dark : bright; });
+        values = values_of(*forest, [&](ElementIndex e) { return forest->patch(e) == 0 ? dark : bright; });
     }
 };
 
@@ -291,8 +291,9 @@ TEST(SmoothField, GoesOverARoundedEdge) {
     for (const Neighbours* scene : {&flat, &rounded_edge}) {
         const ElementVertices vertices(scene->scene, *scene->forest);
         const SmoothField field(*scene->forest, vertices, scene->values);
-        for (float t = 0; t <= 1; t += 0.01f) expect_near(field.at(0, {1, t}), field.at(1, {0, t}));
-        EXPECT_GT(field.at(0, {1, 0}).x, dark.x + 0.5f);
+        for (float t = 0; t <= 1; t += 0.01f)
+            expect_near(field.at(PatchIndex(0), {1, t}), field.at(PatchIndex(1), {0, t}));
+        EXPECT_GT(field.at(PatchIndex(0), {1, 0}).x, dark.x + 0.5f);
     }
 }
 
@@ -302,8 +303,8 @@ TEST(SmoothField, EndsAtCreasesAndBordersOfMaterials) {
         const ElementVertices vertices(scene->scene, *scene->forest);
         const SmoothField field(*scene->forest, vertices, scene->values);
         for (float t = 0; t <= 1; t += 0.01f) {
-            expect_near(field.at(0, {1, t}), dark);
-            expect_near(field.at(1, {0, t}), bright);
+            expect_near(field.at(PatchIndex(0), {1, t}), dark);
+            expect_near(field.at(PatchIndex(1), {0, t}), bright);
         }
     }
 }
@@ -320,14 +321,14 @@ TEST(SmoothField, ACreaseWhoseEndsAreSmoothIsStillACrease) {
     roof.patches = {{.vertices = {0, 1, 2, 3}},    {.vertices = {1, 0, 4, 5}},    {.vertices = {0, 3, 6, none}},
                     {.vertices = {0, 6, 4, none}}, {.vertices = {1, 5, 7, none}}, {.vertices = {1, 7, 2, none}}};
     ElementForest forest(roof, plenty);
-    forest.subdivide(0);
-    forest.subdivide(1);
+    forest.subdivide(ElementIndex(0));
+    forest.subdivide(ElementIndex(1));
     const ElementVertices vertices(roof, forest);
     const SmoothField field(forest, vertices,
-                            values_of(forest, [&](std::uint32_t e) { return forest.patch(e) == 0 ? dark : bright; }));
-    expect_near(field.at(0, {0, 0}), field.at(1, {1, 0}));
-    expect_near(field.at(0, {0.5f, 0}), dark);
-    expect_near(field.at(1, {0.5f, 0}), bright);
+                            values_of(forest, [&](ElementIndex e) { return forest.patch(e) == 0 ? dark : bright; }));
+    expect_near(field.at(PatchIndex(0), {0, 0}), field.at(PatchIndex(1), {1, 0}));
+    expect_near(field.at(PatchIndex(0), {0.5f, 0}), dark);
+    expect_near(field.at(PatchIndex(1), {0.5f, 0}), bright);
 }
 
 TEST(SmoothField, TakesNothingFromElementsThatAreCut) {
@@ -336,10 +337,10 @@ TEST(SmoothField, TakesNothingFromElementsThatAreCut) {
     refine_at_random(forest, 3, 5);
     const ElementVertices vertices(scene, forest);
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const SmoothField field(forest, vertices, values_of(forest, [&](std::uint32_t e) {
+    const SmoothField field(forest, vertices, values_of(forest, [&](ElementIndex e) {
                                 return forest.is_leaf(e) ? dark : Rgb(nan, nan, nan);
                             }));
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) expect_near(field.at(p, {0.3f, 0.4f}), dark);
+    for (PatchIndex p{0}; p < forest.patch_count(); ++p) expect_near(field.at(p, {0.3f, 0.4f}), dark);
 }
 
 TEST(SmoothField, RefusesAWrongNumberOfValues) {

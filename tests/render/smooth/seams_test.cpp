@@ -38,7 +38,7 @@ Scene cut_floor(float wall_end, std::optional<float> second_wall = std::nullopt,
     return cut_at_contacts(scene, {.min_extent = gap > 0 ? 0.01f : 0});
 }
 
-V3f centre_of(const ElementForest& forest, std::uint32_t e) {
+V3f centre_of(const ElementForest& forest, ElementIndex e) {
     const PatchGeometry& patch = forest.geometry(forest.patch(e));
     return patch.point(forest.cell(e).centre(patch.is_triangle()));
 }
@@ -46,14 +46,14 @@ V3f centre_of(const ElementForest& forest, std::uint32_t e) {
 template <class Function>
 std::vector<Rgb> values_at_centres(const ElementForest& forest, const Function& f) {
     std::vector<Rgb> values;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) values.push_back(Rgb(1, 1, 1) * f(centre_of(forest, e)));
+    for (ElementIndex e{0}; e < forest.size(); ++e) values.push_back(Rgb(1, 1, 1) * f(centre_of(forest, e)));
     return values;
 }
 
 /// Returns the value at a point of the floor, of the piece on the side of `towards`.
 float value_at(const Scene& scene, const ElementForest& forest, const SmoothField& field, const V3f& x,
                const V3f& towards) {
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+    for (PatchIndex p{0}; p < forest.patch_count(); ++p) {
         if (scene.patches[p].material != 0) continue;
         const Parameters near_by = forest.geometry(p).parameters_of(x + 1e-4f * towards);
         if ((forest.geometry(p).point(near_by) - x - 1e-4f * towards).length() > 1e-6f) continue;
@@ -83,7 +83,7 @@ TEST(Seams, ALinearFieldGoesOn) {
             std::count_if(scene.patches.begin(), scene.patches.end(), [](const Patch& p) { return p.material == 0; }),
             second_wall ? 3 : 2);
         ElementForest forest(scene, plenty);
-        for (std::uint32_t e = 0; e < forest.size(); ++e)
+        for (ElementIndex e{0}; e < forest.size(); ++e)
             if (forest.level(e) < 4) forest.subdivide(e);
         const ElementVertices vertices(scene, forest);
         EXPECT_EQ(vertices.hanging().empty(), !second_wall);
@@ -103,7 +103,7 @@ TEST(Seams, ALinearFieldGoesOn) {
 TEST(Seams, LightEndsAtAContact) {
     const Scene scene = cut_floor(0.25f, 0.0f);
     ElementForest forest(scene, plenty);
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
+    for (ElementIndex e{0}; e < forest.size(); ++e)
         if (forest.level(e) < 5) forest.subdivide(e);
     const ElementVertices vertices(scene, forest);
     const SmoothField field(forest, vertices,
@@ -123,7 +123,7 @@ TEST(Seams, NothingGoesThroughAWallFromEndToEnd) {
     for (const float gap : {0.0f, 0.001f}) {
         const Scene scene = cut_floor(1, 0.0f, gap);
         ElementForest forest(scene, plenty);
-        for (std::uint32_t e = 0; e < forest.size(); ++e)
+        for (ElementIndex e{0}; e < forest.size(); ++e)
             if (forest.level(e) < 3) forest.subdivide(e);
         const ElementVertices vertices(scene, forest);
         const SmoothField field(forest, vertices,
@@ -141,12 +141,12 @@ TEST(Seams, InterpolationKeepsThePower) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         const Scene scene = cut_floor(-0.5f, 0.13f);
         ElementForest forest(scene, plenty);
-        for (std::uint32_t e = 0; e < forest.size(); ++e)
+        for (ElementIndex e{0}; e < forest.size(); ++e)
             if (forest.level(e) < 3 || (forest.level(e) < 5 && random_double(seed, e) < 0.5)) forest.subdivide(e);
         const ElementVertices vertices(scene, forest);
         EXPECT_FALSE(vertices.couplings().empty());
         std::vector<Rgb> values;
-        for (std::uint32_t e = 0; e < forest.size(); ++e)
+        for (ElementIndex e{0}; e < forest.size(); ++e)
             values.emplace_back(static_cast<float>(std::pow(random_double(seed + 3, e), 4)));
         const auto [power, of_field] = powers(forest, vertices, values);
         EXPECT_NEAR(of_field, power, 1e-5 * power);
@@ -160,7 +160,7 @@ TEST(Seams, SidesAgreeWhateverTheLevels) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         const Scene scene = cut_floor(-0.5f, 0.13f);
         ElementForest forest(scene, plenty);
-        for (std::uint32_t e = 0; e < forest.size(); ++e)
+        for (ElementIndex e{0}; e < forest.size(); ++e)
             if (forest.level(e) < 3 || (forest.level(e) < 5 && random_double(seed, e) < 0.5)) forest.subdivide(e);
         const ElementVertices vertices(scene, forest);
         const SmoothField field(forest, vertices, values_at_centres(forest, [](const V3f& x) {

@@ -53,14 +53,14 @@ Scene sphere(bool has_normals) {
 /// The irradiance that a distant light of irradiance 1 causes on flat patches.
 std::vector<Rgb> irradiance_of_patches(const ElementForest& forest) {
     std::vector<Rgb> irradiance;
-    for (std::uint32_t e = 0; e < forest.size(); ++e)
+    for (ElementIndex e{0}; e < forest.size(); ++e)
         irradiance.emplace_back(std::max(0.0f, forest.geometry(forest.patch(e)).normal().dot(light)));
     return irradiance;
 }
 
 void subdivide_all(ElementForest& forest, int levels) {
     for (int level = 0; level < levels; ++level)
-        for (std::uint32_t e = 0, n = forest.size(); e < n; ++e)
+        for (ElementIndex e(0), n = forest.size(); e < n; ++e)
             if (forest.is_leaf(e)) forest.subdivide(e);
     forest.put_in_order(forest.patch_count());
 }
@@ -74,7 +74,7 @@ struct Errors {
 Errors errors(const Scene& scene, const ElementForest& forest, const SmoothField& field) {
     double largest = 0, squares = 0;
     int count = 0;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
         for (const float u : {0.1f, 0.3f, 0.45f})
             for (const float v : {0.1f, 0.3f, 0.45f}) {
                 const V3f n = forest.geometry(p).point({u, v}).normalized();
@@ -115,7 +115,7 @@ TEST(SmoothNormals, KeepTheMeanOfEachPatch) {
     ElementVertices(scene, forest).normals().apply(forest, irradiance);
     EXPECT_NE(irradiance, before);
     pull(forest, irradiance);
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
+    for (PatchIndex p{0}; p < forest.patch_count(); ++p)
         if (before[p].x > 0.3f) {  // without clamping at zero
             EXPECT_NEAR(irradiance[p].x, before[p].x, 1e-5f);
         }
@@ -141,7 +141,7 @@ TEST(SmoothNormals, AreNotExtrapolatedFromNearlyCoplanarNeighbours) {
     ElementForest forest(scene, 1 << 10);
     subdivide_all(forest, 2);
     std::vector<Rgb> irradiance;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) irradiance.emplace_back(forest.patch(e) == 0 ? 1.0f : 0.1f);
+    for (ElementIndex e{0}; e < forest.size(); ++e) irradiance.emplace_back(forest.patch(e) == 0 ? 1.0f : 0.1f);
     ElementVertices(scene, forest).normals().apply(forest, irradiance);
     for (const Rgb& h : irradiance) EXPECT_LE(h.x, 1.5f);
 }
@@ -195,11 +195,12 @@ void average_normals(Scene& scene, const V3f& centre) {
 double largest_error(const Scene& scene, const auto& is_tested, const auto& expected) {
     const CornerNormals normals(scene, find_smooth_surfaces(scene));
     double largest = 0;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const V3f own = PatchGeometry(scene, scene.patches[p]).normal();
         if (!is_tested(own)) continue;
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(scene.patches[p].vertex_count()); ++c) {
-            const V3f n = expected(own, scene.vertices[scene.patches[p].vertices[c]]), found = normals.at(4 * p + c);
+            const V3f n = expected(own, scene.vertices[scene.patches[p].vertices[c]]),
+                      found = normals.at(CornerIndex(p, c));
             largest = std::max<double>(largest, std::atan2(n.cross(found).length(), n.dot(found)));
         }
     }

@@ -86,7 +86,7 @@ class SmoothPatches {
           vertices_(scene, forest_, options),
           field_(forest_, vertices_, values) {}
 
-    Rgb at(std::uint32_t patch, Parameters p) const { return field_.at(patch, p); }
+    Rgb at(PatchIndex patch, Parameters p) const { return field_.at(patch, p); }
 
   private:
     ElementForest forest_;
@@ -96,13 +96,13 @@ class SmoothPatches {
 
 /// Returns the irradiance of hinge()'s dark first square at the edge to the bright second one.
 Rgb at_hinge(const Scene& scene, const SmoothingOptions& options = {}) {
-    return SmoothPatches(scene, std::vector{dark, bright}, options).at(0, {1, 0.5f});
+    return SmoothPatches(scene, std::vector{dark, bright}, options).at(PatchIndex(0), {1, 0.5f});
 }
 
 TEST(SmoothPatches, ReproducesALinearFieldInsideAGrid) {
     for (const Scene& scene : {grid(4), unwelded(grid(4))}) {
         const SmoothPatches smooth(scene, at_centres(scene));
-        for (const std::uint32_t patch : {5u, 6u, 9u, 10u})  // inner patches
+        for (const PatchIndex patch : {PatchIndex(5), PatchIndex(6), PatchIndex(9), PatchIndex(10)})  // inner patches
             for (const Parameters p : {Parameters{0, 0}, {1, 1}, {0.3f, 0.8f}, {0.5f, 0.1f}}) {
                 const V3f x = PatchGeometry(scene, scene.patches[patch]).point(p);
                 expect_near(smooth.at(patch, p), linear_field(x));
@@ -132,7 +132,7 @@ TEST(SmoothPatches, IsContinuousAcrossPatchesEverywhere) {
             for (const float x : {0.25f, 0.5f, 0.75f}) {
                 std::set<int> answers;  // to 1e-4
                 int patches = 0;
-                for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+                for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
                     const PatchGeometry geometry(scene, scene.patches[i]);
                     const Parameters p = geometry.parameters_of(V3f(x, y, 0));
                     if ((geometry.point(p) - V3f(x, y, 0)).length() > 1e-6f) continue;
@@ -150,19 +150,20 @@ TEST(SmoothPatches, IsContinuousAcrossPatchesEverywhere) {
 TEST(SmoothPatches, CuttingAPatchInTwoDoesNotDoubleItsWeight) {
     const std::vector<Rgb> whole{bright, dark, dark, dark};
     Scene cut = grid(2);
-    const Rgb expected = SmoothPatches(cut, whole).at(3, {0, 0});
+    const Rgb expected = SmoothPatches(cut, whole).at(PatchIndex(3), {0, 0});
     Patch half = cut.patches[0];
     cut.patches[0].vertices = {half.vertices[0], half.vertices[1], half.vertices[2], none};
     half.vertices = {half.vertices[0], half.vertices[2], half.vertices[3], none};
     cut.patches.push_back(half);
-    expect_near(SmoothPatches(cut, std::vector{bright, dark, dark, dark, bright}).at(3, {0, 0}),
+    expect_near(SmoothPatches(cut, std::vector{bright, dark, dark, dark, bright}).at(PatchIndex(3), {0, 0}),
                 (bright * 4 + dark * 9) / 13);
     expect_near(expected, (bright + dark * 3) / 4);
 }
 
 TEST(SmoothPatches, ALonePatchKeepsItsValue) {
     const SmoothPatches smooth(grid(1), std::vector{bright});
-    for (const Parameters p : {Parameters{0, 0}, {0.25f, 0.75f}, {1, 1}}) expect_near(smooth.at(0, p), bright);
+    for (const Parameters p : {Parameters{0, 0}, {0.25f, 0.75f}, {1, 1}})
+        expect_near(smooth.at(PatchIndex(0), p), bright);
 }
 
 TEST(SmoothPatches, StopsAtCreases) {
@@ -179,7 +180,7 @@ TEST(SmoothPatches, StopsAtBordersOfMaterials) { expect_near(at_hinge(hinge(0, f
 TEST(SmoothPatches, DoesNotPassThroughASharedCorner) {
     Scene scene = grid(2);
     scene.patches = {scene.patches[0], scene.patches[3]};
-    expect_near(SmoothPatches(scene, std::vector{dark, bright}).at(0, {1, 1}), dark);
+    expect_near(SmoothPatches(scene, std::vector{dark, bright}).at(PatchIndex(0), {1, 1}), dark);
 }
 
 /// Coincident faces share edges, but run along them in the same direction, so one does not continue the other.
@@ -187,8 +188,8 @@ TEST(SmoothPatches, CoincidentPatchesDoNotShadeIntoEachOther) {
     Scene scene = grid(1);
     scene.patches.push_back(scene.patches[0]);
     const SmoothPatches smooth(scene, std::vector{dark, bright});
-    expect_near(smooth.at(0, {0, 0.5f}), dark);
-    expect_near(smooth.at(1, {1, 1}), bright);
+    expect_near(smooth.at(PatchIndex(0), {0, 0.5f}), dark);
+    expect_near(smooth.at(PatchIndex(1), {1, 1}), bright);
 }
 
 TEST(SmoothPatches, KeepsTheSidesOfAFaceApart) {
@@ -196,7 +197,7 @@ TEST(SmoothPatches, KeepsTheSidesOfAFaceApart) {
     std::vector<Rgb> values;
     for (std::size_t i = 0; i < scene.patches.size(); ++i) values.push_back(i % 2 ? bright : dark);
     const SmoothPatches smooth(scene, values);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) expect_near(smooth.at(i, {0.2f, 0.9f}), values[i]);
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) expect_near(smooth.at(i, {0.2f, 0.9f}), values[i]);
 }
 
 /// A front joins the neighbour's front even if the neighbour's vertices have the opposite order, so that its front is
@@ -207,8 +208,9 @@ TEST(SmoothPatches, FollowsTheOrientationOfSidesNotTheirOrder) {
     std::vector<Rgb> values(8, dark);
     values[3] = bright;  // its front
     const SmoothPatches smooth(scene, values);
-    expect_near(smooth.at(0, {1, 0}), (dark + bright) / 2);  // front of face 0, at the edge of faces 0 and 1
-    expect_near(smooth.at(1, {0, 1}), dark);                 // its back
+    expect_near(smooth.at(PatchIndex(0), {1, 0}),
+                (dark + bright) / 2);                     // front of face 0, at the edge of faces 0 and 1
+    expect_near(smooth.at(PatchIndex(1), {0, 1}), dark);  // its back
 }
 
 TEST(SmoothSurfaces, OneForEachVertexOfASmoothGrid) {

@@ -38,11 +38,11 @@ Scene two_rooms(Wall wall) {
         EXPECT_EQ(add_polygon(scene, loops, material, 0, true), PolygonResult::added);
         return scene;
     }
-    const auto front = static_cast<std::uint32_t>(scene.patches.size());
+    const PatchIndex front(scene.patches.size());
     Patch patch{.vertices = {first, first + 1, first + 2, first + 3}, .material = material, .other_side = front + 1};
     scene.patches.push_back(patch);
     patch.vertices = {first, first + 3, first + 2, first + 1};
-    patch.other_side = front;
+    patch.other_side = PatchIndex(front);
     scene.patches.push_back(patch);
     return scene;
 }
@@ -57,7 +57,7 @@ TEST_P(WarpedWall, IsLeftByRaysThatStartOnIt) {
     const RayCaster ray_caster(scene);
     std::vector<Ray> rays;
     std::vector<std::uint32_t> sources;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         if (scene.patches[p].other_side == none) continue;
         const PatchGeometry geometry(scene, scene.patches[p]);
         for (int i = 0; i < 64; ++i)

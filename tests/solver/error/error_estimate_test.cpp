@@ -153,7 +153,7 @@ TEST(MeshByVariance, IsTheSameWithTheLampInThePictureAndOutsideIt) {
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             const Solution s = solve(scene, ray_caster, options_for("ihsrr", shows_lamp, 600'000, seed));
             EXPECT_EQ(s.view_importance[lamp] > 0, shows_lamp);
-            for (const std::uint32_t leaf : s.forest->leaves()) count += s.forest->patch(leaf) != lamp;
+            for (const ElementIndex leaf : s.forest->leaves()) count += s.forest->patch(leaf) != lamp;
         }
         return count;
     };

@@ -49,7 +49,7 @@ std::vector<double> squared_errors(const Scene& scene, const char* method, std::
     for (std::uint64_t seed = 1; seed <= runs; ++seed) {
         const Solution solution = solve(scene, ray_caster, options_for(method, rays, seed));
         double sum = 0, mean = 0;
-        for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
             const double w = static_cast<double>(exact.view_importance[p]) * exact.forest->area(p);
             sum += w * std::pow(solution.irradiance[p].x - exact.irradiance[p].x, 2);
             mean += w * exact.irradiance[p].x;

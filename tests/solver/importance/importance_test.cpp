@@ -37,7 +37,7 @@ SolveOptions options_for(const char* method, std::uint64_t seed) {
 
 double sum_over_leaves(const Solution& s, const std::vector<float>& per_area) {
     double sum = 0;
-    for (const std::uint32_t e : s.forest->leaves()) sum += static_cast<double>(per_area[e]) * s.forest->area(e);
+    for (const ElementIndex e : s.forest->leaves()) sum += static_cast<double>(per_area[e]) * s.forest->area(e);
     return sum;
 }
 
@@ -45,7 +45,7 @@ double sum_over_leaves(const Solution& s, const std::vector<float>& per_area) {
 double measured_by_light(const Scene& scene, const Solution& s) {
     const std::vector<Rgb> b = radiosity(Materials(scene), *s.forest, s.irradiance);
     double sum = 0;
-    for (const std::uint32_t e : s.forest->leaves())
+    for (const ElementIndex e : s.forest->leaves())
         sum += static_cast<double>(s.view_importance[e]) * s.forest->area(e) * b[e].x;
     return sum;
 }
@@ -53,7 +53,7 @@ double measured_by_light(const Scene& scene, const Solution& s) {
 /// Returns sum psi W, the same measurement by the importance of the emitters.
 double measured_by_importance(const Scene& scene, const Solution& s) {
     double sum = 0;
-    for (const std::uint32_t e : s.forest->leaves())
+    for (const ElementIndex e : s.forest->leaves())
         sum += static_cast<double>(s.view_importance[e] + s.indirect_importance[e]) * s.forest->area(e) *
                Materials(scene).exitance(s.forest->patch(e)).x;
     return sum;
@@ -63,8 +63,7 @@ TEST(Importance, OfTheViewSumsToOne) {
     const Scene scene = grey_box();
     const Solution s = solve(scene, RayCaster(scene), options_for("ihsrr", 1));
     EXPECT_NEAR(sum_over_leaves(s, s.view_importance), 1, 1e-4);
-    for (std::uint32_t patch = 45; patch < 54; ++patch)
-        EXPECT_EQ(s.view_importance[patch], 0) << "the ceiling is not seen";
+    for (PatchIndex patch(45); patch < 54; ++patch) EXPECT_EQ(s.view_importance[patch], 0) << "the ceiling is not seen";
 }
 
 TEST(Importance, InAClosedGreyBoxIsViewImportanceOverOneMinusRho) {

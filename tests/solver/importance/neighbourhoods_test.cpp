@@ -31,7 +31,7 @@ struct Walls {
     }
     double area_mean(const std::vector<float>& values) const {
         double sum = 0, area = 0;
-        for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+        for (PatchIndex p{0}; p < forest.patch_count(); ++p) {
             sum += static_cast<double>(values[p]) * forest.area(p);
             area += forest.area(p);
         }

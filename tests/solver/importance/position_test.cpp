@@ -96,7 +96,7 @@ Measured measure(const Placement& place, std::uint64_t seed) {
     const Solution solution = solve(scene, ray_caster, options);
     const Materials materials(scene, ray_caster);
     Measured result;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i)
         result.absorbed += static_cast<double>((1 - materials.reflectance(i).x) * solution.irradiance[i].x *
                                                solution.forest->area(i)) /
                            solution.emitted_power.x;

@@ -63,12 +63,12 @@ constexpr int cells = 12;  // comparison cells in each direction on each rectang
 std::vector<double> in_cells(const Solution& s, int n) {
     std::vector<double> values;
     const auto patches_each = static_cast<std::uint32_t>(n * n);
-    for (std::uint32_t first = 0; first < s.forest->patch_count(); first += patches_each)
+    for (PatchIndex first{0}; first < s.forest->patch_count(); first += patches_each)
         for (int j = 0; j < cells; ++j)
             for (int i = 0; i < cells; ++i) {
                 const auto centre = [](int k) { return (static_cast<float>(k) + 0.5f) / cells; };
-                const std::uint32_t leaf = n == cells ? first + static_cast<std::uint32_t>(j * n + i)
-                                                      : s.forest->leaf_at(first, {centre(i), centre(j)});
+                const ElementIndex leaf = n == cells ? first + static_cast<std::uint32_t>(j * n + i)
+                                                     : s.forest->leaf_at(first, {centre(i), centre(j)});
                 values.push_back(s.irradiance[leaf].x);
             }
     return values;

@@ -30,7 +30,7 @@ struct Box {
     Panes panes{scene, ray_caster};
     ElementForest forest{scene, 1000};
 
-    double share(const std::vector<float>& v, std::uint32_t patch) const { return v[patch] * forest.area(patch); }
+    double share(const std::vector<float>& v, PatchIndex patch) const { return v[patch] * forest.area(patch); }
 };
 
 TEST(ViewImportance, IsTheViewsByTheirWeightsHoweverOftenTheyAreLookedAt) {
@@ -53,7 +53,7 @@ TEST(ViewImportance, FollowsTheMesh) {
     ViewImportance view(views, 1), later(views, 1);
     view.trace_view_rays(box.forest, box.ray_caster, box.panes, 10'000);
     view.per_area(box.forest, false);
-    const std::uint32_t grandchild = box.forest.subdivide(box.forest.subdivide(wall_x0) + 3);
+    const ElementIndex grandchild = box.forest.subdivide(box.forest.subdivide(wall_x0) + 3);
     later.trace_view_rays(box.forest, box.ray_caster, box.panes, 10'000);
     const std::vector<float> v = view.per_area(box.forest, false);
     EXPECT_EQ(v, later.per_area(box.forest, false));
@@ -66,7 +66,7 @@ TEST(ViewImportance, FollowsTheMesh) {
 TEST(ImportanceOfTheOracle, LeansOnTheParents) {
     const Box box;
     const auto forest = std::make_shared<ElementForest>(box.scene, 1000);
-    const std::uint32_t child = forest->subdivide(wall_x0), grandchild = forest->subdivide(child);
+    const ElementIndex child = forest->subdivide(wall_x0), grandchild = forest->subdivide(child);
     Solution solution;
     solution.forest = forest;
     solution.options.method = find_method("ihsrr");

@@ -38,7 +38,7 @@ SolveOptions options_of(const std::string& method, std::int64_t rays, std::uint6
 
 RgbD power(const Solution& solution, const std::vector<Rgb>& irradiance) {
     RgbD sum(0, 0, 0);
-    for (std::uint32_t i = 0; i < solution.forest->patch_count(); ++i)
+    for (PatchIndex i{0}; i < solution.forest->patch_count(); ++i)
         sum += RgbD(irradiance[i]) * static_cast<double>(solution.forest->area(i));
     return sum;
 }
@@ -68,7 +68,7 @@ TEST(DirectLight, HasTheFirstBounceAsItsMean) {
     std::vector<std::vector<double>> values(3 * scene.patches.size());
     std::vector<double> exact(values.size(), 0.0);
     for (std::size_t i = 0; i < values.size(); ++i)
-        for (std::uint32_t j = 0; j < scene.patches.size(); ++j)
+        for (PatchIndex j{0}; j < scene.patches.size(); ++j)
             exact[i] +=
                 form_factors(i / 3, j) *
                 static_cast<double>(scene.materials[scene.patches[j].material].exitance[static_cast<int>(i % 3)]);

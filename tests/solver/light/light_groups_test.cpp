@@ -37,8 +37,8 @@ Scene lit_room() {
     scene.patches.pop_back();
     scene.objects = {"", "lamps.red", "lamps.blue", "torch"};
     const auto add_lamp = [&](V3f corner, Rgb exitance, std::uint32_t object) {
-        const std::uint32_t first = add_rectangle(scene, corner, {0, 0.4f, 0}, {0.3f, 0, 0},
-                                                  add_material(scene, Rgb(0.2f), exitance), 1, 1, true);
+        const PatchIndex first = add_rectangle(scene, corner, {0, 0.4f, 0}, {0.3f, 0, 0},
+                                               add_material(scene, Rgb(0.2f), exitance), 1, 1, true);
         for (std::uint32_t i = first; i < scene.patches.size(); ++i) scene.patches[i].object = object;
     };
     add_lamp({0.9f, 1.1f, 2.2f}, {90, 20, 10}, 1);
@@ -59,7 +59,7 @@ SolveOptions options_of(const std::string& method, std::int64_t rays = 400'000) 
 /// Returns the root mean square difference over the root mean square of b, of patches weighted by area.
 double difference(const ElementForest& forest, const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
     double error = 0, square = 0;
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
+    for (PatchIndex i{0}; i < forest.patch_count(); ++i) {
         error += forest.area(i) * (a[i] - b[i]).length2();
         square += forest.area(i) * b[i].length2();
     }

@@ -45,7 +45,7 @@ Scene open_floor(const Luminaire& luminaire) {
 }
 
 /// Returns the mean of a function over a rectangular patch by the midpoint rule.
-double mean_over(const Scene& scene, std::uint32_t patch, const std::function<double(const V3d&)>& value) {
+double mean_over(const Scene& scene, PatchIndex patch, const std::function<double(const V3d&)>& value) {
     constexpr int points = 24;
     const Rectangle r = rectangles_of(scene)[patch];
     double sum = 0;
@@ -164,7 +164,7 @@ TEST_P(LightSources, LightAnOpenFloor) {
     std::vector<double> p_values, sums(runs, 0.0);
     double expected_sum = 0;
     for (std::uint32_t i = 0; i < irradiance.size(); ++i) {
-        const double expected = mean_over(scene, i, source.irradiance);
+        const double expected = mean_over(scene, PatchIndex(i), source.irradiance);
         expected_sum += expected;
         if (expected < 1e-2) continue;  // too few rays for a normal distribution
         p_values.push_back(t_test(irradiance[i], expected));
@@ -200,8 +200,10 @@ TEST(PointLightNearALargeFace, IsReceivedWhereItFalls) {
                              v = (k + (a % points + 0.5) / points) / blocks;
                 const V3d d = position - V3d(-1 + 4 * u, -1 + 3 * v, 0.5);
                 expected += 200 * d.z / std::pow(d.length(), 3);
-                found += static_cast<double>(
-                    solution.irradiance[solution.forest->leaf_at(0, {static_cast<float>(u), static_cast<float>(v)})].x);
+                found += static_cast<double>(solution
+                                                 .irradiance[solution.forest->leaf_at(
+                                                     PatchIndex(0), {static_cast<float>(u), static_cast<float>(v)})]
+                                                 .x);
             }
             squares += std::pow(found / expected - 1, 2) / (blocks * blocks);
         }
@@ -220,10 +222,10 @@ TEST(WellDistributedRaysOnAFineMesh, GiveTheSkyItsShare) {
     options.refinement.min_area = 1e-6;
     const Solution solution = solve(scene, RayCaster(scene), options);
     double brightest = 0;
-    for (std::uint32_t i = 0; i < solution.forest->patch_count(); ++i)
+    for (PatchIndex i{0}; i < solution.forest->patch_count(); ++i)
         brightest = std::max(brightest, static_cast<double>(solution.irradiance[i].x));
     double sum = 0, area = 0;
-    for (std::uint32_t i = 0; i < solution.forest->patch_count(); ++i) {
+    for (PatchIndex i{0}; i < solution.forest->patch_count(); ++i) {
         if (solution.irradiance[i].x < 0.9 * brightest) continue;
         sum += static_cast<double>(solution.irradiance[i].x) * solution.forest->area(i);
         area += solution.forest->area(i);

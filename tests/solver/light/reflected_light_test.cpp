@@ -104,7 +104,7 @@ TEST(UpLights, AreResolvedOnHiddenSurfacesWhereNoImportanceIsFollowed) {
         const Solution s = solve(scene, ray_caster, options);
         const std::vector<std::uint32_t> leaves = s.forest->leaves();
         return static_cast<double>(std::count_if(
-            leaves.begin(), leaves.end(), [&](std::uint32_t leaf) { return s.forest->patch(leaf) == ceiling_patch; }));
+            leaves.begin(), leaves.end(), [&](ElementIndex leaf) { return s.forest->patch(leaf) == ceiling_patch; }));
     };
     const double without_view = hidden_leaves("hsrr", ImportanceUse::off, false);
     EXPECT_GT(hidden_leaves("hsrr", ImportanceUse::off, true), 0.8 * without_view);
@@ -133,8 +133,8 @@ TEST(StartPoints, AreTheSameInAnyOrder) {
         EXPECT_EQ(a.all()[i].power, b.all()[i].power);
         EXPECT_EQ(a.all()[i].at.u, b.all()[i].at.u);
     }
-    EXPECT_EQ(a.of(7).size(), 1000u);
-    EXPECT_TRUE(a.of(8).empty()) << "a leaf without points";
+    EXPECT_EQ(a.of(ElementIndex(7)).size(), 1000u);
+    EXPECT_TRUE(a.of(ElementIndex(8)).empty()) << "a leaf without points";
 }
 
 TEST(StartPoints, AreChosenInProportionToTheirPower) {
@@ -149,7 +149,8 @@ TEST(StartPoints, AreChosenInProportionToTheirPower) {
     constexpr int samples = 100'000;
     double sum = 0;
     for (int i = 0; i < samples; ++i)
-        sum += static_cast<double>(StartPoints::choose(sorted.of(14), (static_cast<float>(i) + 0.5f) / samples).u);
+        sum += static_cast<double>(
+            StartPoints::choose(sorted.of(ElementIndex(14)), (static_cast<float>(i) + 0.5f) / samples).u);
     EXPECT_NEAR(sum / samples, moment / power, 1e-3);
 }
 

@@ -74,7 +74,7 @@ TEST_P(TexturesOfMethod, OfOneValueAreAsTheMaterial) {
     textured.texture_coordinates.assign(textured.vertices.size(), V2f(0.3f, 0.3f));
     const Solution a = solved(plain, GetParam(), 50'000), b = solved(textured, GetParam(), 50'000);
     ASSERT_EQ(a.forest->size(), b.forest->size());
-    for (std::uint32_t e = 0; e < a.forest->size(); ++e)
+    for (ElementIndex e{0}; e < a.forest->size(); ++e)
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(a.irradiance[e][c], b.irradiance[e][c], 1e-6f * a.irradiance[e][c]) << "element " << e;
 }
@@ -130,7 +130,7 @@ TEST(Textures, ElementsEmitWhatTheirPatchesDo) {
     ElementForest forest(scene, 100'000);
     const std::vector<Rgb> darkness(100'000, Rgb(0));
     const RgbD expected = radiated_power(forest, Radiosity(materials, darkness));
-    for (std::uint32_t e = 0; e < 5'000; ++e) forest.subdivide(e);
+    for (ElementIndex e{0}; e < 5'000; ++e) forest.subdivide(e);
     materials.grow(forest);
     const RgbD actual = radiated_power(forest, Radiosity(materials, darkness));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(actual[c] / expected[c], 1, 1e-5);
@@ -141,12 +141,12 @@ TEST(Textures, MeansDoNotDependOnTheOrderOfElements) {
     const Scene scene = textured_furnace(Rgb(2, 1, 3));
     Materials at_once(scene), step_by_step(scene);
     ElementForest forest(scene, 10'000);
-    for (std::uint32_t e = 0; e < 500; ++e) {
+    for (ElementIndex e{0}; e < 500; ++e) {
         forest.subdivide(e);
         step_by_step.grow(forest);
     }
     at_once.grow(forest);
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         const MeanSurface a = at_once.surface(forest.patch(e), e), b = step_by_step.surface(forest.patch(e), e);
         EXPECT_EQ(a.reflectance, b.reflectance);
         EXPECT_EQ(a.exitance, b.exitance);
@@ -160,7 +160,7 @@ TEST(Textures, OfCoveredEmittersAreReduced) {
     add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 1, 0}, 0);  // half of it; the smaller face covers
     scene.texture_coordinates.resize(scene.vertices.size(), V2f(0));
     const RayCaster ray_caster(scene);
-    EXPECT_NEAR(Materials(scene, ray_caster).exitance(floor).x, 25, 1e-3);
+    EXPECT_NEAR(Materials(scene, ray_caster).exitance(PatchIndex(floor)).x, 25, 1e-3);
     EXPECT_NEAR(covered_emission(scene, ray_caster).power.x, 4.0 * 2 * 25, 1e-2);
 }
 

@@ -40,7 +40,7 @@ class RandomTriangles {
         if (scene.objects.empty()) scene.objects.emplace_back();
         for (int i = 0; i < count; ++i) {
             const auto vertex = static_cast<std::uint32_t>(scene.vertices.size());
-            const auto patch = static_cast<std::uint32_t>(scene.patches.size());
+            const PatchIndex patch(scene.patches.size());
             const V3f middle = low + (high - low) * uniform();
             for (int k = 0; k < 3; ++k) scene.vertices.push_back(middle + (uniform() * 2.0f - V3f(1)) * size);
             Patch front, back;
@@ -89,7 +89,7 @@ Solution solve_scene(const Scene& scene, const SolveOptions& options) {
 
 double power(const Solution& s, const std::vector<Rgb>& irradiance) {
     double sum = 0;
-    for (std::uint32_t p = 0; p < s.forest->patch_count(); ++p)
+    for (PatchIndex p{0}; p < s.forest->patch_count(); ++p)
         sum += static_cast<double>(s.forest->area(p) * luminance(irradiance[p]));
     return sum;
 }
@@ -97,7 +97,7 @@ double power(const Solution& s, const std::vector<Rgb>& irradiance) {
 /// Root mean square difference of the patches' irradiance, relative to the mean.
 double difference(const Solution& a, const Solution& b) {
     double squares = 0, area = 0;
-    for (std::uint32_t p = 0; p < a.forest->patch_count(); ++p) {
+    for (PatchIndex p{0}; p < a.forest->patch_count(); ++p) {
         const double d = luminance(a.irradiance[p]) - luminance(b.irradiance[p]);
         squares += static_cast<double>(a.forest->area(p)) * d * d;
         area += static_cast<double>(a.forest->area(p));
@@ -110,28 +110,28 @@ double difference(const Solution& a, const Solution& b) {
 TEST(PatchTree, IsBinaryAndContainsEveryPatchOnce) {
     const Scene scene = soup(100, 0.1f);
     const ElementForest forest(scene, scene.patches.size());
-    std::vector<std::uint32_t> patches;
-    for (std::uint32_t p = 3; p < forest.patch_count(); ++p) patches.push_back(p);
+    std::vector<PatchIndex> patches;
+    for (PatchIndex p{3}; p < forest.patch_count(); ++p) patches.push_back(p);
     const PatchTree tree(forest, patches);
     ASSERT_EQ(tree.clusters().size(), patches.size() - 1);
-    std::multiset<std::uint32_t> found;
+    std::multiset<ElementIndex> found;
     for (std::uint32_t i = 0; i < tree.clusters().size(); ++i) {
         const PatchTree::Cluster& cluster = tree.clusters()[i];
         std::size_t below = 0;
-        for (const std::uint32_t child : cluster.children) {
+        for (const ElementIndex child : cluster.children) {
             below += is_cluster(child) ? tree.members(child).size() : 1;
             if (is_cluster(child))
                 EXPECT_GT(child, first_cluster + i) << "parents come first";
             else
                 found.insert(child);
         }
-        const std::span<const ClusterMember> members = tree.members(first_cluster + i);
+        const std::span<const ClusterMember> members = tree.members(ElementIndex(first_cluster + i));
         EXPECT_EQ(below, members.size());
         double area = 0;
         for (const ClusterMember& member : members) {
             area += static_cast<double>(forest.area(member.element));
             EXPECT_NEAR(member.area_vector.length() / forest.area(member.element), 1, 1e-5);
-            const Patch& patch = scene.patches[member.element];
+            const Patch& patch = scene.patches[forest.patch(member.element)];
             for (const std::uint32_t v :
                  std::span(patch.vertices).first(static_cast<std::size_t>(patch.vertex_count())))
                 EXPECT_LE((scene.vertices[v] - cluster.sphere.centre).length(), cluster.sphere.radius + 1e-5f);
@@ -162,9 +162,9 @@ struct TwoGroups {
                       true);
         return scene;
     }
-    static std::vector<std::uint32_t> all_but_board(const Scene& scene) {
-        std::vector<std::uint32_t> patches;
-        for (std::uint32_t p = 0; p + 2 < scene.patches.size(); ++p) patches.push_back(p);
+    static std::vector<PatchIndex> all_but_board(const Scene& scene) {
+        std::vector<PatchIndex> patches;
+        for (PatchIndex p{0}; p + 2 < scene.patches.size(); ++p) patches.push_back(p);
         return patches;
     }
 
@@ -236,7 +236,7 @@ TEST(ClusterExchange, OfAGroupAndANearWallIsTheSumOverPatches) {
         for (const std::uint32_t side : {0u, 1u}) {
             const std::uint32_t wall = static_cast<std::uint32_t>(scene.scene.patches.size()) - 2 + side;
             ASSERT_TRUE(scene.clusters.is_valid({wall, group}));
-            const ClusterMember member = member_of(scene.forest, wall);
+            const ClusterMember member = member_of(scene.forest, ElementIndex(wall));
             const std::vector<double> expected =
                 scene.received_by_pairs(std::span(&member, 1), scene.tree.members(group));
             if (sum(expected) == 0) {
@@ -347,7 +347,7 @@ TEST(ClusterLinks, TransportImportanceAsLight) {
         const Materials materials(scene);
         const std::vector<Rgb> b = radiosity(materials, *s.forest, s.irradiance);
         double by_light = 0, by_importance = 0;  // sum v P and sum psi A M
-        for (std::uint32_t e = 0; e < s.forest->size(); ++e) {
+        for (ElementIndex e{0}; e < s.forest->size(); ++e) {
             if (!s.forest->is_leaf(e)) continue;
             const auto area = static_cast<double>(s.forest->area(e));
             by_light += area * channel_sum(RgbD(b[e])) * s.view_importance[e];

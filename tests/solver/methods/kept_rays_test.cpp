@@ -34,7 +34,7 @@ std::vector<double> measured_over_reported(const std::vector<Solution>& solution
     std::vector<double> measured(solutions.size(), 0);
     double reported = 0;
     const auto count = static_cast<double>(solutions.size());
-    for (std::uint32_t patch = 0; patch < forest.patch_count(); ++patch) {
+    for (PatchIndex patch(0); patch < forest.patch_count(); ++patch) {
         const double shown = solutions[0].view_importance[patch] * forest.area(patch);
         double mean = 0;
         for (const Solution& s : solutions) {

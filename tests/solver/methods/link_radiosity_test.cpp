@@ -117,7 +117,7 @@ Scene lit_squares(const Squares& squares) {
 
 TEST_P(UnitSquares, ExchangeTheClosedFormsShare) {
     const Solution s = solve_scene(lit_squares(GetParam()), unrefined());
-    const double share = s.irradiance[1].x * s.forest->area(1);
+    const double share = s.irradiance[1].x * s.forest->area(ElementIndex(1));
     EXPECT_NEAR(share, form_factor(GetParam().from, GetParam().to), GetParam().quadrature_error);
 }
 
@@ -130,7 +130,7 @@ std::vector<RgbD> means_of(const std::vector<RgbD>& finer, std::size_t n) {
 
 double sum_over_leaves(const Solution& s, const std::vector<float>& per_area, const std::vector<Rgb>& weight) {
     double sum = 0;
-    for (const std::uint32_t e : s.forest->leaves())
+    for (const ElementIndex e : s.forest->leaves())
         sum += static_cast<double>(per_area[e]) * s.forest->area(e) * channel_sum(weight[e]) / 3;
     return sum;
 }
@@ -224,9 +224,9 @@ TEST(LinkRadiosity, OfCoincidentFacesOneIsLit) {
     options.refinement.min_area = 0.01;
     const Solution s = solve_scene(scene, options);
     const ElementForest& forest = *s.forest;
-    EXPECT_EQ(s.irradiance[forest.leaf_at(1, {0.5f, 0.5f})], Rgb(0)) << "the floor below the paper";
+    EXPECT_EQ(s.irradiance[forest.leaf_at(PatchIndex(1), {0.5f, 0.5f})], Rgb(0)) << "the floor below the paper";
     EXPECT_GT(s.irradiance[2].x, 0.2);
-    EXPECT_GT(s.irradiance[forest.leaf_at(1, {0.1f, 0.1f})].x, 0.1);
+    EXPECT_GT(s.irradiance[forest.leaf_at(PatchIndex(1), {0.1f, 0.1f})].x, 0.1);
 }
 
 /// Returns the irradiance of the floor through a slit between x = low and x = high in a board at half height, unbounded
@@ -253,7 +253,7 @@ TEST(LinkRadiosity, FindsTheShadowOfABoard) {
     add_board(scene, -9, 0.5f);
     const Solution s = solve_scene(scene, refined_to(1e-3));
     EXPECT_NEAR(s.irradiance[1].x / expected_through_slit(0.5, 10), 1, 0.01);
-    EXPECT_LT(s.irradiance[s.forest->leaf_at(1, {0.01f, 0.5f})].x, 0.02);
+    EXPECT_LT(s.irradiance[s.forest->leaf_at(PatchIndex(1), {0.01f, 0.5f})].x, 0.02);
 }
 
 TEST(LinkRadiosity, FindsLightThatTheFirstLinesMissed) {
@@ -307,7 +307,7 @@ TEST(LinkRadiosity, RefinementKeepsItsLimits) {
     options = refined_to(1e-5);
     options.refinement.min_area = 0.02;
     const Solution coarse = solve_scene(scene, options);
-    for (std::uint32_t e = 0; e < coarse.forest->size(); ++e) ASSERT_GE(coarse.forest->area(e), 0.02f);
+    for (ElementIndex e{0}; e < coarse.forest->size(); ++e) ASSERT_GE(coarse.forest->area(e), 0.02f);
 
     options = refined_to(1e-5);
     const std::int64_t first_rays = solve_scene(scene, unrefined()).iterations.back().rays;
@@ -378,7 +378,7 @@ TEST(LinkRadiosity, HasTheSameBitsForAnyNumberOfThreads) {
     };
     const Solution one = solved_with(1), two = solved_with(2);
     ASSERT_EQ(one.forest->size(), two.forest->size());
-    for (std::uint32_t e = 0; e < one.forest->size(); ++e) {
+    for (ElementIndex e{0}; e < one.forest->size(); ++e) {
         ASSERT_EQ(one.forest->path(e), two.forest->path(e));
         ASSERT_EQ(one.irradiance[e], two.irradiance[e]);
     }
@@ -415,8 +415,7 @@ SolveOptions seen_from_the_first_room(const Method& method, double epsilon) {
 
 std::uint32_t elements_of_patches(const Solution& s, std::uint32_t first, std::uint32_t end) {
     std::uint32_t count = 0;
-    for (std::uint32_t e = 0; e < s.forest->size(); ++e)
-        count += s.forest->patch(e) >= first && s.forest->patch(e) < end;
+    for (ElementIndex e{0}; e < s.forest->size(); ++e) count += s.forest->patch(e) >= first && s.forest->patch(e) < end;
     return count;
 }
 

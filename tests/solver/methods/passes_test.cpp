@@ -149,7 +149,7 @@ TEST(FurnaceOfPasses, IsRightAtAnyDistanceFromAnEdgeAndInElementsOfAnySize) {
         const Solution s = solve(scene, ray_caster, options);
         std::array<std::array<double, 2>, distances.size()> distance_sums{};
         std::array<std::array<double, 2>, levels> level_sums{};
-        for (const std::uint32_t e : s.forest->leaves()) {
+        for (const ElementIndex e : s.forest->leaves()) {
             const Parameters p = s.forest->cell(e).centre(false);
             const float d = std::min({p.u, 1 - p.u, p.v, 1 - p.v});
             const auto within =

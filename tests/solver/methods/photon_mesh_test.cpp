@@ -110,7 +110,7 @@ struct LitFloor {
                             static_cast<float>(blocks),
                         v = (static_cast<float>(k) + (static_cast<float>(a % points) + 0.5f) / points) /
                             static_cast<float>(blocks);
-            sum += static_cast<double>(s.irradiance[s.forest->leaf_at(0, {u, v})].x) / (points * points);
+            sum += static_cast<double>(s.irradiance[s.forest->leaf_at(PatchIndex(0), {u, v})].x) / (points * points);
         }
         return sum;
     }
@@ -207,7 +207,7 @@ TEST(PhotonMesh, DividesSymmetricLight) {
 // Reflected particles start where they hit, so no light passes under the wall.
 TEST(PhotonMesh, ReflectsLightWhereItArrives) {
     Scene scene = closed_box({4, 2, 3}, 1, {{"wall", Rgb(0.8f), Rgb(0)}});
-    const std::uint32_t wall = add_rectangle(scene, {1.5f, 0, 0}, {0, 2, 0}, {0, 0, 3}, 0, 1, 1, true);
+    const PatchIndex wall = add_rectangle(scene, {1.5f, 0, 0}, {0, 2, 0}, {0, 0, 3}, 0, 1, 1, true);
     scene.luminaires = {{"", 0, PointLight{{0.5f, 1, 2}, Rgb(10)}}};
     SolveOptions options = mesh_options(20'000);
     options.experimental.clusters = false;  // the dark wall would receive 1e-6 of the light of its cluster
@@ -225,7 +225,7 @@ TEST(PhotonMesh, KeepsEnergy) {
         options.experimental.iterations = 1;
         const Solution s = solve(scene, RayCaster(scene), options);
         double received = 0, reflected = 0;
-        for (const std::uint32_t e : s.forest->leaves()) {
+        for (const ElementIndex e : s.forest->leaves()) {
             const Rgb power = s.irradiance[e] * s.forest->area(e);
             received += channel_sum(power);
             reflected += channel_sum(Materials(scene).reflectance(s.forest->patch(e)) * power);

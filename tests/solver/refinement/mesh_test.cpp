@@ -73,8 +73,8 @@ Leaves leaves_of(const char* method, const Room& room) {
     const Solution solution = solve(scene, RayCaster(scene), options);
     const std::uint32_t first_cellar = solution.forest->patch_count() - cellar_walls;
     Leaves leaves;
-    for (const std::uint32_t leaf : solution.forest->leaves()) {
-        const std::uint32_t patch = solution.forest->patch(leaf);
+    for (const ElementIndex leaf : solution.forest->leaves()) {
+        const PatchIndex patch = solution.forest->patch(leaf);
         ++(patch >= first_cellar ? leaves.cellar : patch >= first_lamp ? leaves.lamp : leaves.room);
     }
     return leaves;

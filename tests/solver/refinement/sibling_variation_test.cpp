@@ -56,7 +56,7 @@ struct Setting {
     }
     void divide() {
         const std::uint32_t before = state.light.forest->size();
-        for (const std::uint32_t leaf : state.light.forest->leaves()) state.light.forest->subdivide(leaf);
+        for (const ElementIndex leaf : state.light.forest->leaves()) state.light.forest->subdivide(leaf);
         state.light.forest->put_in_order(before);
         grow_with_forest(state, before);
         state.sampling.streams.used.resize(state.light.forest->size(), 0);
@@ -70,12 +70,12 @@ struct Setting {
         const ElementForest& forest = *state.light.forest;
         Estimate fresh{std::vector<Rgb>(forest.size(), Rgb(0)), std::vector<float>(forest.size(), 0.0f)};
         const auto independent = [&](int level) { return variance / rays * std::pow(4.0f, static_cast<float>(level)); };
-        for (std::uint32_t e = 0; e < forest.size(); ++e) fresh.variance[e] = independent(forest.level(e));
+        for (ElementIndex e{0}; e < forest.size(); ++e) fresh.variance[e] = independent(forest.level(e));
         std::normal_distribution<float> normal;
         const auto noise = [&](int level) {
             return std::sqrt(factor[static_cast<std::size_t>(level)] * independent(level)) * normal(random);
         };
-        for (std::uint32_t e = 0; e < forest.patch_count(); ++e) fresh.irradiance[e] = Rgb(1 + noise(0));
+        for (ElementIndex e{0}; e < forest.patch_count(); ++e) fresh.irradiance[e] = Rgb(1 + noise(0));
         for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4) {
             std::array<float, 4> difference;
             float mean = 0;
@@ -131,7 +131,9 @@ double true_risk(const Setting& s, const Signal& signal) {
         for (std::uint32_t k = 0; k < 4; ++k) {
             const float y = luminance(s.state.light.solution.irradiance[first + k]) -
                             luminance(s.state.light.solution.irradiance[forest.parent(first)]);
-            sum += std::pow(sibling_variation(s.state.light, first).shrinkage() * y - signal(first, k), 2) / 4;
+            sum +=
+                std::pow(sibling_variation(s.state.light, ElementIndex(first)).shrinkage() * y - signal(first, k), 2) /
+                4;
         }
     return sum / groups;
 }
@@ -164,8 +166,8 @@ TEST(ErrorWeight, IsBoundedByTheReflectanceWhateverColourNoiseGivesTheLight) {
     interflect::SolverState state(scene, ray_caster, options);
     state.light.solution.view_importance.assign(state.light.forest->size(), 1.0f);
     state.light.solution.irradiance[0] = {3, -0.89f, 0.2f};  // luminance 0.02; the reflected light has 0.4
-    EXPECT_LE(error_weight(state.inputs, state.light, ErrorMeasure::pictures, 0), 0.8 * 0.8);
-    EXPECT_GE(error_weight(state.inputs, state.light, ErrorMeasure::pictures, 0), 0.1 * 0.1);
+    EXPECT_LE(error_weight(state.inputs, state.light, ErrorMeasure::pictures, ElementIndex(0)), 0.8 * 0.8);
+    EXPECT_GE(error_weight(state.inputs, state.light, ErrorMeasure::pictures, ElementIndex(0)), 0.1 * 0.1);
 }
 
 class Risk : public testing::TestWithParam<double> {};
@@ -208,7 +210,7 @@ TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
     std::uniform_real_distribution<float> history(0, 1000);
     for (int k = 0; k < 5; ++k) {
         for (float& h : s.state.light.history) h = history(s.random);
-        for (std::uint32_t e = 0; e < s.state.light.forest->size(); ++e)
+        for (ElementIndex e{0}; e < s.state.light.forest->size(); ++e)
             if (e >= s.state.light.forest->patch_count() && (e - s.state.light.forest->patch_count()) % 4 != 0)
                 s.state.light.history[e] =
                     s.state.light
@@ -218,7 +220,7 @@ TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
     }
     std::vector<Rgb> means = s.state.light.solution.irradiance;
     pull(*s.state.light.forest, means);
-    for (std::uint32_t e = 0; e < means.size(); ++e)
+    for (ElementIndex e{0}; e < means.size(); ++e)
         EXPECT_NEAR(means[e].x, s.state.light.solution.irradiance[e].x, 1e-5f) << e;
 }
 
@@ -233,7 +235,7 @@ std::array<std::vector<double>, 4> lone_bright_siblings(float before, int merges
     for (int trial = 0; trial < 2000; ++trial) {
         std::vector<Rgb>& mean = s.state.light.solution.irradiance;
         mean.assign(mean.size(), Rgb(1));  // inherited; the truth is 4 for the first sibling, 0 for the others
-        for (std::uint32_t e = 0; e < mean.size(); ++e) s.state.light.history[e] = e < 6 ? before : 0.0f;
+        for (ElementIndex e{0}; e < mean.size(); ++e) s.state.light.history[e] = e < 6 ? before : 0.0f;
         s.state.light.noise = NoiseModel(mean.size());
         for (int k = 0; k < merges; ++k) {
             Estimate fresh{std::vector<Rgb>(mean.size(), Rgb(0)), std::vector<float>(mean.size(), 0.0f)};
@@ -304,7 +306,7 @@ TEST(Shrinkage, LeavesADarkSiblingDark) {
         update_history(s.state.light, iteration);
     }
     finish_solution(s.state);
-    for (std::uint32_t e = 6; e < 30; ++e)
+    for (ElementIndex e(6); e < 30; ++e)
         EXPECT_NEAR(s.state.light.solution.irradiance[e].x, e % 4 == 2 ? 4 : 0, e % 4 == 2 ? 0.5 : 1e-4);
 }
 
@@ -318,7 +320,7 @@ TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
         mean.assign(mean.size(), Rgb(1));
         update_history(s.state.light, iteration);  // after one iteration, which created the elements below the patches
         std::vector<Rgb> received(mean.size(), Rgb(4.0f / 3));
-        for (std::uint32_t e = patches; e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
+        for (ElementIndex e = patches; e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
         pull(*s.state.light.forest, received);
         merge(s.state.light, mean, received, iteration);
         EXPECT_NEAR(mean[0].x, 1, 1e-6) << "of light none is lost";
@@ -336,7 +338,7 @@ double share_split(const Signal& signal) {
     const auto leaves = static_cast<double>(s.state.light.forest->leaves().size());
     const std::uint32_t before = s.state.light.forest->size();
     refine_by_variance(s.state);
-    for (std::uint32_t e = before; e < s.state.light.forest->size(); ++e)
+    for (ElementIndex e = before; e < s.state.light.forest->size(); ++e)
         EXPECT_EQ(s.state.light.history[e], 0) << "measured anew";
     return (s.state.light.forest->size() - before) / 4 / leaves;
 }

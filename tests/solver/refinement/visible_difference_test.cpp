@@ -61,46 +61,47 @@ struct Setting {
     void reset() {
         const ElementForest& forest = *state.light.forest;
         float area = 0;
-        for (std::uint32_t i = 0; i < forest.patch_count(); ++i) area += forest.area(i);
+        for (PatchIndex i{0}; i < forest.patch_count(); ++i) area += forest.area(i);
         state.light.solution.irradiance.assign(forest.size(), Rgb(1));
         state.light.solution.view_importance.assign(forest.size(), 1 / area);
         state.light.solution.indirect_importance.assign(forest.size(), 1 / area);
         state.light.history.assign(forest.size(), 0);
     }
     /// Divides the first child again and again; returns the last one.
-    std::uint32_t divide(std::uint32_t element, int levels) {
+    ElementIndex divide(ElementIndex element, int levels) {
         const std::uint32_t before = state.light.forest->size();
         for (int k = 0; k < levels; ++k) element = state.light.forest->subdivide(element);
         grow_with_forest(state, before);
         reset();
         return element;
     }
-    void set(std::uint32_t element, float irradiance) { state.light.solution.irradiance[element] = Rgb(irradiance); }
+    void set(ElementIndex element, float irradiance) { state.light.solution.irradiance[element] = Rgb(irradiance); }
     /// Threshold of luminance.
-    float threshold(std::uint32_t leaf) const {
+    float threshold(ElementIndex leaf) const {
         return std::sqrt(VisibleDifference(state.inputs, state.light).threshold(leaf));
     }
 };
 
 TEST(VisibleDifference, AdaptsToLocalLight) {
     Setting s;
-    s.set(13, 0.2f);
+    s.set(ElementIndex(13), 0.2f);
     const float shown = 20 / std::pow(0.2f, 1.0f / 24);  // logarithmic mean: one patch of 1 m^2 in 24 m^2
-    EXPECT_NEAR(s.threshold(13) / s.threshold(12), cone_threshold(0.2f * shown) / cone_threshold(shown), 0.01);
-    s.set(13, 1e-6f);
-    EXPECT_NEAR(s.threshold(13) / s.threshold(12),
+    EXPECT_NEAR(s.threshold(ElementIndex(13)) / s.threshold(ElementIndex(12)),
+                cone_threshold(0.2f * shown) / cone_threshold(shown), 0.01);
+    s.set(ElementIndex(13), 1e-6f);
+    EXPECT_NEAR(s.threshold(ElementIndex(13)) / s.threshold(ElementIndex(12)),
                 cone_threshold(0.5f) / cone_threshold(20 * std::pow(1e6f, 1.0f / 24)), 0.01)
         << "black of display";
-    s.set(13, 1e4f);
-    EXPECT_NEAR(s.threshold(13) / s.threshold(12), cone_threshold(100) / cone_threshold(20 / std::pow(1e4f, 1.0f / 24)),
-                0.1)
+    s.set(ElementIndex(13), 1e4f);
+    EXPECT_NEAR(s.threshold(ElementIndex(13)) / s.threshold(ElementIndex(12)),
+                cone_threshold(100) / cone_threshold(20 / std::pow(1e4f, 1.0f / 24)), 0.1)
         << "white of display";
 }
 
 TEST(VisibleDifference, AdaptsToASquareDegree) {
     Setting s;
     const ElementForest& forest = *s.state.light.forest;
-    const std::uint32_t leaf = s.divide(12, 4), parent = forest.parent(leaf);
+    const ElementIndex leaf = s.divide(ElementIndex(12), 4), parent = forest.parent(leaf);
     const std::uint32_t degree = forest.parent(forest.parent(parent));  // 118 pixels wide; its children 59
     const float before = s.threshold(leaf);
     s.set(leaf, 0.1f);
@@ -112,20 +113,22 @@ TEST(VisibleDifference, AdaptsToASquareDegree) {
 
 TEST(VisibleDifference, FollowsTheUnitOfLight) {
     Setting s;
-    const float before = s.threshold(12);
+    const float before = s.threshold(ElementIndex(12));
     for (Rgb& h : s.state.light.solution.irradiance) h *= 1000;
-    EXPECT_NEAR(s.threshold(12) / before, 1000, 0.1);
+    EXPECT_NEAR(s.threshold(ElementIndex(12)) / before, 1000, 0.1);
 }
 
 /// A fifth of the flash threshold, 1.63 cd/m^2 at 20 cd/m^2, relative to the light.
-TEST(VisibleDifference, IsASixtiethAtMediumLight) { EXPECT_NEAR(Setting().threshold(12), 0.0163f, 0.0002f); }
+TEST(VisibleDifference, IsASixtiethAtMediumLight) {
+    EXPECT_NEAR(Setting().threshold(ElementIndex(12)), 0.0163f, 0.0002f);
+}
 
 TEST(VisibleDifference, SparesSmallElements) {
     Setting s;
-    const float large = s.threshold(12);
+    const float large = s.threshold(ElementIndex(12));
     for (int levels = 1, deepest = 7; levels <= deepest; ++levels) {
         Setting divided;
-        const std::uint32_t leaf = divided.divide(12, levels);
+        const ElementIndex leaf = divided.divide(ElementIndex(12), levels);
         const float width = std::sqrt(divided.state.light.forest->area(leaf) /
                                       pixel_area(divided.state.inputs, divided.state.light, leaf));
         const double frequency = 67.02 / std::max(1.0, static_cast<double>(width));
@@ -149,9 +152,9 @@ TEST(VisibleDifference, IsMaskedByTexture) {
     WeightedView view;
     view.view = {"floor", {2, 1, 1.9}, {2, 1.001, 0}, {0, 1, 0}, 80};
     Setting textured(half_dark_floor(Halves::reflect), perceptual({view}));
-    const std::uint32_t floor = textured.state.light.forest->patch_count() - 1;
-    const std::uint32_t first = textured.divide(floor, 1);
-    const auto reflectance = [&](std::uint32_t e) {
+    const PatchIndex floor(textured.state.light.forest->patch_count() - 1);
+    const ElementIndex first = textured.divide(floor, 1);
+    const auto reflectance = [&](ElementIndex e) {
         return luminance(textured.state.inputs.materials.surface(floor, e).reflectance);
     };
     ASSERT_LT(reflectance(first), 0.02f);
@@ -168,10 +171,10 @@ TEST(VisibleDifference, IsMaskedByTexture) {
 TEST(VisibleDifference, IsInfiniteWhereNothingShows) {
     Setting s;
     s.state.light.solution.view_importance[12] = 0;
-    EXPECT_TRUE(std::isinf(s.threshold(12)));
-    EXPECT_TRUE(std::isfinite(s.threshold(13)));
+    EXPECT_TRUE(std::isinf(s.threshold(ElementIndex(12))));
+    EXPECT_TRUE(std::isfinite(s.threshold(ElementIndex(13))));
     Setting black(closed_box({2, 2, 2}, 1, {{"black", Rgb(0), Rgb(1)}}));
-    EXPECT_TRUE(std::isinf(black.threshold(3)));
+    EXPECT_TRUE(std::isinf(black.threshold(ElementIndex(3))));
 }
 
 TEST(VisibleDifference, OfOtherSurfacesIsThatOfASquareDegree) {
@@ -190,12 +193,12 @@ TEST(VisibleDifference, OfOtherSurfacesIsThatOfASquareDegree) {
 /// The children of two patches differ by more and by less than the threshold, without noise.
 TEST(PerceptualRefinement, SplitsVisibleDifferences) {
     Setting s;
-    const std::uint32_t clear = s.divide(12, 1), faint = s.divide(13, 1);
+    const ElementIndex clear = s.divide(ElementIndex(12), 1), faint = s.divide(ElementIndex(13), 1);
     std::fill(s.state.light.solution.indirect_importance.begin(), s.state.light.solution.indirect_importance.end(),
               0.0f);
     const float threshold = s.threshold(clear);
     s.state.light.history.assign(s.state.light.forest->size(), 1000);
-    const auto differ = [&](std::uint32_t first, float signal) {
+    const auto differ = [&](ElementIndex first, float signal) {
         const float difference = signal / std::sqrt(0.3f);  // falls to 0.3 of the square within the children
         for (const std::uint32_t k : {0u, 1u}) {
             s.set(first + k, 1 + difference);

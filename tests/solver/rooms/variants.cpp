@@ -128,9 +128,9 @@ SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed) {
     return options;
 }
 
-std::vector<std::uint32_t> leaves_by_place(const ElementForest& forest) {
-    std::vector<std::uint32_t> leaves = forest.leaves();
-    std::sort(leaves.begin(), leaves.end(), [&](std::uint32_t a, std::uint32_t b) {
+std::vector<ElementIndex> leaves_by_place(const ElementForest& forest) {
+    std::vector<ElementIndex> leaves = forest.leaves();
+    std::sort(leaves.begin(), leaves.end(), [&](ElementIndex a, ElementIndex b) {
         return std::pair(forest.patch(a), forest.path(a)) < std::pair(forest.patch(b), forest.path(b));
     });
     return leaves;
@@ -140,8 +140,8 @@ Scene scene_of_leaves(const Scene& scene, const ElementForest& forest) {
     Scene leaves;
     leaves.name = "the leaves of " + scene.name;
     leaves.materials = scene.materials;
-    for (const std::uint32_t leaf : leaves_by_place(forest)) {
-        const std::uint32_t patch = forest.patch(leaf);
+    for (const ElementIndex leaf : leaves_by_place(forest)) {
+        const PatchIndex patch = forest.patch(leaf);
         const Cell cell = forest.cell(leaf);
         const auto corner = [&](float s, float t) { return forest.geometry(patch).point(cell.at(s, t)); };
         add_rectangle(leaves, corner(0, 0), corner(1, 0) - corner(0, 0), corner(0, 1) - corner(0, 0),

@@ -26,7 +26,7 @@ using testing::FloatEq;
 /// A divided square of 4 m^2 with reflectances 1/4, 1/2 and 3/4, and a black square of 2 m^2.
 class Weights : public testing::Test {
   protected:
-    Weights() { forest_.subdivide(0); }
+    Weights() { forest_.subdivide(ElementIndex(0)); }
     static Scene two_squares() {
         Scene scene;
         testing_support::add_material(scene, {0.25f, 0.5f, 0.75f}, Rgb(0));
@@ -41,7 +41,7 @@ class Weights : public testing::Test {
     template <class Weight>
     std::vector<double> of_leaves(const Weight& weight) const {
         std::vector<double> weights;
-        for (const std::uint32_t leaf : forest_.leaves()) weights.push_back(std::invoke(weight, sampled(), leaf));
+        for (const ElementIndex leaf : forest_.leaves()) weights.push_back(std::invoke(weight, sampled(), leaf));
         return weights;
     }
 
@@ -63,7 +63,7 @@ TEST_F(Weights, OfWhatIsNotFiniteAreZeroAndItIsReported) {
     irradiance_[5].x = std::nanf("");
     const Radiosity light(materials_, irradiance_);
     EXPECT_THAT(of_leaves(&SamplingWeights::power), ElementsAre(6, 0, 0, 3, 0));
-    for (std::uint32_t e = 0; e < 6; ++e) EXPECT_EQ(light.is_not_finite(forest_, e), e == 2 || e == 5) << e;
+    for (ElementIndex e{0}; e < 6; ++e) EXPECT_EQ(light.is_not_finite(forest_, e), e == 2 || e == 5) << e;
 }
 
 TEST_F(Weights, OfPowerAreFiniteForEveryFiniteRadiosity) {

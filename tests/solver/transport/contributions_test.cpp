@@ -20,10 +20,10 @@ TEST(ContributionSums, GivesEachElementThePartsOfContributionsThatArriveThere) {
     sums.begin_step(3);
     ContributionSums::ScatterBuffer buffer(sums);
     const std::uint32_t a = buffer.add_payload({1, 10, 100, 5, 1000}), b = buffer.add_payload({2, 20, 200, 7, 2000});
-    buffer.add(0, a, Terms::both);
-    buffer.add(0, b, Terms::power);
-    buffer.add(2, b, Terms::importance);
-    buffer.add(4, a, Terms::power);  // created during the step
+    buffer.add(ElementIndex(0), a, Terms::both);
+    buffer.add(ElementIndex(0), b, Terms::power);
+    buffer.add(ElementIndex(2), b, Terms::importance);
+    buffer.add(ElementIndex(4), a, Terms::power);  // created during the step
     buffer.flush_all();
     EXPECT_EQ(sums.take(0), (Contribution{3, 30, 300, 12, 1000}));
     EXPECT_EQ(sums.take(1), (Contribution{0, 0, 0, 0, 0}));
@@ -40,7 +40,7 @@ TEST(ContributionSums, AreTheSameWhateverThreadsBringThem) {
     std::vector<Contribution> expected(elements, Contribution{});
     ContributionSums sums(elements);
     sums.begin_step(elements);
-    const auto element = [](std::size_t ray) { return static_cast<std::uint32_t>(ray * ray % elements); };
+    const auto element = [](std::size_t ray) { return ElementIndex(ray * ray % elements); };
     for (std::size_t ray = 0; ray < rays; ++ray)
         for (std::size_t c = 0; c < contributions[0].size(); ++c)
             expected[element(ray)][c] += contributions[ray % payloads][c];

@@ -32,7 +32,7 @@ double leak(const TwoRoomsOptions& rooms, bool cuts, double min_area = 0) {
     const float radians = rooms.turn * std::numbers::pi_v<float> / 180;
     const V3f across(std::cos(radians), std::sin(radians), 0);
     double power[2] = {0, 0}, area[2] = {0, 0};  // lit, dark
-    for (const std::uint32_t e : s.forest->leaves()) {
+    for (const ElementIndex e : s.forest->leaves()) {
         const PatchGeometry& patch = s.forest->geometry(s.forest->patch(e));
         const V3f x = patch.point(s.forest->cell(e).centre(patch.is_triangle()));
         const float distance = (x - V3f(length / 2, depth / 2, 0)).dot(across);  // from the middle of the wall

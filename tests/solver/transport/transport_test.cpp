@@ -176,7 +176,7 @@ TEST(Transport, CarriesImportanceWithoutBias) {
     std::vector<double> p_values, p_values_off;
     for (std::size_t i = 0; i < patches; ++i) {
         double expected = 0;  // sum_s F_is rho_s psi_s: Eq. 7 without V
-        for (std::uint32_t s = 0; s < patches; ++s)
+        for (PatchIndex s{0}; s < patches; ++s)
             expected += f(i, s) * static_cast<double>(room.materials.mean_reflectance(s) * step.importance[s]);
         p_values.push_back(t_test(arrived[i], expected));
         p_values_off.push_back(t_test(arrived[i], 1.02 * expected));
@@ -267,7 +267,7 @@ TEST(Transport, RefinesNoFurtherThanTheSmallestArea) {
     constexpr float min_area = 0.02f;
     room.receive(streams, room.refining_step(min_area));
     float smallest = 1;
-    for (const std::uint32_t e : room.forest.leaves()) smallest = std::min(smallest, room.forest.area(e));
+    for (const ElementIndex e : room.forest.leaves()) smallest = std::min(smallest, room.forest.area(e));
     EXPECT_GE(smallest, min_area * (1 - 1e-6f));
     EXPECT_LT(smallest, 4 * min_area) << "everything is divided as far as it may";
 }
@@ -311,8 +311,8 @@ TEST(TransportRays, DrawFromASequenceOfItsOwnForEachElement) {
     room.receive(streams, room.refining_step(0.02f));
     TransportStep step = room.step();
     const std::int64_t rays_per_leaf = 4;
-    const std::vector<std::uint32_t> leaves = room.forest.leaves();
-    for (const std::uint32_t leaf : leaves) step.q[leaf] = 1;
+    const std::vector<ElementIndex> leaves = room.forest.leaves();
+    for (const ElementIndex leaf : leaves) step.q[leaf] = 1;
     step.rays = rays_per_leaf * static_cast<std::int64_t>(leaves.size());
     const std::vector<Ray> traced = transport_rays(room.forest, room.ray_caster, step, streams_of(1));
     // The elements of the first wall are congruent: equal random numbers would give equal directions.

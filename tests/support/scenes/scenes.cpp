@@ -30,10 +30,10 @@ fs::path TemporaryFolder::write(const std::string& name, const std::string& text
     return path_ / name;
 }
 
-std::uint32_t add_rectangle(Scene& scene, V3f corner, V3f u, V3f v, std::uint32_t material, int nu, int nv,
-                            bool two_sided) {
+PatchIndex add_rectangle(Scene& scene, V3f corner, V3f u, V3f v, std::uint32_t material, int nu, int nv,
+                         bool two_sided) {
     const auto first_vertex = static_cast<std::uint32_t>(scene.vertices.size());
-    const auto first_patch = static_cast<std::uint32_t>(scene.patches.size());
+    const PatchIndex first_patch(scene.patches.size());
     if (scene.objects.empty()) scene.objects.emplace_back();
     for (int j = 0; j <= nv; ++j)
         for (int i = 0; i <= nu; ++i)
@@ -42,16 +42,16 @@ std::uint32_t add_rectangle(Scene& scene, V3f corner, V3f u, V3f v, std::uint32_
     const auto vertex = [&](int i, int j) { return first_vertex + static_cast<std::uint32_t>(j * (nu + 1) + i); };
     for (int j = 0; j < nv; ++j)
         for (int i = 0; i < nu; ++i) {
-            const auto index = static_cast<std::uint32_t>(scene.patches.size());
+            const PatchIndex index(scene.patches.size());
             Patch front;
             front.vertices = {vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)};
             front.material = material;
-            if (two_sided) front.other_side = index + 1;
+            if (two_sided) front.other_side = PatchIndex(index + 1);
             scene.patches.push_back(front);
             if (!two_sided) continue;
             Patch back = front;
             back.vertices = {front.vertices[0], front.vertices[3], front.vertices[2], front.vertices[1]};
-            back.other_side = index;
+            back.other_side = PatchIndex(index);
             scene.patches.push_back(back);
         }
     return first_patch;

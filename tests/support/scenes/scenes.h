@@ -31,8 +31,8 @@ class TemporaryFolder {
 
 /// Adds the parallelogram corner, corner + u, corner + u + v, corner + v, lit on the side of u x v, divided into nu x
 /// nv patches. Returns the index of the first patch (row by row in v).
-std::uint32_t add_rectangle(Scene& scene, V3f corner, V3f u, V3f v, std::uint32_t material, int nu = 1, int nv = 1,
-                            bool two_sided = false);
+PatchIndex add_rectangle(Scene& scene, V3f corner, V3f u, V3f v, std::uint32_t material, int nu = 1, int nv = 1,
+                         bool two_sided = false);
 
 /// Adds a closed box of six one-sided faces that face outwards, with their own vertices.
 void add_box(Scene& scene, V3f low, V3f high, std::uint32_t material);

@@ -12,7 +12,8 @@ class RankedBits {
   public:
     RankedBits() = default;
     /// @param members  Ascending, unique, below `bound`; fewer than 2^32.
-    RankedBits(std::size_t bound, const std::vector<std::uint32_t>& members) : words_(bound / 64 + 1) {
+    template <class Index>
+    RankedBits(std::size_t bound, const std::vector<Index>& members) : words_(bound / 64 + 1) {
         for (const std::uint32_t member : members) words_[member / 64].bits |= std::uint64_t{1} << member % 64;
         std::uint32_t before = 0;
         for (Word& word : words_) {

@@ -41,7 +41,7 @@ V3f FaceSurroundings::direction(const V3f& normal, std::uint64_t index) const {
         .normalized();
 }
 
-Surroundings FaceSurroundings::measure(std::uint32_t patch, Side side) const {
+Surroundings FaceSurroundings::measure(PatchIndex patch, Side side) const {
     const PatchGeometry geometry(scene_, scene_.patches[patch]);
     const V3f normal = side == Side::front ? geometry.normal() : -geometry.normal();
     const float near = close_by * std::sqrt(geometry.area());
@@ -81,7 +81,7 @@ bool FaceSurroundings::stays_within(float extent, const Start& start) const {
     return true;
 }
 
-bool FaceSurroundings::is_enclosed(std::uint32_t patch) const {
+bool FaceSurroundings::is_enclosed(PatchIndex patch) const {
     const PatchGeometry geometry(scene_, scene_.patches[patch]);
     const float size = std::sqrt(geometry.area());
     return stays_within(std::min(scene_size_ / 10, std::max(5 * size, 0.5f)), [&](std::uint64_t path) {

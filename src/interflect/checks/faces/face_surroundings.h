@@ -21,10 +21,10 @@ class FaceSurroundings {
     FaceSurroundings(const Scene& scene, const RayCaster& ray_caster);
 
     /// Traces 64 rays and their reversed rays.
-    Surroundings measure(std::uint32_t patch, Side side) const;
+    Surroundings measure(PatchIndex patch, Side side) const;
     /// Whether light stays within a tenth of the scene and the larger of five lamp sizes and 0.5 m for eight
     /// reflections. Traces 64 paths through glass, regardless of reflectance.
-    bool is_enclosed(std::uint32_t patch) const;
+    bool is_enclosed(PatchIndex patch) const;
 
   private:
     template <class Start>

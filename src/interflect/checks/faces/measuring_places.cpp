@@ -66,7 +66,7 @@ class LightSearch {
         : scene_(scene), ray_caster_(ray_caster), lines_(lines) {
         for (const Luminaire& luminaire : scene.luminaires)
             if (const std::optional<V3f> position = position_of(luminaire)) sources_.push_back(*position);
-        for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+        for (PatchIndex i{0}; i < scene.patches.size(); ++i)
             if (emits(i)) sources_.push_back(before(i, PatchGeometry(scene, scene.patches[i]).centre()));
     }
 
@@ -102,10 +102,10 @@ class LightSearch {
             },
             luminaire.kind);
     }
-    bool emits(std::uint32_t patch) const {
+    bool emits(PatchIndex patch) const {
         return largest_channel(scene_.materials[scene_.patches[patch].material].exitance) > 0;
     }
-    V3f before(std::uint32_t patch, const V3f& x) const {
+    V3f before(PatchIndex patch, const V3f& x) const {
         return x + ray_caster_.ray_offset(patch) * PatchGeometry(scene_, scene_.patches[patch]).normal();
     }
     const V3f* nearest_source(const V3f& x) const {

@@ -27,11 +27,12 @@ std::vector<std::uint32_t> first_at_position(const Scene& scene) {
 
 std::vector<OpenEdge> open_edges(const Scene& scene) {
     struct Edge {
-        std::uint32_t low, high, patch;
+        std::uint32_t low, high;
+        PatchIndex patch;
     };
     const std::vector<std::uint32_t> vertex = first_at_position(scene);
     std::vector<Edge> edges;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         if (patch.other_side != none && patch.other_side < i) continue;
         const int count = patch.vertex_count();

@@ -10,7 +10,7 @@ namespace interflect::detail {
 /// Edge of exactly one face.
 struct OpenEdge {
     V3f a, b;  ///< Relative to Scene::origin [m].
-    std::uint32_t patch = none;
+    PatchIndex patch;
 };
 
 /// Sorted by patch. Merges vertices at equal positions.

@@ -93,13 +93,13 @@ std::vector<LitSpace> lit_spaces(const LocalLights& lights, const Paths& paths) 
 
 std::vector<V3f> points_lit_by_surfaces(const Scene& scene, const RayCaster& ray_caster, const Paths& paths) {
     constexpr std::size_t most = 256, all_paths = 256;
-    std::vector<std::uint32_t> emitting;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+    std::vector<PatchIndex> emitting;
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i)
         if (largest_channel(scene.materials[scene.patches[i].material].exitance) > 0) emitting.push_back(i);
     const std::size_t count = std::min(emitting.size(), most), paths_each = count > 0 ? all_paths / count : 0;
     std::vector<V3f> points;
     for (std::size_t k = 0; k < count; ++k) {
-        const std::uint32_t patch = emitting[k * emitting.size() / count];
+        const PatchIndex patch = emitting[k * emitting.size() / count];
         const PatchGeometry geometry(scene, scene.patches[patch]);
         const V3f start = geometry.centre() + ray_caster.ray_offset(patch) * geometry.normal();
         for (std::size_t j = 0; j < paths_each; ++j) {

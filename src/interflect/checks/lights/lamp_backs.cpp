@@ -38,7 +38,7 @@ class LampBacks {
         : scene_(scene), ray_caster_(ray_caster), lines_(lines) {}
 
     /// Whether light of the face, reflected once, arrives at surfaces close behind it.
-    bool is_open(std::uint32_t patch) const {
+    bool is_open(PatchIndex patch) const {
         const std::vector<LitPoint> points = points_close_behind(patch);
         if (static_cast<float>(points.size()) < min_close_points * points_behind) return false;
         std::size_t lit = 0;
@@ -58,7 +58,7 @@ class LampBacks {
     }
 
     /// Returns hits of rays from the back, without another face in between.
-    std::vector<LitPoint> points_close_behind(std::uint32_t patch) const {
+    std::vector<LitPoint> points_close_behind(PatchIndex patch) const {
         const PatchGeometry face(scene_, scene_.patches[patch]);
         std::vector<LitPoint> points;
         for (std::uint64_t i = 0; i < points_behind; ++i) {
@@ -80,7 +80,7 @@ class LampBacks {
     }
 
     /// Whether a ray from a point ends where light of the face arrives and is reflected back.
-    bool is_lit(const LitPoint& from, const V3f& direction, std::uint32_t patch) const {
+    bool is_lit(const LitPoint& from, const V3f& direction, PatchIndex patch) const {
         const Ray ray{from.position, direction};
         const Hit hit = lines_.first_surface(ray);
         if (hit.patch == none) return false;
@@ -97,14 +97,14 @@ class LampBacks {
 };
 
 struct EmittingFace {
-    std::uint32_t patch;
+    PatchIndex patch;
     V3f centre;
     float area;  // [m^2]
 };
 
 std::vector<EmittingFace> emitting_faces(const Scene& scene) {
     std::vector<EmittingFace> faces;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         if (patch.other_side != none || !(largest_channel(scene.materials[patch.material].exitance) > 0)) continue;
         const PatchGeometry face(scene, patch);

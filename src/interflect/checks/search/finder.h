@@ -23,7 +23,7 @@ class Finder {
     void add_at(const V3f& x, const std::string& object, const std::string& material) {
         add({object, material, "", scene_.origin + Imath::V3d(x), true});
     }
-    void add_patch(std::uint32_t i) {
+    void add_patch(PatchIndex i) {
         const Patch& patch = scene_.patches[i];
         add_at(PatchGeometry(scene_, patch).centre(), scene_.objects[patch.object],
                scene_.materials[patch.material].name);

@@ -69,29 +69,29 @@ void VtkGrid::visit_cell_data(const Sink& sink) const {
         sink(vtk_array(std::move(name), cell_count(), [&](std::size_t i) { return of_element(polygons_.leaves[i]); }));
     };
     const auto add_numbers = [&](const char* name, const std::vector<float>& numbers) {
-        if (!numbers.empty()) add(name, [&](std::uint32_t e) { return numbers[e]; });
+        if (!numbers.empty()) add(name, [&](ElementIndex e) { return numbers[e]; });
     };
-    add("illuminance", [&](std::uint32_t e) { return luminance(solution_.irradiance[e]); });
-    add("irradiance", [&](std::uint32_t e) { return solution_.irradiance[e]; });
+    add("illuminance", [&](ElementIndex e) { return luminance(solution_.irradiance[e]); });
+    add("irradiance", [&](ElementIndex e) { return solution_.irradiance[e]; });
     if (!solution_.direct.empty())
-        add("direct_irradiance", [&](std::uint32_t e) {
+        add("direct_irradiance", [&](ElementIndex e) {
             Rgb sum(0);
             for (const std::vector<Rgb>& part : solution_.direct) sum += part[e];
             return sum;
         });
     for (std::size_t g = 0; g < solution_.groups.size(); ++g)
-        add(fmt::format("irradiance_of_group_{}", g), [&](std::uint32_t e) { return solution_.groups[g][e]; });
-    add("radiosity", [&](std::uint32_t e) { return leaving[e]; });
+        add(fmt::format("irradiance_of_group_{}", g), [&](ElementIndex e) { return solution_.groups[g][e]; });
+    add("radiosity", [&](ElementIndex e) { return leaving[e]; });
     add_numbers("standard_error", solution_.standard_error);
     add_numbers("discretisation_error", solution_.discretisation_error);
     add_numbers("rays", solution_.rays);
     add_numbers("view_importance", solution_.view_importance);
     add_numbers("indirect_importance", solution_.indirect_importance);
-    add("element", [](std::uint32_t e) { return e; });
-    add("patch", [&](std::uint32_t e) { return forest.patch(e); });
-    add("level", [&](std::uint32_t e) { return static_cast<std::uint8_t>(forest.level(e)); });
-    add("material", [&](std::uint32_t e) { return scene_.patches[forest.patch(e)].material; });
-    add("object", [&](std::uint32_t e) { return scene_.patches[forest.patch(e)].object; });
+    add("element", [](ElementIndex e) { return e.value; });
+    add("patch", [&](ElementIndex e) { return forest.patch(e).value; });
+    add("level", [&](ElementIndex e) { return static_cast<std::uint8_t>(forest.level(e)); });
+    add("material", [&](ElementIndex e) { return scene_.patches[forest.patch(e)].material; });
+    add("object", [&](ElementIndex e) { return scene_.patches[forest.patch(e)].object; });
 }
 
 }  // namespace interflect::detail

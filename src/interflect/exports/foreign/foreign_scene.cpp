@@ -18,7 +18,7 @@ namespace interflect::detail {
 
 namespace {
 
-bool is_second_side(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
+bool is_second_side(const Scene& scene, PatchIndex patch) { return scene.patches[patch].other_side < patch; }
 
 Backs backs_of(const Scene& scene, const Patch& patch) {
     if (patch.other_side == none) return Backs::pass;
@@ -125,7 +125,7 @@ ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& d
     for (const Luminaire& luminaire : scene.luminaires) names.push_back(luminaire.name);
     luminaires = plain_names(names, "light");
     Meshes all(scene);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i)
         if (!is_second_side(scene, i)) all.add(scene.patches[i]);
     meshes = std::move(all.meshes);
     Imath::Box3f bounds;

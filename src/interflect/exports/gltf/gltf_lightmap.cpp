@@ -77,7 +77,7 @@ std::string encode_beside(const Image& image, const std::string& extension, cons
 MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, ElementMesh& mesh) {
     MappedPrimitives primitives;
     std::vector<MeshTriangle> triangles;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         if (lightmap.chart_of_patch[p] == none) continue;
         triangles.clear();
         mesh.triangulate(p, triangles);

@@ -97,7 +97,7 @@ LitPrimitives primitives_of(const Scene& scene, VertexLight& light, float exposu
     const VertexColours colours(scene, exposure);
     LitPrimitives primitives;
     std::vector<MeshTriangle> triangles;
-    for (const std::uint32_t leaf : forest.leaves()) {
+    for (const ElementIndex leaf : forest.leaves()) {
         if (!light.shown[forest.patch(leaf)]) continue;
         triangles.clear();
         light.mesh.triangulate(leaf, triangles);

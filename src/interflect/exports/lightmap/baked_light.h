@@ -17,7 +17,7 @@ namespace interflect::detail {
 
 /// Point of a surface whose light is stored in a texel or vertex.
 struct BakedPoint {
-    std::uint32_t patch = none;
+    PatchIndex patch{};
     Parameters at;
     /// Sides of a parallelogram around the point, over which hybrid shading averages direct light.
     std::array<Parameters, 2> sides{};

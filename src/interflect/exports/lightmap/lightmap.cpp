@@ -285,7 +285,7 @@ void require_memory(double image_texels, double chart_texels, const LightmapOpti
 
 }  // namespace
 
-V2f Lightmap::coordinate(std::uint32_t patch, Parameters at) const {
+V2f Lightmap::coordinate(PatchIndex patch, Parameters at) const {
     const LightmapChart& chart = charts[chart_of_patch[patch]];
     const Image& image = images[static_cast<std::size_t>(chart.page)];
     const Imath::V2d texel = chart.patches[index_in_chart[patch]].point(at) / chart.spacing();
@@ -313,7 +313,7 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     LightmapTexels texels(lightmap_options);
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {
         const FlatPatches& patches = lightmap.charts[i].patches;
-        for (std::uint32_t k = 0; k < patches.size(); ++k) {
+        for (PatchIndex k{0}; k < patches.size(); ++k) {
             lightmap.chart_of_patch[patches[k].patch] = i;
             lightmap.index_in_chart[patches[k].patch] = k;
         }

@@ -18,8 +18,8 @@ struct Lightmap {
     double covered = 0;                      ///< Share of texels on patches.
 
     /// Returns (0, 0) for the upper left corner.
-    V2f coordinate(std::uint32_t patch, Parameters at) const;
-    int page(std::uint32_t patch) const { return charts[chart_of_patch[patch]].page; }
+    V2f coordinate(PatchIndex patch, Parameters at) const;
+    int page(PatchIndex patch) const { return charts[chart_of_patch[patch]].page; }
 };
 
 /// Evaluates light at texel centres or, outside the patches, at the nearest point of a patch. Direct light of hybrid

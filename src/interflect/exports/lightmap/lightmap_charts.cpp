@@ -23,7 +23,7 @@ constexpr double narrow_gap = 2;
 
 /// Part of an edge without adjacent patch.
 struct BorderEdge {
-    std::uint32_t patch;
+    PatchIndex patch;
     V3f a, b;
     V3f inwards;  // unit vector in the plane
 };
@@ -31,8 +31,9 @@ struct BorderEdge {
 /// Omits joints between objects.
 Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     Joints joints = smooth.seams;
-    std::vector<std::uint32_t> first(smooth.edges.count, none);
-    for (std::uint32_t edge = 0; edge < smooth.edges.group.size(); ++edge) {
+    std::vector<EdgeIndex> first(smooth.edges.count);
+    for (std::size_t i = 0; i < smooth.edges.group.size(); ++i) {
+        const EdgeIndex edge(i);
         const std::uint32_t group = smooth.edges.group[edge];
         if (group == none) continue;
         if (first[group] == none)
@@ -41,7 +42,7 @@ Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
             joints.push_back({{first[group], edge}, {0, 0}, {1, 1}});
     }
     std::erase_if(joints, [&](const SmoothSurfaces::Seam& joint) {
-        return scene.patches[joint.edge[0] / 4].object != scene.patches[joint.edge[1] / 4].object;
+        return scene.patches[joint.edge[0].patch()].object != scene.patches[joint.edge[1].patch()].object;
     });
     return joints;
 }
@@ -52,30 +53,33 @@ class Neighbourhood {
         : scene_(scene), neighbours_(scene.patches.size()), surface_(flat_surfaces(scene)) {
         std::vector<Intervals> shared(4 * scene.patches.size());
         for (const auto& joint : joints) {
-            const std::uint32_t p = joint.edge[0] / 4, q = joint.edge[1] / 4;
+            const PatchIndex p = joint.edge[0].patch(), q = joint.edge[1].patch();
             if (surface_side(p) != surface_side(q)) continue;
             neighbours_[p].push_back(q);
             neighbours_[q].push_back(p);
             for (std::size_t k = 0; k < 2; ++k) shared[joint.edge[k]].emplace_back(joint.from[k], joint.to[k]);
         }
-        for (std::uint32_t edge = 0; edge < shared.size(); ++edge)
-            if (static_cast<int>(edge % 4) < scene.patches[edge / 4].vertex_count()) add_border(edge, shared[edge]);
+        for (PatchIndex p{0}; p < scene.patches.size(); ++p)
+            for (int c = 0; c < scene.patches[p].vertex_count(); ++c) {
+                const EdgeIndex edge(p, static_cast<std::uint32_t>(c));
+                add_border(edge, shared[edge]);
+            }
     }
 
-    std::uint64_t surface_side(std::uint32_t p) const {
+    std::uint64_t surface_side(PatchIndex p) const {
         const bool is_back = scene_.patches[p].other_side < p;
         return std::uint64_t{surface_[p]} << 1 | static_cast<std::uint64_t>(is_back);
     }
-    const std::vector<std::uint32_t>& neighbours(std::uint32_t patch) const { return neighbours_[patch]; }
+    const std::vector<PatchIndex>& neighbours(PatchIndex patch) const { return neighbours_[patch]; }
     const std::vector<BorderEdge>& border() const { return border_; }
 
   private:
     using Intervals = std::vector<std::pair<float, float>>;
 
-    void add_border(std::uint32_t edge, Intervals shared) {
+    void add_border(EdgeIndex edge, Intervals shared) {
         constexpr float rounding = 1e-5f;
-        const Patch& patch = scene_.patches[edge / 4];
-        const int corner = static_cast<int>(edge % 4);
+        const Patch& patch = scene_.patches[edge.patch()];
+        const int corner = static_cast<int>(edge.corner());
         const V3f& start = scene_.vertices[patch.vertices[corner]];
         const V3f along = scene_.vertices[patch.vertices[(corner + 1) % patch.vertex_count()]] - start;
         const V3f inwards = PatchGeometry(scene_, patch).normal().cross(along).normalized();
@@ -83,13 +87,14 @@ class Neighbourhood {
         shared.emplace_back(1.0f, 1.0f);
         float end = 0;
         for (const auto& [low, high] : shared) {
-            if (low > end + rounding) border_.push_back({edge / 4, start + end * along, start + low * along, inwards});
+            if (low > end + rounding)
+                border_.push_back({edge.patch(), start + end * along, start + low * along, inwards});
             end = std::max(end, high);
         }
     }
 
     const Scene& scene_;
-    std::vector<std::vector<std::uint32_t>> neighbours_;
+    PerPatch<std::vector<PatchIndex>> neighbours_;
     std::vector<std::uint32_t> surface_;
     std::vector<BorderEdge> border_;
 };
@@ -152,14 +157,14 @@ std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>
                                      const Neighbourhood& neighbourhood, const ChartConflicts& conflicts) {
     std::vector<std::uint32_t> piece_of(scene.patches.size(), none);
     std::vector<FlatPatches> pieces;
-    for (std::uint32_t seed = 0; seed < piece_of.size(); ++seed) {
+    for (PatchIndex seed{0}; seed < piece_of.size(); ++seed) {
         if (piece_of[seed] != none || !shown[seed]) continue;
         const auto number = static_cast<std::uint32_t>(pieces.size());
-        std::vector<std::uint32_t> group{seed};
+        std::vector<PatchIndex> group{seed};
         piece_of[seed] = number;
         for (std::size_t i = 0; i < group.size(); ++i)
-            for (const std::uint32_t next : neighbourhood.neighbours(group[i])) {
-                const auto is_here = [&](std::uint32_t other) { return piece_of[other] == number; };
+            for (const PatchIndex next : neighbourhood.neighbours(group[i])) {
+                const auto is_here = [&](PatchIndex other) { return piece_of[other] == number; };
                 if (piece_of[next] != none || !shown[next] ||
                     std::any_of(conflicts[next].begin(), conflicts[next].end(), is_here))
                     continue;

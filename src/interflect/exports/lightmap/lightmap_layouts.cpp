@@ -17,7 +17,7 @@ namespace {
 constexpr double layout_rounding = 0x1p-15;
 
 /// v points downwards.
-FlatPatch given_layout(const Scene& scene, std::uint32_t p) {
+FlatPatch given_layout(const Scene& scene, PatchIndex p) {
     const Patch& patch = scene.patches[p];
     FlatPatch flat{p, patch.vertex_count()};
     for (int c = 0; c < flat.count; ++c) {
@@ -86,7 +86,7 @@ void scale(const Scene& scene, FlatPatches& layout) {
 std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool>& shown, Warnings* warnings) {
     if (scene.lightmap_coordinates.empty()) return {};
     std::map<std::uint32_t, FlatPatches> layout_of_object;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const Patch& patch = scene.patches[p];
         const bool is_second_side = patch.other_side < p && shown[patch.other_side];
         if (shown[p] && !is_second_side && !std::isnan(scene.lightmap_coordinates[patch.vertices[0]].x))

@@ -75,8 +75,8 @@ class Unfolding {
         for (std::uint32_t i = 0; i < pieces_.size(); ++i)
             for (const FlatPatch& flat : pieces_[i]) piece_of_[flat.patch] = i;
         for (std::uint32_t j = 0; j < joints_.size(); ++j)
-            for (const std::uint32_t edge : joints_[j].edge)
-                if (const std::uint32_t piece = piece_of_[edge / 4]; piece != none) joints_of_[piece].push_back(j);
+            for (const EdgeIndex edge : joints_[j].edge)
+                if (const std::uint32_t piece = piece_of_[edge.patch()]; piece != none) joints_of_[piece].push_back(j);
     }
 
     std::vector<FlatPatches> layouts() {
@@ -95,8 +95,8 @@ class Unfolding {
         add(seed, pieces_[seed], number);
         for (std::size_t i = 0; i < added.size(); ++i)
             for (const std::uint32_t j : joints_of_[added[i]])
-                for (const std::uint32_t edge : joints_[j].edge) {
-                    const std::uint32_t next = piece_of_[edge / 4];
+                for (const EdgeIndex edge : joints_[j].edge) {
+                    const std::uint32_t next = piece_of_[edge.patch()];
                     if (next == none || layout_of_[next] != none || layout_.size() >= max_patches_unfolded) continue;
                     const std::optional<FlatPatches> placed = place(next, number);
                     if (!placed) continue;
@@ -110,7 +110,7 @@ class Unfolding {
         layout_of_[piece] = number;
         for (const FlatPatch& flat : placed) {
             for (std::uint32_t c = 0; c < flat.outline().size(); ++c)
-                position_.try_emplace(corners_.group[4 * flat.patch + c], flat.corners[c]);
+                position_.try_emplace(corners_.group[CornerIndex(flat.patch, c)], flat.corners[c]);
             place_in_layout_[flat.patch] = layout_.size();
             layout_.push_back(flat);
             boxes_.push_back(flat.box());
@@ -126,7 +126,7 @@ class Unfolding {
         FlatPatches placed = pieces_[piece];
         for (FlatPatch& flat : placed) {
             for (std::uint32_t c = 0; c < flat.outline().size(); ++c) {
-                const auto known = position_.find(corners_.group[4 * flat.patch + c]);
+                const auto known = position_.find(corners_.group[CornerIndex(flat.patch, c)]);
                 flat.corners[c] = known != position_.end() ? known->second : (*motion)(flat.corners[c]);
             }
         }
@@ -140,7 +140,7 @@ class Unfolding {
     }
 
     bool has_conflict(std::uint32_t piece, std::uint32_t number) const {
-        const auto is_here = [&](std::uint32_t patch) {
+        const auto is_here = [&](PatchIndex patch) {
             return piece_of_[patch] != none && layout_of_[piece_of_[patch]] == number;
         };
         return std::any_of(pieces_[piece].begin(), pieces_[piece].end(), [&](const FlatPatch& flat) {
@@ -152,7 +152,8 @@ class Unfolding {
         std::vector<PointPair> pairs;
         for (const FlatPatch& flat : pieces_[piece])
             for (std::uint32_t c = 0; c < flat.outline().size(); ++c)
-                if (const auto known = position_.find(corners_.group[4 * flat.patch + c]); known != position_.end())
+                if (const auto known = position_.find(corners_.group[CornerIndex(flat.patch, c)]);
+                    known != position_.end())
                     pairs.emplace_back(flat.corners[c], known->second);
         for (const std::uint32_t j : joints_of_[piece]) {
             const auto& [edge, from, to] = joints_[j];
@@ -192,7 +193,7 @@ class Unfolding {
         const double in_space = (centre(a.patch) - centre(b.patch)).length(), flat = (a.centre() - b.centre()).length();
         return in_space > (1 + max_stretch) * flat;
     }
-    V3f centre(std::uint32_t patch) const { return PatchGeometry(scene_, scene_.patches[patch]).centre(); }
+    V3f centre(PatchIndex patch) const { return PatchGeometry(scene_, scene_.patches[patch]).centre(); }
 
     const Scene& scene_;
     const SmoothSurfaces::Groups& corners_;

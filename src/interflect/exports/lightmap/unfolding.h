@@ -11,7 +11,7 @@
 namespace interflect::detail {
 
 /// Patches that must be in other charts, per patch.
-using ChartConflicts = std::vector<std::vector<std::uint32_t>>;
+using ChartConflicts = std::vector<std::vector<PatchIndex>>;
 
 /// Includes whole edges.
 using Joints = std::vector<SmoothSurfaces::Seam>;

@@ -71,7 +71,7 @@ ElementMesh::ElementMesh(const Scene& scene, const ElementForest& forest, Elemen
 
 void ElementMesh::number_points() {
     std::unordered_map<V3f, std::uint32_t, PositionHash> numbers;
-    for (std::uint32_t e = 0; e < forest_.size(); ++e) {
+    for (ElementIndex e{0}; e < forest_.size(); ++e) {
         if (!forest_.is_leaf(e)) continue;
         const PatchGeometry& geometry = forest_.geometry(forest_.patch(e));
         const Cell cell = forest_.cell(e);
@@ -128,7 +128,7 @@ void ElementMesh::add_points_on_edge(const MeshCorner& a, const MeshCorner& b, s
               [&](const MeshCorner& c, const MeshCorner& d) { return distance2(c) < distance2(d); });
 }
 
-std::vector<MeshCorner> ElementMesh::outline(std::uint32_t leaf) const {
+std::vector<MeshCorner> ElementMesh::outline(ElementIndex leaf) const {
     const std::span<const Parameters> cell_corners = corners_of(forest_.geometry(forest_.patch(leaf)).is_triangle());
     const Cell cell = forest_.cell(leaf);
     const std::size_t count = cell_corners.size();
@@ -147,7 +147,7 @@ std::vector<MeshCorner> ElementMesh::outline(std::uint32_t leaf) const {
     return outline;
 }
 
-void ElementMesh::triangulate(std::uint32_t leaf, std::vector<MeshTriangle>& triangles) {
+void ElementMesh::triangulate(ElementIndex leaf, std::vector<MeshTriangle>& triangles) {
     const PatchGeometry& geometry = forest_.geometry(forest_.patch(leaf));
     const std::vector<MeshCorner> corners = outline(leaf);
     const std::size_t corner_count = geometry.is_triangle() ? 3 : 4;

@@ -33,8 +33,8 @@ class ElementMesh {
     /// Relative to Scene::origin [m]; triangulate() appends the centres of fans.
     const std::vector<V3f>& points() const { return points_; }
     /// Returns fewer than three vertices for a leaf without area.
-    std::vector<MeshCorner> outline(std::uint32_t leaf) const;
-    void triangulate(std::uint32_t leaf, std::vector<MeshTriangle>& triangles);
+    std::vector<MeshCorner> outline(ElementIndex leaf) const;
+    void triangulate(ElementIndex leaf, std::vector<MeshTriangle>& triangles);
 
   private:
     void number_points();

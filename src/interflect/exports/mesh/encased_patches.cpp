@@ -23,7 +23,7 @@ class Surroundings {
     Surroundings(const Scene& scene, const RayCaster& ray_caster, const std::vector<bool>& is_dark)
         : scene_(scene), ray_caster_(ray_caster), is_dark_(is_dark), diameter_(core_bounds(scene).size().length()) {}
 
-    bool encase(std::uint32_t patch) const {
+    bool encase(PatchIndex patch) const {
         PointBlock points;
         std::array<Ray, rays_of_patch> rays;
         std::array<Parameters, rays_of_patch> origins;
@@ -72,7 +72,7 @@ std::vector<bool> encased_patches(const Scene& scene, const RayCaster& ray_caste
     constexpr std::size_t patches_per_task = 1 << 8;
     parallel_for_ranges(encased.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)
-            if (is_dark[p] && surroundings.encase(static_cast<std::uint32_t>(p))) encased[p] = 1;
+            if (is_dark[p] && surroundings.encase(PatchIndex(p))) encased[p] = 1;
     });
     return {encased.begin(), encased.end()};
 }

@@ -24,14 +24,14 @@ Imath::Box2d FlatPatch::box() const {
     return all;
 }
 
-FlatPatches projected(const Scene& scene, std::span<const std::uint32_t> patches) {
+FlatPatches projected(const Scene& scene, std::span<const PatchIndex> patches) {
     const Patch& first = scene.patches[patches.front()];
     const Imath::V3d origin(scene.vertices[first.vertices[0]]);
     const Imath::V3d normal(PatchGeometry(scene, first).normal());
     const Imath::V3d edge = Imath::V3d(scene.vertices[first.vertices[1]]) - origin;
     const Imath::V3d x = (edge - normal * edge.dot(normal)).normalized(), y = normal.cross(x);
     FlatPatches flat;
-    for (const std::uint32_t p : patches) {
+    for (const PatchIndex p : patches) {
         const Patch& patch = scene.patches[p];
         flat.push_back({p, patch.vertex_count()});
         for (int c = 0; c < patch.vertex_count(); ++c) {

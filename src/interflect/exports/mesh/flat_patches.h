@@ -14,7 +14,7 @@
 namespace interflect::detail {
 
 struct FlatPatch {
-    std::uint32_t patch;
+    PatchIndex patch;
     int count;                            ///< 3 or 4.
     std::array<Imath::V2d, 4> corners{};  ///< In the patch's vertex order.
 
@@ -28,7 +28,7 @@ struct FlatPatch {
 using FlatPatches = std::vector<FlatPatch>;
 
 /// Projects coplanar patches to their plane [m], counter-clockwise seen from the lit side.
-FlatPatches projected(const Scene& scene, std::span<const std::uint32_t> patches);
+FlatPatches projected(const Scene& scene, std::span<const PatchIndex> patches);
 
 /// Returns a lower bound of the distance between convex outlines; negative if they overlap.
 double separation(const FlatPatch& a, const FlatPatch& b);

@@ -43,14 +43,14 @@ std::vector<bool> shown_patches(const Scene& scene, const Solution& solution) {
     const std::vector<bool> dark = at_most(light, std::min(max_dark, max_dark_of_mean * mean));
     const RayCaster ray_caster(scene);
     std::vector<bool> shown(scene.patches.size(), true);
-    for (std::uint32_t p = 0; p < shown.size(); ++p) {
-        const std::uint32_t other = scene.patches[p].other_side;
+    for (PatchIndex p{0}; p < shown.size(); ++p) {
+        const PatchIndex other = scene.patches[p].other_side;
         if (other != none && dark[p]) shown[p] = dark[other] && p < other;
         if (ray_caster.uncovered_share(p) == 0) shown[p] = false;
     }
     if (std::find(dark.begin(), dark.end(), false) == dark.end()) return shown;  // an unlit scene keeps its faces
     const std::vector<bool> encased = encased_patches(scene, ray_caster, at_most(light, max_stray_of_mean * mean));
-    for (std::uint32_t p = 0; p < shown.size(); ++p)
+    for (PatchIndex p{0}; p < shown.size(); ++p)
         if (encased[p]) shown[p] = false;
     return shown;
 }

@@ -32,7 +32,7 @@ class Polygons {
   public:
     explicit Polygons(const Scene& scene) : scene_(scene) {}
 
-    void add(const Patch& patch, std::uint32_t leaf, std::span<const MeshCorner> outline) {
+    void add(const Patch& patch, ElementIndex leaf, std::span<const MeshCorner> outline) {
         for (const MeshCorner& corner : outline) {
             polygons.corners.push_back(number_of(patch, corner));
             polygons.parameters.push_back(corner.at);
@@ -65,7 +65,7 @@ LitPolygons lit_polygons(const Scene& scene, const Solution& solution) {
 
 LitPolygons lit_polygons(const Scene& scene, const VertexLight& light) {
     Polygons all(scene);
-    for (const std::uint32_t leaf : light.forest->leaves()) {
+    for (const ElementIndex leaf : light.forest->leaves()) {
         const std::vector<MeshCorner> outline = light.mesh.outline(leaf);
         if (outline.size() >= 3) all.add(scene.patches[light.forest->patch(leaf)], leaf, outline);
     }
@@ -76,7 +76,7 @@ LitPolygons lit_polygons(const Scene& scene, const VertexLight& light) {
 LitPolygons lit_triangles(const Scene& scene, VertexLight& light) {
     Polygons all(scene);
     std::vector<MeshTriangle> triangles;
-    for (const std::uint32_t leaf : light.forest->leaves()) {
+    for (const ElementIndex leaf : light.forest->leaves()) {
         triangles.clear();
         light.mesh.triangulate(leaf, triangles);
         for (const MeshTriangle& triangle : triangles)

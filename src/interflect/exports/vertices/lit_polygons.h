@@ -24,7 +24,7 @@ struct LitPolygons {
 
     std::vector<V3f> points;  ///< Relative to Scene::origin [m].
     std::vector<Vertex> vertices;
-    std::vector<std::uint32_t> leaves;   ///< Of each polygon.
+    std::vector<ElementIndex> leaves;    ///< Of each polygon.
     std::vector<std::uint32_t> ends;     ///< End of each polygon in `corners`.
     std::vector<std::uint32_t> corners;  ///< Into `vertices`, counter-clockwise seen from the lit side.
     std::vector<Parameters> parameters;

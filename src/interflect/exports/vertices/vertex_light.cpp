@@ -51,7 +51,7 @@ float longest_edge(const PatchGeometry& patch) {
 double mean_irradiance(const Solution& solution, const std::vector<bool>& shown) {
     const ElementForest& forest = *solution.forest;
     double sum = 0, area = 0;
-    for (const std::uint32_t leaf : forest.leaves()) {
+    for (const ElementIndex leaf : forest.leaves()) {
         if (!shown[forest.patch(leaf)]) continue;
         sum += mean_channel(solution.irradiance[leaf]) * forest.area(leaf);
         area += forest.area(leaf);
@@ -72,7 +72,7 @@ std::array<Parameters, 2> sides_of(const PatchGeometry& patch, float spacing) {
 double count_triangles(const Scene& scene, const ElementForest& forest, const std::vector<bool>& shown) {
     const ElementMesh mesh(scene, forest, std::vector<Rgb>(forest.size(), Rgb(0)));
     double triangles = 0;
-    for (const std::uint32_t leaf : forest.leaves()) {
+    for (const ElementIndex leaf : forest.leaves()) {
         if (!shown[forest.patch(leaf)]) continue;
         const std::size_t vertices = mesh.outline(leaf).size();
         const bool is_fan = vertices > (forest.geometry(forest.patch(leaf)).is_triangle() ? 3u : 4u);
@@ -92,12 +92,12 @@ class Division {
           mean_(mean),
           options_(options),
           forest_(std::make_shared<ElementForest>(scene, scene.patches.size() + capacity(options))) {
-        for (std::uint32_t p = 0; p < forest_->patch_count(); ++p) edges_.push_back(longest_edge(forest_->geometry(p)));
+        for (PatchIndex p{0}; p < forest_->patch_count(); ++p) edges_.push_back(longest_edge(forest_->geometry(p)));
         triangles_ = count_triangles(scene, *forest_, shown);
     }
 
     std::shared_ptr<const ElementForest> run(const Monitor& monitor) {
-        std::vector<std::uint32_t> leaves = divide_long_edges();
+        std::vector<ElementIndex> leaves = divide_long_edges();
         for (double fraction = 0; !leaves.empty(); fraction = (1 + fraction) / 2)
             leaves = divide_badly_interpolated(leaves, monitor_section(monitor, fraction, (1 + fraction) / 2));
         forest_->put_in_order(forest_->patch_count());
@@ -106,7 +106,7 @@ class Division {
 
   private:
     struct Key {
-        std::uint32_t patch;
+        PatchIndex patch;
         Parameters at;
         bool operator==(const Key& o) const { return patch == o.patch && at.u == o.at.u && at.v == o.at.v; }
     };
@@ -120,73 +120,73 @@ class Division {
         return 2 * static_cast<std::size_t>(options.max_triangles) + 4;
     }
 
-    bool is_triangle(std::uint32_t e) const { return forest_->geometry(forest_->patch(e)).is_triangle(); }
-    float edge(std::uint32_t e) const { return edges_[forest_->patch(e)] * std::abs(forest_->cell(e).size); }
+    bool is_triangle(ElementIndex e) const { return forest_->geometry(forest_->patch(e)).is_triangle(); }
+    float edge(ElementIndex e) const { return edges_[forest_->patch(e)] * std::abs(forest_->cell(e).size); }
 
     /// Returns the first child, or `none` at the limit of triangles or elements.
-    std::uint32_t divide(std::uint32_t e, double max_triangles) {
+    ElementIndex divide(ElementIndex e, double max_triangles) {
         // Includes fans of neighbours; measured in furnished rooms.
         const double added = is_triangle(e) ? 6 : 9.5;
-        if (triangles_ + added > max_triangles) return none;
-        const std::uint32_t child = forest_->subdivide(e);
+        if (triangles_ + added > max_triangles) return no_element;
+        const ElementIndex child = forest_->subdivide(e);
         if (child != none) triangles_ += added;
         return child;
     }
 
     /// Divides the longest edges first. Returns the leaves of shown patches.
-    std::vector<std::uint32_t> divide_long_edges() {
+    std::vector<ElementIndex> divide_long_edges() {
         const double half_of_all = options_.max_triangles / 2.0;
-        std::priority_queue<std::pair<float, std::uint32_t>> longest;
-        const auto add = [&](std::uint32_t e) {
+        std::priority_queue<std::pair<float, ElementIndex>> longest;
+        const auto add = [&](ElementIndex e) {
             if (edge(e) > options_.max_edge) longest.emplace(edge(e), e);
         };
-        for (std::uint32_t p = 0; p < forest_->patch_count(); ++p)
+        for (PatchIndex p{0}; p < forest_->patch_count(); ++p)
             if (shown_[p]) add(p);
         while (!longest.empty()) {
-            const std::uint32_t child = divide(longest.top().second, half_of_all);
+            const ElementIndex child = divide(longest.top().second, half_of_all);
             if (child == none) break;
             longest.pop();
             for (std::uint32_t k = 0; k < 4; ++k) add(child + k);
         }
-        std::vector<std::uint32_t> leaves = forest_->leaves();
-        std::erase_if(leaves, [&](std::uint32_t e) { return !shown_[forest_->patch(e)]; });
+        std::vector<ElementIndex> leaves = forest_->leaves();
+        std::erase_if(leaves, [&](ElementIndex e) { return !shown_[forest_->patch(e)]; });
         return leaves;
     }
 
     /// Returns the children.
-    std::vector<std::uint32_t> divide_badly_interpolated(const std::vector<std::uint32_t>& leaves,
-                                                         const Monitor& monitor) {
-        std::vector<std::uint32_t> tested;
-        for (const std::uint32_t e : leaves)
+    std::vector<ElementIndex> divide_badly_interpolated(const std::vector<ElementIndex>& leaves,
+                                                        const Monitor& monitor) {
+        std::vector<ElementIndex> tested;
+        for (const ElementIndex e : leaves)
             if (edge(e) > options_.min_edge) tested.push_back(e);
         // Few samples find the leaves that may be interpolated badly, many distinguish light from noise.
         constexpr int few = 16, many = 64;
         constexpr double deviations = 2;
         find_direct_light(tested, few, monitor_section(monitor, 0, 0.5));
-        std::erase_if(tested, [&](std::uint32_t e) { return !(error_of(e, deviations) > options_.max_error); });
+        std::erase_if(tested, [&](ElementIndex e) { return !(error_of(e, deviations) > options_.max_error); });
         find_direct_light(tested, many, monitor_section(monitor, 0.5, 1));
-        std::vector<std::pair<double, std::uint32_t>> worst;  // error times area
-        for (const std::uint32_t e : tested)
+        std::vector<std::pair<double, ElementIndex>> worst;  // error times area
+        for (const ElementIndex e : tested)
             if (const double error = error_of(e, deviations); error > options_.max_error)
                 worst.emplace_back(error * forest_->area(e), e);
         std::sort(worst.begin(), worst.end(), [](const auto& a, const auto& b) {
             return a.first > b.first || (a.first == b.first && a.second < b.second);
         });
-        std::vector<std::uint32_t> children;
+        std::vector<ElementIndex> children;
         for (const auto& [error, e] : worst) {
-            const std::uint32_t child = divide(e, options_.max_triangles);
+            const ElementIndex child = divide(e, options_.max_triangles);
             if (child == none) continue;
             for (std::uint32_t k = 0; k < 4; ++k) children.push_back(child + k);
         }
         return children;
     }
 
-    void find_direct_light(const std::vector<std::uint32_t>& leaves, int max_samples, const Monitor& monitor) {
+    void find_direct_light(const std::vector<ElementIndex>& leaves, int max_samples, const Monitor& monitor) {
         std::vector<BakedPoint> points;
         known_.clear();
-        for (const std::uint32_t e : leaves) {
+        for (const ElementIndex e : leaves) {
             const Cell cell = forest_->cell(e);
-            const std::uint32_t patch = forest_->patch(e);
+            const PatchIndex patch = forest_->patch(e);
             const auto add = [&](const Parameters& local) {
                 const Parameters at = cell.at(local.u, local.v);
                 if (known_.try_emplace({patch, at}, points.size()).second)
@@ -199,8 +199,8 @@ class Division {
     }
 
     /// Emission of textures counts as direct light.
-    SampledIrradiance direct_at(std::uint32_t e, Parameters local) const {
-        const std::uint32_t patch = forest_->patch(e);
+    SampledIrradiance direct_at(ElementIndex e, Parameters local) const {
+        const PatchIndex patch = forest_->patch(e);
         const Parameters at = forest_->cell(e).at(local.u, local.v);
         SampledIrradiance light = direct_[known_.at({patch, at})];
         light.irradiance += exitance_at(scene_, scene_.patches[patch], at);
@@ -209,7 +209,7 @@ class Division {
 
     /// Largest error of interpolation beyond the given number of standard deviations, relative to the irradiance there
     /// or the mean.
-    double error_of(std::uint32_t e, double deviations) const {
+    double error_of(ElementIndex e, double deviations) const {
         double largest = 0;
         const std::span<const Parameters> corners = corners_of(is_triangle(e));
         for (const auto& [first, second, at] : middles_of(is_triangle(e))) {
@@ -244,8 +244,8 @@ class VertexPoints {
     VertexPoints(const ElementForest& forest, const ElementVertices& vertices, const std::vector<bool>& shown,
                  const VertexOptions& options)
         : numbers_(vertices.count(), none) {
-        for (const std::uint32_t e : forest.leaves()) {
-            const std::uint32_t patch = forest.patch(e);
+        for (const ElementIndex e : forest.leaves()) {
+            const PatchIndex patch = forest.patch(e);
             if (!shown[patch]) continue;
             const PatchGeometry& geometry = forest.geometry(patch);
             for (std::size_t c = 0; c < (geometry.is_triangle() ? 3u : 4u); ++c) {

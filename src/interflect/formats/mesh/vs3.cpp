@@ -285,10 +285,10 @@ class Vs3Reader {
     }
 
     static void keep_fronts(Scene& scene) {
-        std::vector<Patch> fronts;
+        PerPatch<Patch> fronts;
         for (std::size_t p = 0; p < scene.patches.size(); ++p)
             if (scene.patches[p].other_side > p) fronts.push_back(scene.patches[p]);
-        for (Patch& patch : fronts) patch.other_side = none;
+        for (Patch& patch : fronts) patch.other_side = no_patch;
         scene.patches = std::move(fronts);
     }
 

@@ -186,7 +186,7 @@ std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std
     std::vector<bool> is_numbered(scene.patches.size(), false);
     for (const FacetRange& face : faces)
         if (face.patches > 0) is_numbered[surface[facets[face.first].face]] = true;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i)
         if (scene.patches[i].surface != none) is_numbered[surface[i]] = true;
     for (std::uint32_t& s : surface)
         if (!is_numbered[s]) s = none;

@@ -46,7 +46,7 @@ Imath::Box3f Facet::box(float margin) const {
 
 std::vector<Facet> facets_of(const Scene& scene) {
     std::vector<Facet> facets;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         if (patch.other_side < i) continue;
         const auto& v = patch.vertices;

@@ -123,7 +123,7 @@ class PatchPlane {
 
 }  // namespace
 
-float uncovered_area_share(const Scene& scene, std::uint32_t patch, std::span<const std::uint32_t> others,
+float uncovered_area_share(const Scene& scene, PatchIndex patch, std::span<const std::uint32_t> others,
                            float tolerance) {
     const PatchPlane plane(scene, scene.patches[patch]);
     const PlanarPolygon polygon = plane.polygon_of(scene.patches[patch]);

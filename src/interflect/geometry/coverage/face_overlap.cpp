@@ -122,7 +122,7 @@ class LargerFace {
 std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& ignored,
                                  std::span<const float> tolerance) {
     std::vector<Boxed> tree;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i)
         if (scene.patches[i].other_side >= i && !ignored[i]) tree.push_back({Imath::Box3f(), i});
     parallel_for_ranges(tree.size(), search_grain, [&](std::size_t begin, std::size_t end) {
         for (Boxed& face : std::span(tree).subspan(begin, end - begin))

@@ -8,13 +8,13 @@
 namespace interflect::detail {
 
 inline std::uint32_t back_material(const Scene& scene, const Patch& patch) {
-    return patch.other_side == none ? none : scene.patches[patch.other_side].material;
+    return patch.other_side == no_patch ? none : scene.patches[patch.other_side].material;
 }
 
 /// Adds the front of a face and, with a `back_material`, its reversed back.
 inline void add_face(Scene& scene, Patch patch, std::uint32_t back_material) {
-    const auto index = static_cast<std::uint32_t>(scene.patches.size());
-    patch.other_side = back_material == none ? none : index + 1;
+    const PatchIndex index(scene.patches.size());
+    patch.other_side = back_material == none ? no_patch : index + 1;
     scene.patches.push_back(patch);
     if (back_material == none) return;
     patch.material = back_material;

@@ -17,18 +17,20 @@ namespace {
 constexpr float flat_deviation = 0.0087f;  // of a unit vector turned by the angle of cosine_of_flat
 
 /// Smooth edges, each as two patches.
-std::vector<std::array<std::uint32_t, 2>> smooth_neighbours(const SmoothSurfaces& surfaces) {
-    std::vector<std::array<std::uint32_t, 2>> pairs;
-    std::vector<std::uint32_t> first(surfaces.edges.count, none);
-    for (std::uint32_t e = 0; e < surfaces.edges.group.size(); ++e) {
-        const std::uint32_t group = surfaces.edges.group[e];
+std::vector<std::array<PatchIndex, 2>> smooth_neighbours(const SmoothSurfaces& surfaces) {
+    std::vector<std::array<PatchIndex, 2>> pairs;
+    std::vector<PatchIndex> first(surfaces.edges.count);
+    for (std::size_t i = 0; i < surfaces.edges.group.size(); ++i) {
+        const std::uint32_t group = surfaces.edges.group[i];
+        const PatchIndex patch = EdgeIndex(i).patch();
         if (group == none) continue;
-        if (first[group] == none)
-            first[group] = e / 4;
+        if (first[group] == no_patch)
+            first[group] = patch;
         else
-            pairs.push_back({first[group], e / 4});
+            pairs.push_back({first[group], patch});
     }
-    for (const SmoothSurfaces::Seam& seam : surfaces.seams) pairs.push_back({seam.edge[0] / 4, seam.edge[1] / 4});
+    for (const SmoothSurfaces::Seam& seam : surfaces.seams)
+        pairs.push_back({seam.edge[0].patch(), seam.edge[1].patch()});
     return pairs;
 }
 
@@ -54,7 +56,7 @@ class Bends {
     }
 
     /// Returns the largest component of a bend of the patch along `direction`, times its length; at least 0.
-    float largest_along(std::uint32_t patch, const V3f& direction) {
+    float largest_along(PatchIndex patch, const V3f& direction) {
         const auto [first, last] = std::equal_range(bends_.begin(), bends_.end(), Bend{parts_.find(patch), 0, V3f(0)},
                                                     [](const Bend& a, const Bend& b) { return a.part < b.part; });
         float largest = 0;
@@ -71,7 +73,7 @@ class Bends {
     /// Contacts separate the pieces of a face.
     void unite_pieces(const Scene& scene) {
         std::map<std::pair<std::uint32_t, bool>, std::uint32_t> first;
-        for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+        for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
             const Patch& patch = scene.patches[p];
             if (patch.surface == none) continue;
             const bool is_back = patch.other_side < p;
@@ -100,19 +102,19 @@ CornerNormals::CornerNormals(const Scene& scene, const SmoothSurfaces& surfaces)
     if (scene.normals.empty()) return;
     const std::vector<V3f> own = patch_normals(scene);
     const auto for_each_corner = [&](const auto& body) {
-        for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+        for (PatchIndex p{0}; p < scene.patches.size(); ++p)
             for (int c = 0; c < scene.patches[p].vertex_count(); ++c) {
-                const std::uint32_t corner = 4 * p + static_cast<std::uint32_t>(c);
+                const CornerIndex corner(p, static_cast<std::uint32_t>(c));
                 body(corner, surfaces.corners.group[corner]);
             }
     };
     std::vector<V3f> mean(surfaces.corners.count, V3f(0)), authored = mean;
-    for_each_corner([&](std::uint32_t corner, std::uint32_t group) {
-        const Patch& patch = scene.patches[corner / 4];
-        const V3f n = scene.normals[patch.vertices[corner % 4]];
-        normals_[corner] = n.dot(own[corner / 4]) < 0 ? -n : n;
+    for_each_corner([&](CornerIndex corner, std::uint32_t group) {
+        const Patch& patch = scene.patches[corner.patch()];
+        const V3f n = scene.normals[patch.vertices[corner.corner()]];
+        normals_[corner] = n.dot(own[corner.patch()]) < 0 ? -n : n;
         authored[group] += normals_[corner];
-        mean[group] += own[corner / 4] * corner_angle(scene, patch, static_cast<int>(corner % 4));
+        mean[group] += own[corner.patch()] * corner_angle(scene, patch, static_cast<int>(corner.corner()));
     });
     for (V3f& n : mean) n.normalize();
     for (V3f& n : authored) n.normalize();
@@ -120,28 +122,28 @@ CornerNormals::CornerNormals(const Scene& scene, const SmoothSurfaces& surfaces)
     Bends bends(scene, own, surfaces);
     // Whether each group's normal of the file counts.
     std::vector<bool> counts(mean.size(), false);
-    for_each_corner([&](std::uint32_t corner, std::uint32_t group) {
+    for_each_corner([&](CornerIndex corner, std::uint32_t group) {
         if (counts[group]) return;
         const V3f deviation = authored[group] - mean[group];
-        counts[group] =
-            deviation.length() <= flat_deviation || deviation.length2() <= bends.largest_along(corner / 4, deviation);
+        counts[group] = deviation.length() <= flat_deviation ||
+                        deviation.length2() <= bends.largest_along(corner.patch(), deviation);
     });
-    for_each_corner([&](std::uint32_t corner, std::uint32_t group) {
+    for_each_corner([&](CornerIndex corner, std::uint32_t group) {
         if (counts[group] || normals_[corner] == V3f(0)) return;
         normals_[corner] = mean[group];
         is_replaced_[corner] = true;
     });
 }
 
-std::vector<std::uint32_t> CornerNormals::contradicted_patches(const Scene& scene, float degrees) const {
+std::vector<PatchIndex> CornerNormals::contradicted_patches(const Scene& scene, float degrees) const {
     const float cosine = std::cos(degrees * std::numbers::pi_v<float> / 180);
-    std::vector<std::uint32_t> patches;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    std::vector<PatchIndex> patches;
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const Patch& patch = scene.patches[p];
         if (patch.other_side < p) continue;
         const V3f own = PatchGeometry(scene, patch).normal();
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(patch.vertex_count()); ++c)
-            if (is_replaced_[4 * p + c] && std::abs(scene.normals[patch.vertices[c]].dot(own)) < cosine) {
+            if (is_replaced_[CornerIndex(p, c)] && std::abs(scene.normals[patch.vertices[c]].dot(own)) < cosine) {
                 patches.push_back(p);
                 break;
             }

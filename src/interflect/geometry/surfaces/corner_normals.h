@@ -20,12 +20,12 @@ class CornerNormals {
     /// @param surfaces  Of this scene. Cost: O(n log n) for n patches.
     CornerNormals(const Scene& scene, const SmoothSurfaces& surfaces);
 
-    /// Returns the unit normal towards the lit side; zero if the file has none there. @param corner  4 patch + corner.
-    const V3f& at(std::uint32_t corner) const { return normals_[corner]; }
+    /// Returns the unit normal towards the lit side; zero if the file has none there.
+    const V3f& at(CornerIndex corner) const { return normals_[corner]; }
 
     /// Patches with a corner where the normal of the file is replaced, and deviates from the patch's by more than
     /// `degrees`; fronts only.
-    std::vector<std::uint32_t> contradicted_patches(const Scene& scene, float degrees) const;
+    std::vector<PatchIndex> contradicted_patches(const Scene& scene, float degrees) const;
 
   private:
     std::vector<V3f> normals_;

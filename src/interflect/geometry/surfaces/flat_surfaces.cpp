@@ -28,14 +28,14 @@ constexpr double equal_areas = 1e-4;
 
 struct Edge {
     std::uint64_t vertices;
-    std::uint32_t patch;
+    PatchIndex patch;
 };
 
 std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
     return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
 }
 
-bool is_back(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side < patch; }
+bool is_back(const Scene& scene, PatchIndex patch) { return scene.patches[patch].other_side < patch; }
 
 std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
     std::vector<std::uint32_t> joined(scene.vertices.size());
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> joined_vertices(const Scene& scene) {
 std::vector<Edge> sorted_edges(const Scene& scene) {
     const std::vector<std::uint32_t> joined = joined_vertices(scene);
     std::vector<Edge> edges;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         if (is_back(scene, i)) continue;
         const Patch& patch = scene.patches[i];
         const auto count = static_cast<std::size_t>(patch.vertex_count());
@@ -92,12 +92,12 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     std::vector<V3f> normal(count);
     parallel_for_ranges(count, patches_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
+        for (PatchIndex i(begin); i < end; ++i) {
             if (is_back(scene, i)) continue;
             normal[i] = PatchGeometry(scene, scene.patches[i]).normal();
         }
     });
-    const auto continues = [&](std::uint32_t a, std::uint32_t b) {
+    const auto continues = [&](PatchIndex a, PatchIndex b) {
         const Patch &p = scene.patches[a], &q = scene.patches[b];
         return p.material == q.material && p.object == q.object &&
                std::abs(normal[a].dot(normal[b])) > same_plane_cosine;
@@ -110,12 +110,12 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
             if (continues(edges[i].patch, edges[j].patch)) surfaces.unite(edges[i].patch, edges[j].patch);
 
     std::unordered_map<std::uint32_t, std::uint32_t> first_patch;  // per numbered surface
-    for (std::uint32_t i = 0; i < count; ++i)
+    for (PatchIndex i{0}; i < count; ++i)
         if (!is_back(scene, i) && scene.patches[i].surface != none)
             surfaces.unite(first_patch.try_emplace(scene.patches[i].surface, i).first->second, i);
 
     std::vector<std::uint32_t> surface(count);
-    for (std::uint32_t i = 0; i < count; ++i)
+    for (PatchIndex i{0}; i < count; ++i)
         surface[i] = surfaces.find(is_back(scene, i) ? scene.patches[i].other_side : i);
     return surface;
 }
@@ -124,7 +124,7 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     const std::vector<std::uint32_t> surface = flat_surfaces(scene);
     std::vector<double> area(count, 0.0);  // per representative
-    for (std::uint32_t i = 0; i < count; ++i)
+    for (PatchIndex i{0}; i < count; ++i)
         if (!is_back(scene, i)) area[surface[i]] += static_cast<double>(patch_area(scene, scene.patches[i]));
 
     const std::vector<std::uint32_t> place = order_of_surfaces(scene, surface, area);
@@ -133,7 +133,7 @@ std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
     parallel_sort(order, [&](std::uint32_t a, std::uint32_t b) {
         return std::tie(place[surface[a]], a) < std::tie(place[surface[b]], b);
     });
-    for (std::uint32_t i = 0; i < count; ++i) rank[order[i]] = i;
+    for (PatchIndex i{0}; i < count; ++i) rank[order[i]] = i;
     return rank;
 }
 

@@ -94,11 +94,11 @@ std::vector<std::uint32_t> weld(const Scene& scene) {
 }
 
 struct PatchEdge {
-    std::uint32_t low, high;   // welded, low < high
-    std::uint32_t start, end;  // 4 patch + corner
+    std::uint32_t low, high;  // welded, low < high
+    CornerIndex start, end;
     bool upwards;
 
-    std::uint32_t patch() const { return start / 4; }
+    PatchIndex patch() const { return start.patch(); }
     friend bool operator<(const PatchEdge& a, const PatchEdge& b) {
         return std::tie(a.low, a.high, a.start) < std::tie(b.low, b.high, b.start);
     }
@@ -109,13 +109,14 @@ std::vector<PatchEdge> sorted_patch_edges(const Scene& scene) {
     const std::vector<std::uint32_t> welded = weld(scene);
     std::vector<PatchEdge> edges;
     edges.reserve(4 * scene.patches.size());
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const Patch& patch = scene.patches[p];
         const auto corners = static_cast<std::uint32_t>(patch.vertex_count());
         for (std::uint32_t c = 0; c < corners; ++c) {
             const std::uint32_t next = (c + 1) % corners;
             const std::uint32_t from = welded[patch.vertices[c]], to = welded[patch.vertices[next]];
-            edges.push_back({std::min(from, to), std::max(from, to), 4 * p + c, 4 * p + next, from < to});
+            edges.push_back(
+                {std::min(from, to), std::max(from, to), CornerIndex(p, c), CornerIndex(p, next), from < to});
         }
     }
     std::sort(edges.begin(), edges.end());
@@ -127,7 +128,7 @@ class CreaseTest {
     CreaseTest(const Scene& scene, float crease_angle)
         : scene_(scene), normals_(patch_normals(scene)), min_cosine_(cosine_of(crease_angle)) {}
 
-    bool is_smooth(std::uint32_t p, std::uint32_t q) const {
+    bool is_smooth(PatchIndex p, PatchIndex q) const {
         return has_one_material(p, q) && normals_[p].dot(normals_[q]) >= min_cosine_;
     }
     /// Scene::normals decide if all corners of the edge have them.
@@ -142,16 +143,16 @@ class CreaseTest {
     enum class Comparison { unknown, equal, different };
 
     static float cosine_of(float degrees) { return std::cos(degrees * std::numbers::pi_v<float> / 180); }
-    bool has_one_material(std::uint32_t p, std::uint32_t q) const {
+    bool has_one_material(PatchIndex p, PatchIndex q) const {
         return scene_.patches[p].material == scene_.patches[q].material;
     }
     /// Towards the lit side; zero if missing.
-    V3f normal_at(std::uint32_t corner) const {
+    V3f normal_at(CornerIndex corner) const {
         if (scene_.normals.empty()) return V3f(0);
-        const V3f n = scene_.normals[scene_.patches[corner / 4].vertices[corner % 4]];
-        return n.dot(normals_[corner / 4]) < 0 ? -n : n;
+        const V3f n = scene_.normals[scene_.patches[corner.patch()].vertices[corner.corner()]];
+        return n.dot(normals_[corner.patch()]) < 0 ? -n : n;
     }
-    Comparison compare_normals(std::uint32_t corner, std::uint32_t other) const {
+    Comparison compare_normals(CornerIndex corner, CornerIndex other) const {
         const V3f n = normal_at(corner), m = normal_at(other);
         if (n == V3f(0) || m == V3f(0)) return Comparison::unknown;
         return n.dot(m) >= cosine_of_equal_ ? Comparison::equal : Comparison::different;
@@ -169,9 +170,9 @@ class CreaseTest {
 SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
     SmoothSurfaces::Groups groups;
     groups.group.assign(4 * scene.patches.size(), none);
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(scene.patches[p].vertex_count()); ++c) {
-            const std::uint32_t member = 4 * p + c, first = sets.find(member);
+            const std::uint32_t member = CornerIndex(p, c), first = sets.find(member);
             groups.group[member] = first == member ? groups.count++ : groups.group[first];
         }
     return groups;
@@ -308,8 +309,8 @@ class SeamFinder {
         std::sort(others.begin(), others.end());
         for (const std::uint32_t j : others) add_seams_between(edges_[i], edges_[j], found);
     }
-    const V3f& position(std::uint32_t corner) const {
-        return scene_.vertices[scene_.patches[corner / 4].vertices[corner % 4]];
+    const V3f& position(CornerIndex corner) const {
+        return scene_.vertices[scene_.patches[corner.patch()].vertices[corner.corner()]];
     }
     const V3f& start(const PatchEdge& e) const { return position(e.start); }
     const V3f& end(const PatchEdge& e) const { return position(e.end); }
@@ -362,8 +363,8 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
         for (std::size_t i = begin; i < end; ++i) {
             const Patch& patch = scene.patches[edges[i].patch()];
             if (patch.surface == none) continue;
-            const V3f &from = scene.vertices[patch.vertices[edges[i].start % 4]],
-                      &to = scene.vertices[patch.vertices[edges[i].end % 4]];
+            const V3f &from = scene.vertices[patch.vertices[edges[i].start.corner()]],
+                      &to = scene.vertices[patch.vertices[edges[i].end.corner()]];
             has_contact[i] = !contacts.along(from, to).empty();
         }
     });
@@ -393,11 +394,11 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
         std::vector<PatchEdge> open;
         std::copy_if(edges.begin(), edges.end(), std::back_inserter(open),
                      [&](const PatchEdge& e) { return !is_joined[e.start]; });
-        const auto next_corner = [&](std::uint32_t corner) {
-            const auto corners = static_cast<std::uint32_t>(scene.patches[corner / 4].vertex_count());
-            return corner - corner % 4 + (corner % 4 + 1) % corners;
+        const auto next_corner = [&](CornerIndex corner) {
+            const auto corners = static_cast<std::uint32_t>(scene.patches[corner.patch()].vertex_count());
+            return CornerIndex(corner.patch(), (corner.corner() + 1) % corners);
         };
-        seams = SeamFinder(scene, std::move(open), contacts).seams([&](std::uint32_t p, std::uint32_t q) {
+        seams = SeamFinder(scene, std::move(open), contacts).seams([&](PatchIndex p, PatchIndex q) {
             return creases.is_smooth(p, q);
         });
         for (const auto& [edge, from, to] : seams) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "interflect/geometry/surfaces/corner_index.h"
 #include "interflect/render.h"
 #include "interflect/scene.h"
 
@@ -11,15 +12,15 @@ namespace interflect::detail {
 
 struct SmoothSurfaces {
     struct Groups {
-        /// Group in [0, count) of a corner, or of the edge that starts there, [4 patch + corner].
+        /// Group in [0, count) of a corner or an edge, by CornerIndex; none for the fourth of a triangle.
         std::vector<std::uint32_t> group;
         std::uint32_t count = 0;
     };
     /// Common part of two edges across which their patches continue. Parameters in [0, 1] follow each patch's vertex
     /// order; from[0] and to[1] coincide.
     struct Seam {
-        std::array<std::uint32_t, 2> edge;  ///< 4 patch + first corner.
-        std::array<float, 2> from, to;      ///< from < to.
+        std::array<EdgeIndex, 2> edge;
+        std::array<float, 2> from, to;  ///< from < to.
     };
     Groups corners, edges;
     std::vector<Seam> seams;

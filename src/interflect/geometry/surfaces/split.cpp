@@ -80,7 +80,7 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
     split.patches.clear();
     split.patches.reserve(static_cast<std::size_t>(count));
     VertexWeld weld(split);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         if (patch.other_side != none && patch.other_side < i) continue;
         const PatchGeometry geometry(scene, patch);

@@ -18,7 +18,7 @@ namespace {
 
 using V3d = Imath::V3d;
 
-bool is_face(const Scene& scene, std::uint32_t patch) { return scene.patches[patch].other_side >= patch; }
+bool is_face(const Scene& scene, PatchIndex patch) { return scene.patches[patch].other_side >= patch; }
 
 std::vector<V3f> corners(const Scene& scene, const Patch& patch) {
     std::vector<V3f> result;
@@ -69,7 +69,7 @@ CoincidentFaces::PriorityFace::PriorityFace(const Scene& scene, std::uint32_t fa
     }
 }
 
-std::uint32_t CoincidentFaces::PriorityFace::side_hit_by(const V3f& direction) const {
+PatchIndex CoincidentFaces::PriorityFace::side_hit_by(const V3f& direction) const {
     return normal.dot(direction) > 0 ? back : front;
 }
 
@@ -96,7 +96,7 @@ void CoincidentFaces::hide_duplicates(const Scene& scene, std::span<const std::u
         std::uint32_t rank, face;
     };
     std::vector<KeyedFace> faces;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i)
         if (is_face(scene, i)) faces.push_back({0, rank[i], i});
     constexpr std::size_t faces_per_task = 4096;
     parallel_for_ranges(faces.size(), faces_per_task, [&](std::size_t begin, std::size_t end) {
@@ -171,11 +171,11 @@ void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uin
 /// Computes the uncovered share of each side that a face of higher priority covers.
 void CoincidentFaces::measure_uncovered(const Scene& scene, std::span<const float> tolerance) {
     struct Side {
-        std::uint32_t patch;
+        PatchIndex patch;
         float uncovered_share;
     };
     std::vector<Side> sides;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i)
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i)
         if (hidden_[i] || overlapped_[i]) {
             sides.push_back({i, 0});
             if (scene.patches[i].other_side != none) sides.push_back({scene.patches[i].other_side, 0});
@@ -221,9 +221,9 @@ const CoincidentFaces::PriorityFace* CoincidentFaces::find_priority_face(std::ui
     return best == none ? nullptr : &priority_faces_[best];
 }
 
-std::uint32_t CoincidentFaces::intercepting_patch(std::uint32_t face, const V3f& x, const V3f& direction,
-                                                  float x_error) const {
-    std::uint32_t patch = none;
+PatchIndex CoincidentFaces::intercepting_patch(std::uint32_t face, const V3f& x, const V3f& direction,
+                                               float x_error) const {
+    PatchIndex patch{};
     // Coincidence within a tolerance is not transitive: follow the chain.
     while (overlapped_[face]) {
         const PriorityFace* priority_face = find_priority_face(face, x, direction, x_error);

@@ -33,10 +33,10 @@ class CoincidentFaces {
 
     /// Returns the patch that intercepts a ray with a first hit at x on the overlapped `face`; `none`: `face` itself.
     /// @param x_error  Maximum distance of x from the face [m].
-    std::uint32_t intercepting_patch(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
+    PatchIndex intercepting_patch(std::uint32_t face, const V3f& x, const V3f& direction, float x_error) const;
 
     /// Returns the share of a patch that intercepts rays; the rest must not emit. Slivers count as covered.
-    float uncovered_share(std::uint32_t patch) const {
+    float uncovered_share(PatchIndex patch) const {
         return covered_[patch] ? uncovered_share_[covered_.rank(patch)] : 1.0f;
     }
 
@@ -60,9 +60,9 @@ class CoincidentFaces {
 
         bool intercepts(const V3f& x, const V3f& direction) const;
         /// Returns the side that a ray of this direction hits, or `none`.
-        std::uint32_t side_hit_by(const V3f& direction) const;
+        PatchIndex side_hit_by(const V3f& direction) const;
 
-        std::uint32_t front, back;
+        PatchIndex front, back;
         V3f origin, normal;
         struct HalfPlanes {  // inside: inward . (x - origin) >= offset; separate arrays allow SIMD
             std::array<float, 4> x, y, z, offset;

@@ -31,7 +31,7 @@ SourceSample LightSources::sample(SourceKind kind, const V3f& x, const V3f& n, c
     if (kind == SourceKind::patches) return sample_patch(x, n, numbers);
     const auto [luminaire, light] =
         kind == SourceKind::lamps ? luminaires_.choose_lamp(x, n, numbers) : luminaires_.choose_sun(x, n, numbers);
-    return {luminaire, light.towards, none, light.distance, light.irradiance, 0};
+    return {luminaire, light.towards, no_patch, light.distance, light.irradiance, 0};
 }
 
 SourceSample LightSources::sample_patch(const V3f& x, const V3f& n, const LightSample& numbers) const {
@@ -42,12 +42,15 @@ SourceSample LightSources::sample_patch(const V3f& x, const V3f& n, const LightS
     const float cosine = n.dot(point->direction), density = choice.probability * point->density;
     if (!(cosine > 0 && density > 0)) return {};
     const Rgb exitance = exitance_at(scene_, scene_.patches[choice.index], point->at);
-    return {choice.index, point->direction, choice.index, 0, exitance * (cosine / std::numbers::pi_v<float> / density),
+    return {choice.index,
+            point->direction,
+            PatchIndex(choice.index),
+            0,
+            exitance * (cosine / std::numbers::pi_v<float> / density),
             density};
 }
 
-float LightSources::density(std::uint32_t patch, const V3f& x, const V3f& n, const V3f& direction,
-                            float distance2) const {
+float LightSources::density(PatchIndex patch, const V3f& x, const V3f& n, const V3f& direction, float distance2) const {
     return patches_.probability(patch, x, n) * patch_density(geometry_[patch], x, direction, distance2);
 }
 

@@ -26,10 +26,10 @@ inline constexpr std::array source_kinds{SourceKind::patches, SourceKind::lamps,
 struct SourceSample {
     std::uint32_t index = none;  ///< Patch or luminaire.
     V3f direction{0, 0, 1};
-    std::uint32_t patch = none;  ///< Target of the shadow ray; none: a free ray up to `distance`.
-    float distance = 0;          ///< [m]
-    Rgb irradiance{0, 0, 0};     ///< Unoccluded, over the density; the mean is the irradiance of all sources [as H].
-    float density = 0;           ///< Density of the direction [1/sr]; 0 if directions never find the source.
+    PatchIndex patch{};       ///< Target of the shadow ray; none: a free ray up to `distance`.
+    float distance = 0;       ///< [m]
+    Rgb irradiance{0, 0, 0};  ///< Unoccluded, over the density; the mean is the irradiance of all sources [as H].
+    float density = 0;        ///< Density of the direction [1/sr]; 0 if directions never find the source.
 };
 
 /// Samples light sources by estimated unoccluded irradiance. Constant methods are thread-safe.
@@ -46,7 +46,7 @@ class LightSources {
     /// Skies excluded. The irradiance is 0 if no source can light x.
     SourceSample sample(SourceKind kind, const V3f& x, const V3f& n, const LightSample& numbers) const;
     /// Density of sample() towards an emitting patch that was hit [1/sr]. @param distance2  [m^2]
-    float density(std::uint32_t patch, const V3f& x, const V3f& n, const V3f& direction, float distance2) const;
+    float density(PatchIndex patch, const V3f& x, const V3f& n, const V3f& direction, float distance2) const;
     const Skies& skies() const { return skies_; }
 
   private:

@@ -80,7 +80,7 @@ std::vector<float> emitted_powers(const Scene& scene, std::span<const PatchGeome
 std::vector<LightTree::Light> patch_lights(const Scene& scene, std::span<const PatchGeometry> geometry,
                                            std::span<const float> power) {
     std::vector<LightTree::Light> lights;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Patch& patch = scene.patches[i];
         if (!(power[i] > 0)) continue;
         const V3f& corner = scene.vertices[patch.vertices[0]];

@@ -80,7 +80,7 @@ float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f&
     return std::abs(sum) / 2;
 }
 
-void UnoccludedLight::PatchGroup::add(const Scene& scene, std::uint32_t patch) {
+void UnoccludedLight::PatchGroup::add(const Scene& scene, PatchIndex patch) {
     const Patch& p = scene.patches[patch];
     for (std::size_t c = 0; c < x.size(); ++c) {
         const std::size_t last = static_cast<std::size_t>(p.vertex_count()) - 1;
@@ -127,7 +127,7 @@ UnoccludedLight::PatchGroup::Irradiance UnoccludedLight::PatchGroup::at(const V3
 
 UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry)
     : scene_(scene), geometry_(geometry) {
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Material& material = scene.materials[scene.patches[i].material];
         if (!(channel_sum(material.exitance) > 0)) continue;
         if (patch_count_++ % PatchGroup::size == 0) groups_.emplace_back();
@@ -161,7 +161,7 @@ Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n) const {
     for (const PatchGroup& group : groups_) {
         const PatchGroup::Irradiance found = group.at(x, n);
         for (std::size_t i = 0; i < group.count; ++i) {
-            const std::uint32_t patch = group.patches[i];
+            const PatchIndex patch = group.patches[i];
             const PatchGeometry& geometry = geometry_[patch];
             if (geometry.normal().dot(x - geometry.shape().origin) <= 0) continue;
             const float of_unit_radiance = found.is_exact[i] ? found.of_unit_radiance[i] : by_patch(patch, x, n);
@@ -171,7 +171,7 @@ Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n) const {
     return irradiance;
 }
 
-float UnoccludedLight::by_patch(std::uint32_t patch, const V3f& x, const V3f& n) const {
+float UnoccludedLight::by_patch(PatchIndex patch, const V3f& x, const V3f& n) const {
     std::array<V3f, 4> vertices;
     const auto count = static_cast<std::size_t>(scene_.patches[patch].vertex_count());
     for (std::size_t k = 0; k < count; ++k) vertices[k] = scene_.vertices[scene_.patches[patch].vertices[k]];

@@ -40,10 +40,10 @@ class UnoccludedLight {
         using Numbers = std::array<float, size>;
 
         std::array<Numbers, 4> x{}, y{}, z{};  // corners; triangles repeat the last
-        std::array<std::uint32_t, size> patches{};
+        std::array<PatchIndex, size> patches;
         std::size_t count = 0;
 
-        void add(const Scene& scene, std::uint32_t patch);
+        void add(const Scene& scene, PatchIndex patch);
         struct Irradiance {
             Numbers of_unit_radiance;
             std::array<std::int32_t, size> is_exact;  // not below the horizon in part, nor near a long edge
@@ -51,7 +51,7 @@ class UnoccludedLight {
         Irradiance at(const V3f& p, const V3f& n) const;
     };
     Rgb by_patches(const V3f& x, const V3f& n) const;
-    float by_patch(std::uint32_t patch, const V3f& x, const V3f& n) const;
+    float by_patch(PatchIndex patch, const V3f& x, const V3f& n) const;
 
     const Scene& scene_;
     std::span<const PatchGeometry> geometry_;

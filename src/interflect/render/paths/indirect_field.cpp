@@ -362,7 +362,7 @@ float IndirectField::Reach::relative_distance2(const V3f& x, const V3f& n, std::
            (1 - cosine) / (1 - min_cosine);
 }
 
-IndirectField::Fit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32_t patch, std::uint32_t omitted) const {
+IndirectField::Fit IndirectField::fit_at(const V3f& x, const V3f& n, PatchIndex patch, std::uint32_t omitted) const {
     const TangentFrame frame(n);
     Fit fit;
     float least = 1;
@@ -380,7 +380,7 @@ IndirectField::Fit IndirectField::fit_at(const V3f& x, const V3f& n, std::uint32
     return fit;
 }
 
-std::optional<IndirectField::Light> IndirectField::at(const V3f& x, const V3f& n, std::uint32_t patch) const {
+std::optional<IndirectField::Light> IndirectField::at(const V3f& x, const V3f& n, PatchIndex patch) const {
     constexpr float min_weight = 0.01f;  // less: at the end of a single record's reach
     const Fit fit = fit_at(x, n, patch);
     if (!(fit.values.weight() > min_weight)) return std::nullopt;

@@ -39,7 +39,7 @@ class IndirectField {
         std::uint32_t record;  ///< The nearest.
     };
     /// Returns nullopt without a record in reach.
-    std::optional<Light> at(const V3f& x, const V3f& n, std::uint32_t patch) const;
+    std::optional<Light> at(const V3f& x, const V3f& n, PatchIndex patch) const;
 
     std::size_t size() const { return records_.size(); }
     SurfacePoint place(std::size_t record) const {
@@ -47,7 +47,7 @@ class IndirectField {
     }
     /// Calls visit(record, squared distance relative to its reach) for records in whose reach a point is.
     template <class Visit>
-    void visit_near(const V3f& x, const V3f& n, std::uint32_t patch, const Visit& visit) const {
+    void visit_near(const V3f& x, const V3f& n, PatchIndex patch, const Visit& visit) const {
         visit_box_tree(
             std::span<const Boxed>(tree_), [&](const Imath::Box3f& box) { return box.intersects(x); },
             [&](std::uint32_t i) {
@@ -61,7 +61,7 @@ class IndirectField {
   private:
     struct Record {
         V3f position, normal;
-        std::uint32_t patch = none;
+        PatchIndex patch{};
         float spacing = 0;          // of the points [m]
         float reach = 0;            // on its own patch, which no contact crosses [m]
         float reach_elsewhere = 0;  // at most the distance to the nearest contact [m]
@@ -76,7 +76,7 @@ class IndirectField {
     /// Position and reach of a record, apart from its light: most records that a lookup tests are out of reach.
     struct Reach {
         V3f position, normal;
-        std::uint32_t patch = none;
+        PatchIndex patch{};
         float inverse_square = 0, inverse_square_elsewhere = 0;  // of Record::reach and reach_elsewhere [1/m^2]
         std::uint32_t record = 0;
 
@@ -89,7 +89,7 @@ class IndirectField {
         std::uint32_t nearest = none;  // record
     };
     /// @param omitted  Record, or none.
-    Fit fit_at(const V3f& x, const V3f& n, std::uint32_t patch, std::uint32_t omitted = none) const;
+    Fit fit_at(const V3f& x, const V3f& n, PatchIndex patch, std::uint32_t omitted = none) const;
     void cover(const PathPlan& plan, std::span<const SurfacePoint> points, const Monitor& monitor,
                const CommonStop& stop);
     std::vector<SurfacePoint> uncovered_among(std::span<const SurfacePoint> points, Ranks* ranks) const;

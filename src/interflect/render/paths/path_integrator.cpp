@@ -240,7 +240,7 @@ void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
     const float cosine = path.normal.dot(direction), density = sky_density(path, direction);
     if (!(cosine > 0 && density > 0)) return;
     const float weight = balance(density, direction_density(path, direction));
-    shadow_rays_.add({path.position, direction}, none, std::numeric_limits<float>::infinity());
+    shadow_rays_.add({path.position, direction}, no_patch, std::numeric_limits<float>::infinity());
     connections_.push_back(
         {path.half, vertex_, path.throughput * sampled_sky(path, direction) * (cosine / pi / density * weight)});
 }

@@ -13,7 +13,7 @@ namespace interflect::detail {
 struct SurfacePoint {
     V3f position;  ///< Start of its rays, relative to the scene's origin [m].
     V3f normal;    ///< For shading, unit length.
-    std::uint32_t patch = none;
+    PatchIndex patch{};
     float spacing = 0;  ///< Distance to the nearest such points: size of a pixel or texel [m].
 };
 

@@ -49,7 +49,7 @@ inline Parameters parameters_of_hit(const ElementForest& forest, const Ray& ray,
 }
 
 /// Returns `none` if the ray escaped.
-inline std::uint32_t leaf_of_hit(const ElementForest& forest, const Ray& ray, const Hit& hit) {
+inline ElementIndex leaf_of_hit(const ElementForest& forest, const Ray& ray, const Hit& hit) {
     if (hit.patch == none || forest.is_leaf(hit.patch)) return hit.patch;
     return forest.leaf_at(hit.patch, parameters_of_hit(forest, ray, hit));
 }

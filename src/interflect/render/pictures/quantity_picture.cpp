@@ -21,7 +21,7 @@ struct Seen {
 Seen seen_by(const PixelSamples& samples, const ElementForest& forest, std::span<const float> values) {
     Seen seen;
     for (std::size_t i = 0; i < samples.rays.size(); ++i) {
-        const std::uint32_t leaf = leaf_of_hit(forest, samples.rays[i], samples.hits[i]);
+        const ElementIndex leaf = leaf_of_hit(forest, samples.rays[i], samples.hits[i]);
         if (leaf == none) continue;
         seen.sum += values[leaf];
         ++seen.rays;

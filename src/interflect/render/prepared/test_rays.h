@@ -16,9 +16,9 @@ namespace interflect::detail {
 struct TestRay {
     std::uint32_t source = none;  ///< none: no source was found.
     Ray ray;
-    std::uint32_t patch = none;  ///< Target, as in ShadowRays.
-    float distance = 0;          ///< [m]
-    float light = 0;             ///< Unoccluded irradiance over its density, sum of channels [as H].
+    PatchIndex patch{};  ///< Target, as in ShadowRays.
+    float distance = 0;  ///< [m]
+    float light = 0;     ///< Unoccluded irradiance over its density, sum of channels [as H].
 };
 
 /// Numbers of test rays by source, and the light of all.

@@ -18,7 +18,7 @@ struct Gauge {
     V3f tangent{0, 0, 0};                  // perpendicular, in the arc's plane; both have unit length
     float half_arc = 0;                    // [rad]
     float offset = 0;                      // of ray origins along the normal [m]
-    std::uint32_t patch = none;            // below the gauge; `none` in space
+    PatchIndex patch{};                    // below the gauge; `none` in space
     V3f side_u{0, 0, 0}, side_v{0, 0, 0};  // parallelogram of ray starts around `position` on the patch [m]
     float inset = 0;                       // least distance of ray starts from the patch's border [m]
 

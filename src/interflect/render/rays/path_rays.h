@@ -24,10 +24,10 @@ struct Path {
     std::uint32_t sample = 0;  ///< In all half batches.
     std::uint32_t point = 0;   ///< In the sequence of its half.
     // Last vertex:
-    V3f position{0, 0, 0};       ///< Lifted off the surface; or the camera [m].
-    V3f lookup{0, 0, 0};         ///< Where records are looked up: there, or the middle of the gauge [m].
-    V3f normal{0, 0, 0};         ///< For shading.
-    std::uint32_t patch = none;  ///< Patch of the vertex; none for the camera and gauges in space.
+    V3f position{0, 0, 0};  ///< Lifted off the surface; or the camera [m].
+    V3f lookup{0, 0, 0};    ///< Where records are looked up: there, or the middle of the gauge [m].
+    V3f normal{0, 0, 0};    ///< For shading.
+    PatchIndex patch{};     ///< Patch of the vertex; none for the camera and gauges in space.
     SourceSampling sampling{};
     float travelled = 0;         ///< From there to the ray's origin, through panes and by mirrors [m].
     bool sets_first_hit = true;  ///< Seen through clear panes and pure mirrors only.

@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-void ShadowRays::add(const Ray& ray, std::uint32_t patch, float distance) {
+void ShadowRays::add(const Ray& ray, PatchIndex patch, float distance) {
     rays_.push_back(ray);
     targets_.push_back({patch, distance});
 }

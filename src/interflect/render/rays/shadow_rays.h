@@ -15,13 +15,13 @@ class ShadowRays {
   public:
     /// @param patch     Target of the ray; none: a free ray up to `distance`.
     /// @param distance  [m]
-    void add(const Ray& ray, std::uint32_t patch, float distance);
+    void add(const Ray& ray, PatchIndex patch, float distance);
     /// Traces all rays and removes them. Returns the transmittance of each; 0 if it is occluded.
     std::span<const Rgb> trace(const RayCaster& ray_caster, const Panes& panes, RayCounts& counts);
 
   private:
     struct Target {
-        std::uint32_t patch;
+        PatchIndex patch;
         float distance;
         /// Escaped rays match luminaires and skies: neither has a patch.
         bool is_met(const Hit& hit) const { return hit.patch == patch || (patch == none && hit.distance > distance); }

@@ -31,13 +31,13 @@ struct TracedScene {
     std::optional<SmoothNormals> smooth_normals;  ///< Of visible surfaces, in scenes with normals.
 
     /// Projects x onto its patch, against rounding, and lifts it off.
-    V3f lifted(std::uint32_t patch, const V3f& x) const {
+    V3f lifted(PatchIndex patch, const V3f& x) const {
         const PatchGeometry& g = geometry[patch];
         return g.point(g.parameters_of(x)) + g.normal() * ray_caster.ray_offset(patch);
     }
-    const Material& material(std::uint32_t patch) const { return scene.materials[scene.patches[patch].material]; }
+    const Material& material(PatchIndex patch) const { return scene.materials[scene.patches[patch].material]; }
     /// Normal for shading at a point of a visible surface.
-    V3f shading_normal(std::uint32_t patch, const V3f& x) const {
+    V3f shading_normal(PatchIndex patch, const V3f& x) const {
         const PatchGeometry& g = geometry[patch];
         return smooth_normals ? smooth_normals->at(g, patch, g.parameters_of(x)) : g.normal();
     }

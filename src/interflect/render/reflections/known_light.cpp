@@ -18,12 +18,12 @@ KnownLight::KnownLight(const Scene& scene, std::span<const PatchGeometry> geomet
 
 void KnownLight::sample_brighter_than(float radiosity) {
     excess_.assign(forest_.size(), 0.0f);
-    for (std::uint32_t e = 0; e < forest_.size(); ++e) {
+    for (ElementIndex e{0}; e < forest_.size(); ++e) {
         if (!forest_.is_leaf(e)) continue;
         const Rgb& reflectance = scene_.materials[scene_.patches[forest_.patch(e)].material].reflectance;
         excess_[e] = std::max(0.0f, channel_sum(reflectance * irradiance_[e]) - radiosity) * forest_.area(e);
     }
-    forest_.for_siblings_from_leaves([&](std::uint32_t first) {
+    forest_.for_siblings_from_leaves([&](ElementIndex first) {
         excess_[forest_.parent(first)] = excess_[first] + excess_[first + 1] + excess_[first + 2] + excess_[first + 3];
     });
     power_.assign(excess_.begin(), excess_.begin() + static_cast<std::ptrdiff_t>(scene_.patches.size()));
@@ -35,9 +35,9 @@ void KnownLight::weigh(std::span<const float> weights) {
     tree_ = LightTree(patch_lights(scene_, geometry_, power_), scene_.patches.size());
 }
 
-KnownLight::Place KnownLight::place(std::uint32_t patch, const V3f& x) const {
+KnownLight::Place KnownLight::place(PatchIndex patch, const V3f& x) const {
     const Parameters p = geometry_[patch].parameters_of(x);
-    return {patch, forest_.is_leaf(patch) ? patch : forest_.leaf_at(patch, p), p};
+    return {patch, forest_.is_leaf(patch) ? ElementIndex(patch) : forest_.leaf_at(patch, p), p};
 }
 
 Rgb KnownLight::reflected_radiance(const Place& place) const {
@@ -47,13 +47,14 @@ Rgb KnownLight::reflected_radiance(const Place& place) const {
 
 KnownLight::Sample KnownLight::sample(const V3f& x, const V3f& n, double choice, float u, float v) const {
     constexpr float below_one = 1 - 0x1p-24f;
-    const auto [patch, probability] = tree_.choose(x, n, choice);
-    if (patch == none) return {};
+    const auto [light, probability] = tree_.choose(x, n, choice);
+    if (light == none) return {};
+    const PatchIndex patch(light);
     const PatchGeometry& geometry = geometry_[patch];
-    std::uint32_t e = patch;
+    ElementIndex e = patch;
     Cell cell;
     while (!forest_.is_leaf(e)) {
-        const std::uint32_t children = forest_.first_child(e);
+        const ElementIndex children = forest_.first_child(e);
         float rest = u * excess_[e];
         unsigned k = 0;
         while (k < 3 && rest >= excess_[children + k]) rest -= excess_[children + k++];

@@ -30,11 +30,12 @@ class KnownLight {
     std::span<const float> sampling_powers() const { return power_; }
 
     struct Place {
-        std::uint32_t patch = none, leaf = none;
+        PatchIndex patch;
+        ElementIndex leaf;
         Parameters parameters;
     };
-    Place place(std::uint32_t patch, const V3f& x) const;
-    int level(std::uint32_t patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
+    Place place(PatchIndex patch, const V3f& x) const;
+    int level(PatchIndex patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
     const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
     Rgb reflected_radiance(const Place& place) const;

@@ -96,14 +96,14 @@ std::vector<VirtualLights::Walk> VirtualLights::start(std::uint64_t key) const {
             const std::span<Walk> added = std::span(walks).last(count);
             const std::uint64_t source_key = mix(key, s + 1);
             if (s < geometry_.size())
-                start_at_patch(static_cast<std::uint32_t>(s), source_key, added);
+                start_at_patch(PatchIndex(s), source_key, added);
             else
                 start_at_luminaire(s - geometry_.size(), source_key, added);
         });
     return walks;
 }
 
-void VirtualLights::start_at_patch(std::uint32_t patch, std::uint64_t key, std::span<Walk> walks) const {
+void VirtualLights::start_at_patch(PatchIndex patch, std::uint64_t key, std::span<Walk> walks) const {
     const PatchGeometry& geometry = geometry_[patch];
     const V3f n = geometry.normal();
     // Power of the patch over the expected number of its walks.

@@ -23,7 +23,7 @@ class VirtualLights {
   public:
     struct Light {
         V3f position;  ///< On the patch, relative to the scene's origin [m].
-        std::uint32_t patch;
+        PatchIndex patch;
         Rgb flux;  ///< Reflected, cosine-distributed [lm or W].
     };
 
@@ -42,16 +42,16 @@ class VirtualLights {
 
     /// Bound of the geometric term cos cos / distance^2 for the lights of a patch, below which they represent all of
     /// its reflected light (Kollig and Keller 2004 use a constant). Does not depend on the lights in use [1/m^2].
-    float bound(std::uint32_t patch) const { return bounds_[patch]; }
+    float bound(PatchIndex patch) const { return bounds_[patch]; }
 
   private:
     struct Walk {
         Ray ray;
-        Rgb flux;                    // [lm or W]
-        std::uint32_t patch = none;  // start of the ray; none after a pane
+        Rgb flux;            // [lm or W]
+        PatchIndex patch{};  // start of the ray; none after a pane
     };
     std::vector<Walk> start(std::uint64_t key) const;
-    void start_at_patch(std::uint32_t patch, std::uint64_t key, std::span<Walk> walks) const;
+    void start_at_patch(PatchIndex patch, std::uint64_t key, std::span<Walk> walks) const;
     void start_at_luminaire(std::size_t part, std::uint64_t key, std::span<Walk> walks) const;
     /// Traces the walks to their next surfaces. Returns their reflected and transmitted parts.
     std::vector<Walk> meet_surfaces(std::span<const Walk> walks);

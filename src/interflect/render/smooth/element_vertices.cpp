@@ -60,9 +60,9 @@ class VertexBuilder {
           corners_(forest.size()),
           middles_(forest.size() - forest.patch_count()) {  // a parent has at most four midpoints, and four children
         edges_of_.assign(surfaces_.corners.count, no_edge);
-        for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
-            for (std::uint32_t c = 0; c < 4; ++c) corners_[p][c] = surfaces_.corners.group[4 * p + c];
-        for (std::uint32_t e = 0; e < forest.size(); ++e)
+        for (PatchIndex p{0}; p < forest.patch_count(); ++p)
+            for (std::uint32_t c = 0; c < 4; ++c) corners_[p][c] = surfaces_.corners.group[CornerIndex(p, c)];
+        for (ElementIndex e{0}; e < forest.size(); ++e)
             if (!forest.is_leaf(e)) give_vertices_to_children(e);
     }
 
@@ -72,7 +72,7 @@ class VertexBuilder {
                                std::vector<ElementVertices::Coupling>& couplings) const {
         find_vertices_on_seams(hanging, couplings);
         std::vector<bool> hangs(count(), false);
-        for (std::uint32_t e = 0; e < forest_.size(); ++e)
+        for (ElementIndex e{0}; e < forest_.size(); ++e)
             if (forest_.is_leaf(e)) mark_middles_of_edges(e, hangs);
         for (std::uint32_t v = surfaces_.corners.count; v < count(); ++v) {
             hangs[v] = hangs[v] || lies_on_half_of_a_leafs_edge(v, hangs);
@@ -87,13 +87,13 @@ class VertexBuilder {
     using Ends = std::array<std::uint32_t, 2>;
     static constexpr Ends no_edge{none, none};  // for patch corners and centres
 
-    Ends ends_of_edge(std::uint32_t e, std::uint32_t c) const {
+    Ends ends_of_edge(ElementIndex e, std::uint32_t c) const {
         const Corners& corners = corners_[e];
         const std::uint32_t a = corners[c], b = corners[(c + 1) % corner_count(corners)];
         return {std::min(a, b), std::max(a, b)};
     }
     /// Patch edges use their group: edges at a crease can have the same ends, but not the same midpoint.
-    std::uint64_t edge_key(std::uint32_t e, std::uint32_t c) const {
+    std::uint64_t edge_key(ElementIndex e, std::uint32_t c) const {
         const auto key = [](std::uint64_t low, std::uint64_t high) { return high << 32 | low; };
         if (e < forest_.patch_count()) return key(surfaces_.edges.group[4 * e + c], surfaces_.edges.group[4 * e + c]);
         const Ends ends = ends_of_edge(e, c);
@@ -104,25 +104,25 @@ class VertexBuilder {
         edges_of_.push_back(ends);
         return count() - 1;
     }
-    std::uint32_t middle_of_edge(std::uint32_t e, std::uint32_t c) {
+    std::uint32_t middle_of_edge(ElementIndex e, std::uint32_t c) {
         const std::uint32_t middle = middles_.find_or_insert(edge_key(e, c), count());
         if (middle == count()) add_vertex(ends_of_edge(e, c));
         return middle;
     }
-    void give_vertices_to_children(std::uint32_t e) {
+    void give_vertices_to_children(ElementIndex e) {
         const Corners& corners = corners_[e];
         std::array<std::uint32_t, 9> vertex{};
         std::copy(corners.begin(), corners.end(), vertex.begin());
         const bool triangle = corners[3] == none;
         for (std::uint32_t c = 0; c < corner_count(corners); ++c) vertex[4 + c] = middle_of_edge(e, c);
         if (!triangle) vertex[8] = add_vertex(no_edge);
-        const std::uint32_t child = forest_.first_child(e);
+        const ElementIndex child = forest_.first_child(e);
         for (std::uint32_t k = 0; k < 4; ++k)
             for (std::uint32_t c = 0; c < 4; ++c)
                 corners_[child + k][c] = vertex[(triangle ? triangle_children : quadrilateral_children)[k][c]];
     }
 
-    void mark_middles_of_edges(std::uint32_t leaf, std::vector<bool>& hangs) const {
+    void mark_middles_of_edges(ElementIndex leaf, std::vector<bool>& hangs) const {
         for (std::uint32_t c = 0; c < corner_count(corners_[leaf]); ++c)
             if (const std::uint32_t middle = middles_.find(edge_key(leaf, c)); middle != none) hangs[middle] = true;
     }
@@ -142,7 +142,7 @@ class VertexBuilder {
     };
 
     /// Collects edges that overlap [from, to] of the patch's edge. `e` covers [low, high].
-    void collect_leaf_edges(std::uint32_t e, std::uint32_t c, float low, float high, float from, float to,
+    void collect_leaf_edges(ElementIndex e, std::uint32_t c, float low, float high, float from, float to,
                             std::vector<LeafEdge>& found) const {
         if (high <= from || low >= to) return;
         const std::uint32_t corners = corner_count(corners_[e]), next = (c + 1) % corners;
@@ -168,7 +168,8 @@ class VertexBuilder {
     SeamSides sides_of(const SmoothSurfaces::Seam& seam) const {
         SeamSides sides;
         for (std::size_t k = 0; k < 2; ++k) {
-            const std::uint32_t patch = seam.edge[k] / 4, corner = seam.edge[k] % 4;
+            const PatchIndex patch = seam.edge[k].patch();
+            const std::uint32_t corner = seam.edge[k].corner();
             collect_leaf_edges(patch, corner, 0, 1, seam.from[k], seam.to[k], sides[k].leaves);
             const PatchGeometry& geometry = forest_.geometry(patch);
             const std::span<const Parameters> corners = corners_of(geometry.is_triangle());

@@ -36,7 +36,7 @@ class ElementVertices {
     std::uint32_t count() const { return count_; }
     /// Returns the vertices at (0,0) (1,0) (1,1) (0,1) of an element's Cell; on triangles (0,0) (1,0) (0,1), then
     /// `none`.
-    const std::array<std::uint32_t, 4>& corners(std::uint32_t e) const { return corners_[e]; }
+    const std::array<std::uint32_t, 4>& corners(ElementIndex e) const { return corners_[e]; }
     /// The ends of an edge precede the vertices that hang on it.
     const std::vector<Hanging>& hanging() const { return hanging_; }
     /// Couplings interpolate the values before any coupling.

@@ -16,8 +16,8 @@ SmoothField::SmoothField(const ElementForest& forest, const ElementVertices& ver
     value_ = vertex_values(forest, vertices, values);
 }
 
-Rgb SmoothField::at(std::uint32_t patch, Parameters p) const {
-    const std::uint32_t leaf = forest_.leaf_at(patch, p);
+Rgb SmoothField::at(PatchIndex patch, Parameters p) const {
+    const ElementIndex leaf = forest_.leaf_at(patch, p);
     const Cell cell = forest_.cell(leaf);
     const float s = (p.u - cell.u) / cell.size, t = (p.v - cell.v) / cell.size;
     const auto& corners = vertices_.corners(leaf);

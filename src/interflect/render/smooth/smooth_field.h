@@ -19,7 +19,7 @@ class SmoothField {
     SmoothField(const ElementForest& forest, const ElementVertices& vertices, std::span<const Rgb> values);
 
     /// Thread-safe.
-    Rgb at(std::uint32_t patch, Parameters p) const;
+    Rgb at(PatchIndex patch, Parameters p) const;
 
   private:
     const ElementForest& forest_;

@@ -14,23 +14,23 @@ namespace {
 /// Bounds G where neighbours are nearly coplanar; reduces it by 2% on a regular mesh.
 constexpr double relative_ridge = 0.02;
 
-Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance, std::uint32_t e, std::uint32_t c,
+Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance, ElementIndex e, std::uint32_t c,
                     bool is_triangle) {
     if (forest.is_leaf(e)) return irradiance[e];
     // Edge c consists of the edges c of two children.
     constexpr std::array<std::uint32_t, 4> child_at_corner{0, 1, 3, 2};
     const std::uint32_t next = (c + 1) % (is_triangle ? 3 : 4);
     const auto half = [&](std::uint32_t corner) {
-        const std::uint32_t child = forest.first_child(e) + (is_triangle ? corner : child_at_corner[corner]);
+        const ElementIndex child = forest.first_child(e) + (is_triangle ? corner : child_at_corner[corner]);
         return mean_along_edge(forest, irradiance, child, c, is_triangle);
     };
     return 0.5f * (half(c) + half(next));
 }
 
-std::vector<std::uint32_t> leaves_of(const ElementForest& forest, std::uint32_t patch) {
-    std::vector<std::uint32_t> leaves, elements{patch};
+std::vector<ElementIndex> leaves_of(const ElementForest& forest, PatchIndex patch) {
+    std::vector<ElementIndex> leaves, elements{patch};
     while (!elements.empty()) {
-        const std::uint32_t e = elements.back();
+        const ElementIndex e = elements.back();
         elements.pop_back();
         if (forest.is_leaf(e)) {
             leaves.push_back(e);
@@ -57,28 +57,28 @@ SmoothNormals::SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces)
     if (scene.normals.empty()) return;
     const CornerNormals normals(scene, surfaces);
     const std::vector<V3f> own = patch_normals(scene);
-    std::vector<std::array<std::uint32_t, 2>> members(surfaces.edges.count,
-                                                      {none, none});  // edges, as 4 patch + corner
-    for (std::uint32_t e = 0; e < surfaces.edges.group.size(); ++e) {
-        if (surfaces.edges.group[e] == none) continue;
-        auto& [first, second] = members[surfaces.edges.group[e]];
-        (first == none ? first : second) = e;
+    std::vector<std::array<EdgeIndex, 2>> members(surfaces.edges.count);
+    for (std::size_t i = 0; i < surfaces.edges.group.size(); ++i) {
+        if (surfaces.edges.group[i] == none) continue;
+        auto& [first, second] = members[surfaces.edges.group[i]];
+        (first == none ? first : second) = EdgeIndex(i);
     }
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         CurvedPatch curved{.patch = p, .normals = {}};
         const auto count = static_cast<std::uint32_t>(scene.patches[p].vertex_count());
         bool is_curved = false, has_all = true;
         for (std::uint32_t c = 0; c < count; ++c) {
-            curved.normals[c] = normals.at(4 * p + c);
+            curved.normals[c] = normals.at(CornerIndex(p, c));
             is_curved |= curved.normals[c].dot(own[p]) < cosine_of_flat;
             has_all &= curved.normals[c] != V3f(0);
         }
         if (!is_curved || !has_all) continue;
         curved.first_neighbour = static_cast<std::uint32_t>(neighbours_.size());
         for (std::uint32_t c = 0; c < count; ++c) {
-            const auto [first, second] = members[surfaces.edges.group[4 * p + c]];
-            const std::uint32_t other = first == 4 * p + c ? second : first;
-            if (second != none) neighbours_.push_back({other / 4, c, other % 4});
+            const EdgeIndex edge(p, c);
+            const auto [first, second] = members[surfaces.edges.group[edge]];
+            const EdgeIndex other = first == edge ? second : first;
+            if (second != none) neighbours_.push_back({other.patch(), c, other.corner()});
         }
         curved.last_neighbour = static_cast<std::uint32_t>(neighbours_.size());
         curved_.push_back(curved);
@@ -87,7 +87,7 @@ SmoothNormals::SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces)
 
 SmoothNormals::Gradient SmoothNormals::gradient(const ElementForest& forest, std::span<const Rgb> irradiance,
                                                 const CurvedPatch& curved) const {
-    const auto along = [&](std::uint32_t patch, std::uint32_t edge) {
+    const auto along = [&](PatchIndex patch, std::uint32_t edge) {
         return mean_along_edge(forest, irradiance, patch, edge, forest.geometry(patch).is_triangle());
     };
     Imath::M33d squares(0, 0, 0, 0, 0, 0, 0, 0, 0);
@@ -122,14 +122,14 @@ void SmoothNormals::apply(const ElementForest& forest, std::vector<Rgb>& irradia
         for (std::size_t i = begin; i < end; ++i) {
             const CurvedPatch& curved = curved_[i];
             const bool is_triangle = forest.geometry(curved.patch).is_triangle();
-            const std::vector<std::uint32_t> leaves = leaves_of(forest, curved.patch);
-            const auto normal_of = [&](std::uint32_t leaf) {
+            const std::vector<ElementIndex> leaves = leaves_of(forest, curved.patch);
+            const auto normal_of = [&](ElementIndex leaf) {
                 return Imath::V3d(curved.normal_at(is_triangle, forest.cell(leaf).centre(is_triangle)));
             };
             Imath::V3d mean(0);
-            for (const std::uint32_t leaf : leaves) mean += normal_of(leaf) * static_cast<double>(forest.area(leaf));
+            for (const ElementIndex leaf : leaves) mean += normal_of(leaf) * static_cast<double>(forest.area(leaf));
             mean /= static_cast<double>(forest.area(curved.patch));
-            for (const std::uint32_t leaf : leaves) {
+            for (const ElementIndex leaf : leaves) {
                 const Imath::V3d turn = normal_of(leaf) - mean;
                 for (int c = 0; c < 3; ++c) {
                     const auto change =
@@ -142,7 +142,7 @@ void SmoothNormals::apply(const ElementForest& forest, std::vector<Rgb>& irradia
     });
 }
 
-V3f SmoothNormals::at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const {
+V3f SmoothNormals::at(const PatchGeometry& geometry, PatchIndex patch, Parameters p) const {
     const auto curved = std::lower_bound(curved_.begin(), curved_.end(), patch,
                                          [](const CurvedPatch& c, std::uint32_t x) { return c.patch < x; });
     if (curved == curved_.end() || curved->patch != patch) return geometry.normal();

@@ -25,16 +25,16 @@ class SmoothNormals {
     void apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const;
 
     /// Returns the unit normal of the curved surface; the patch's own unless all corners have normals.
-    V3f at(const PatchGeometry& geometry, std::uint32_t patch, Parameters p) const;
+    V3f at(const PatchGeometry& geometry, PatchIndex patch, Parameters p) const;
 
   private:
     /// Edges are numbered by their first corner.
     struct Neighbour {
-        std::uint32_t patch;
+        PatchIndex patch;
         std::uint32_t edge, other_edge;
     };
     struct CurvedPatch {
-        std::uint32_t patch;
+        PatchIndex patch;
         std::uint32_t first_neighbour = 0, last_neighbour = 0;
         std::array<V3f, 4> normals;
 

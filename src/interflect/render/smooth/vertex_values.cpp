@@ -85,7 +85,7 @@ std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertice
     // Integrate each leaf's basis functions, alone and times its irradiance.
     std::vector<RgbD> power(vertices.count(), RgbD(0));
     std::vector<double> area(vertices.count(), 0.0);
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         if (!forest.is_leaf(e)) continue;
         const PatchGeometry& patch = forest.geometry(forest.patch(e));
         const std::array<double, 4> means = basis_means(patch, forest.cell(e));

@@ -20,7 +20,7 @@ constexpr std::size_t trees = 4;
 using Place = std::array<float, 7>;  // position, normal, openness: 0 in gaps, 1 in the open
 struct Placed {
     Place place;
-    std::uint32_t patch;
+    PatchIndex patch;
 };
 using Range = std::span<Placed>;
 
@@ -32,7 +32,7 @@ std::vector<float> distances(const ElementForest& forest, const RayCaster& ray_c
     std::vector<float> distances(forest.patch_count(), std::numeric_limits<float>::infinity());
     parallel_for_ranges(forest.patch_count(), patches_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<Ray> normals;
-        for (auto p = static_cast<std::uint32_t>(begin); p < end; ++p) {
+        for (PatchIndex p(begin); p < end; ++p) {
             const V3f normal = forest.geometry(p).normal();
             normals.push_back({centre(forest.geometry(p)) + normal * ray_caster.ray_offset(p), normal});
         }
@@ -47,29 +47,29 @@ std::vector<float> distances(const ElementForest& forest, const RayCaster& ray_c
 /// Returns half of the distance between opposite surfaces [m]: the median, weighted by area and distance, because light
 /// does not enter narrow gaps.
 float distance_of_change(const ElementForest& forest, std::span<const float> distances) {
-    std::vector<std::uint32_t> bounded;
+    std::vector<PatchIndex> bounded;
     double area = 0, twice = 0;
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+    for (PatchIndex p{0}; p < forest.patch_count(); ++p) {
         area += forest.area(p);
         if (!std::isfinite(distances[p])) continue;
         bounded.push_back(p);
         twice += static_cast<double>(forest.area(p)) * distances[p];
     }
-    std::ranges::sort(bounded, {}, [&](std::uint32_t p) { return distances[p]; });
+    std::ranges::sort(bounded, {}, [&](PatchIndex p) { return distances[p]; });
     double below = 0;
-    for (const std::uint32_t p : bounded)
+    for (const PatchIndex p : bounded)
         if ((below += static_cast<double>(forest.area(p)) * distances[p]) >= twice / 2) return distances[p] / 2;
     return static_cast<float>(std::sqrt(area)) / 2;
 }
 
-std::vector<Placed> places(const ElementForest& forest, std::span<const std::uint32_t> patches,
+std::vector<Placed> places(const ElementForest& forest, std::span<const PatchIndex> patches,
                            std::span<const float> distances, float length, float turn) {
     constexpr float weight_of_openness = 2;  // the distance of opposite normals
     Imath::M44f rotation;
     rotation.setAxisAngle(V3f(1, 1, 1).normalized(), turn);
     std::vector<Placed> places;
     places.reserve(patches.size());
-    for (const std::uint32_t p : patches) {
+    for (const PatchIndex p : patches) {
         V3f position, normal;
         rotation.multDirMatrix(centre(forest.geometry(p)) / length, position);
         rotation.multDirMatrix(forest.geometry(p).normal(), normal);
@@ -106,7 +106,7 @@ void divide(Range patches, int halvings, std::vector<Range>& parts) {
 
 }  // namespace
 
-PatchClusters::PatchClusters(const ElementForest& forest, std::span<const std::uint32_t> patches,
+PatchClusters::PatchClusters(const ElementForest& forest, std::span<const PatchIndex> patches,
                              std::span<const float> distances, float length, float turn)
     : patch_count_(forest.patch_count()) {
     std::vector<Placed> placed = places(forest, patches, distances, length, turn);
@@ -123,15 +123,15 @@ PatchClusters::PatchClusters(const ElementForest& forest, std::span<const std::u
         else
             divide(range, range.size() < 2 * std::size_t{most_parts + 1} ? 2 : 3, ranges);
         nodes_.push_back(
-            {static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(ranges.size() - before), none});
+            {static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(ranges.size() - before), no_patch});
     }
 }
 
 std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster) {
     const std::vector<float> before_patches = distances(forest, ray_caster);
     const float length = distance_of_change(forest, before_patches);
-    std::vector<std::uint32_t> patches;
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p)
+    std::vector<PatchIndex> patches;
+    for (PatchIndex p{0}; p < forest.patch_count(); ++p)
         if (ray_caster.uncovered_share(p) > 0) patches.push_back(p);
     // A turn of 120 degrees about (1, 1, 1) would exchange the axes.
     std::vector<std::vector<PatchClusters>> made(trees);

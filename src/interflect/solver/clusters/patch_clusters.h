@@ -20,16 +20,16 @@ class PatchClusters {
     struct Node {
         std::uint32_t first_child;  ///< none for a patch.
         std::uint32_t child_count;  ///< 0 for a patch.
-        std::uint32_t patch;        ///< none for a cluster.
+        PatchIndex patch;           ///< none for a cluster.
 
-        bool is_patch() const { return patch != none; }
+        bool is_patch() const { return patch != no_patch; }
     };
 
     /// @param patches  To be divided.
     /// @param distances  From each patch to the surface before it [m]; faces in gaps receive little light.
     /// @param length  Distance over which irradiance changes about as much as from one direction to the opposite [m].
     /// @param turn  Angle by which the scene is turned before it is divided [radians].
-    PatchClusters(const ElementForest& forest, std::span<const std::uint32_t> patches, std::span<const float> distances,
+    PatchClusters(const ElementForest& forest, std::span<const PatchIndex> patches, std::span<const float> distances,
                   float length, float turn);
 
     std::uint32_t patch_count() const { return patch_count_; }

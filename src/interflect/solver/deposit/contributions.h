@@ -84,7 +84,7 @@ class ContributionSums {
         const Contribution& contribution(std::uint32_t payload) const { return contributions_[payload]; }
 
         enum class Terms { power, importance, both };
-        void add(std::uint32_t element, std::uint32_t payload, Terms terms) {
+        void add(ElementIndex element, std::uint32_t payload, Terms terms) {
             const std::size_t region = element >> sums_->region_shift_ & (regions - 1);
             Bin& bin = bins_[region];
             bin.deposits[bin.count++] = {element, payload & (max_payloads - 1), terms != Terms::importance,
@@ -103,7 +103,7 @@ class ContributionSums {
 
       private:
         struct Deposit {
-            std::uint32_t element;
+            ElementIndex element;
             std::uint32_t payload : 30;
             std::uint32_t power : 1, importance : 1;
         };

@@ -28,7 +28,7 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution,
             if (refines_ && is_luminaire_part)
                 path_ = source_paths_.append_part(source - old_size_, rays[r], hits[r]);
             else if (refines_ && !std::exchange(has_path, true))
-                path_ = source_paths_.append_leaf(source);
+                path_ = source_paths_.append_leaf(ElementIndex(source));
             begin(payload, source_in_task, rays[r], origins[r], hits[r]);
         }
     }
@@ -105,7 +105,7 @@ void Descent::advance() {
     active_count_ = continuing.size();
     pairs_.descend();
     for (const std::uint32_t i : active()) {
-        const std::uint32_t element = pairs_.receiver[i];
+        const ElementIndex element(pairs_.receiver[i]);
         forest_.prefetch(element);
         if (step_.oracle.by_importance)
             __builtin_prefetch(step_.oracle.importance.data() + element);  // may exceed its size: harmless
@@ -123,7 +123,7 @@ inline std::span<const std::uint32_t> Descent::active_lanes_if(Lanes& found, con
 }
 
 inline void Descent::look_up_receiver(std::size_t i) {
-    const std::uint32_t element = pairs_.receiver[i];
+    const ElementIndex element(pairs_.receiver[i]);
     pairs_.area[i] = forest_.area(element);
     pairs_.children[i] = forest_.first_child(element);
     if (step_.oracle.by_importance && element < old_size_)  // new elements keep their ancestor's
@@ -131,7 +131,7 @@ inline void Descent::look_up_receiver(std::size_t i) {
 }
 
 void Descent::provide_children(std::size_t i) {
-    const std::uint32_t receiver = pairs_.receiver[i];
+    const ElementIndex receiver(pairs_.receiver[i]);
     if (pairs_.shooter_area[i] > pairs_.area[i]) {
         if (source_paths_.subdivide(pairs_, i, rays_[i].start, rays_[i].reflectance, may_grow_)) return;
     } else {
@@ -145,10 +145,10 @@ void Descent::provide_children(std::size_t i) {
 
 void Descent::deposit_ray(std::size_t i) {
     const auto& [payload, patch, source_in_task, start, reflectance] = rays_[i];
-    std::uint32_t old_receiver = pairs_.receiver[i];
+    ElementIndex old_receiver(pairs_.receiver[i]);
     while (old_receiver >= old_size_) old_receiver = forest_.parent(old_receiver);
-    const std::uint32_t power_receiver = refines_ ? pairs_.power_receiver[i] : old_receiver;
-    const std::uint32_t importance_receiver = step_.importance_at_patches ? patch : old_receiver;
+    const ElementIndex power_receiver = refines_ ? ElementIndex(pairs_.power_receiver[i]) : old_receiver;
+    const ElementIndex importance_receiver = step_.importance_at_patches ? patch : old_receiver;
     if (step_.carries_power() && step_.carries_importance() && power_receiver == importance_receiver) {
         buffer_.add(power_receiver, payload, Terms::both);
     } else {
@@ -160,13 +160,13 @@ void Descent::deposit_ray(std::size_t i) {
         add_start_point(old_receiver, {pairs_.hit_u[i], pairs_.hit_v[i]}, buffer_.contribution(payload));
 }
 
-void Descent::add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution) {
+void Descent::add_start_point(ElementIndex leaf, const Parameters& at, const Contribution& contribution) {
     // Fixed-point units: StartPoints uses only ratios.
     const auto power = static_cast<float>(contribution[0] + contribution[1] + contribution[2]);
     if (power > 0) start_points_.push_back({leaf, power, at});
 }
 
-inline void Descent::add_found_importance(std::uint32_t source_in_task, std::uint32_t patch, std::uint32_t element) {
+inline void Descent::add_found_importance(std::uint32_t source_in_task, PatchIndex patch, ElementIndex element) {
     sources_in_task_[source_in_task].found +=
         static_cast<double>(materials_.mean_reflectance(patch, element) * step_.importance[element]);
 }

@@ -63,8 +63,7 @@ class Descent {
                  float transmitted = 1);
     void prefetch(const Hit& hit) const;
     void finish_task();
-    void deposit_at(std::uint32_t leaf, const Contribution& contribution,
-                    std::span<const std::int64_t> power_by_group) {
+    void deposit_at(ElementIndex leaf, const Contribution& contribution, std::span<const std::int64_t> power_by_group) {
         buffer_.add(leaf, buffer_.add_payload(contribution, power_by_group), Terms::power);
     }
     void count_escaped(const Contribution& contribution) {
@@ -77,7 +76,8 @@ class Descent {
   private:
     static constexpr std::size_t lanes = RayPairs::lanes;
     struct RayState {
-        std::uint32_t payload, patch;  // index in buffer_; hit patch
+        std::uint32_t payload;  // index in buffer_
+        PatchIndex patch;       // that the ray hits
         std::uint32_t source_in_task;
         Parameters start;
         Rgb reflectance{0, 0, 0};  // rho_i
@@ -93,8 +93,8 @@ class Descent {
     void look_up_receiver(std::size_t i);
     void provide_children(std::size_t i);
     void deposit_ray(std::size_t i);
-    void add_start_point(std::uint32_t leaf, const Parameters& at, const Contribution& contribution);
-    void add_found_importance(std::uint32_t source_in_task, std::uint32_t patch, std::uint32_t element);
+    void add_start_point(ElementIndex leaf, const Parameters& at, const Contribution& contribution);
+    void add_found_importance(std::uint32_t source_in_task, PatchIndex patch, ElementIndex element);
 
     const Materials& materials_;
     ElementForest& forest_;

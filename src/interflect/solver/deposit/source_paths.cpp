@@ -7,11 +7,12 @@
 
 namespace interflect::detail {
 
-SourcePaths::Path SourcePaths::append_leaf(std::uint32_t leaf) {
-    const std::uint32_t patch = forest_.patch(leaf), path = forest_.path(leaf);
+SourcePaths::Path SourcePaths::append_leaf(ElementIndex leaf) {
+    const PatchIndex patch = forest_.patch(leaf);
+    const std::uint32_t path = forest_.path(leaf);
     const PatchGeometry& geometry = forest_.geometry(patch);
     const V3f normal = geometry.normal();
-    std::uint32_t element = patch;
+    ElementIndex element = patch;
     Cell cell;
     const auto first = static_cast<std::uint32_t>(sources_.size());
     for (int digit = std::bit_width(path) - 1;;) {
@@ -37,7 +38,7 @@ SourcePaths::Path SourcePaths::append_part(std::uint32_t part, const Ray& ray, c
     Rgb radiosity = proxy.intensity * (std::numbers::pi_v<float> / area);
     for (int c = 0; c < 3; ++c) radiosity[c] = std::min(radiosity[c], std::numeric_limits<float>::max());
     const float min_cosine = proxy.normal == V3f(0) ? 1.0f : 0.0f;
-    sources_.push_back({none, Cell(), proxy.position, proxy.normal, area, min_cosine, radiosity});
+    sources_.push_back({no_element, Cell(), proxy.position, proxy.normal, area, min_cosine, radiosity});
     const auto number = static_cast<std::uint32_t>(sources_.size() - 1);
     return {number, number};
 }
@@ -46,8 +47,8 @@ bool SourcePaths::subdivide(RayPairs& pairs, std::size_t i, const Parameters& st
                             bool may_grow) {
     Shooter shooter = sources_[pairs.shooter[i]];
     const PatchGeometry& geometry = forest_.geometry(forest_.patch(shooter.element));
-    const std::uint32_t children = find_or_create_children(forest_, shooter.element, may_grow);
-    if (children == none) return false;
+    const ElementIndex children = find_or_create_children(forest_, shooter.element, may_grow);
+    if (children == no_element) return false;
     const unsigned k = shooter.cell.child_at(start, geometry.is_triangle());
     shooter.cell = shooter.cell.child(k, geometry.is_triangle());
     shooter.element = children + k;

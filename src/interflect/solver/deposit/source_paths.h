@@ -22,7 +22,7 @@ class SourcePaths {
     /// The arguments must outlive this.
     SourcePaths(ElementForest& forest, const TransportStep& step) : forest_(forest), step_(step) {}
 
-    Path append_leaf(std::uint32_t leaf);
+    Path append_leaf(ElementIndex leaf);
     Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void clear() { sources_.clear(); }
 
@@ -52,7 +52,7 @@ class SourcePaths {
 
   private:
     struct Shooter {
-        std::uint32_t element;  // invalid: luminaire part
+        ElementIndex element;  // no_element for a luminaire part
         Cell cell;
         V3f centre, normal;
         float area;  // [m^2]
@@ -74,9 +74,9 @@ class SourcePaths {
 };
 
 /// Returns the first child, if any.
-inline std::uint32_t find_or_create_children(ElementForest& forest, std::uint32_t element, bool may_grow) {
-    const std::uint32_t child = forest.first_child(element);
-    return child == none && may_grow ? forest.subdivide(element) : child;
+inline ElementIndex find_or_create_children(ElementForest& forest, ElementIndex element, bool may_grow) {
+    const ElementIndex child = forest.first_child(element);
+    return child == no_element && may_grow ? forest.subdivide(element) : child;
 }
 
 }  // namespace interflect::detail

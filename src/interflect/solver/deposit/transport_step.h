@@ -21,7 +21,7 @@ struct TransportStep : RayPlan {
     bool completes_by_walks = false;
     /// Nonzero for leaves that reflect where they receive (StartPoints); may be empty.
     std::span<const std::uint8_t> reflecting_where_received;
-    bool reflects_where_received(std::uint32_t leaf) const {
+    bool reflects_where_received(ElementIndex leaf) const {
         return !reflecting_where_received.empty() && reflecting_where_received[leaf] != 0;
     }
     /// Reused after tracing; may be null.

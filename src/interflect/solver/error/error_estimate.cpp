@@ -41,7 +41,7 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
     const ElementForest& forest = *state.light.forest;
     const auto sum = [&](std::size_t begin, std::size_t end) {
         ErrorSums sums;
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+        for (ElementIndex e(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;
             const double w = error_weight(state.inputs, state.light, measure, e) * forest.area(e);
             if (!(w > 0)) continue;
@@ -88,7 +88,7 @@ void set_errors_of_clusters(const RunInputs& inputs, const LightState& light, Er
     const ElementForest& forest = *light.forest;
     const PatchClusters& clusters = inputs.clusters.front();
     const std::vector<double> pixels =
-        clusters.sums<double>([&](std::uint32_t p) { return forest.area(p) / pixel_area(inputs, light, p); });
+        clusters.sums<double>([&](PatchIndex p) { return forest.area(p) / pixel_area(inputs, light, p); });
     std::vector<ClusterShrinkage::Errors> of_patches(forest.patch_count());
     ClusterShrinkage(light, clusters, light.solution.irradiance).measure_errors(of_patches, [&](std::size_t node) {
         return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(pixels[node]);
@@ -104,7 +104,7 @@ void set_errors_of_patches(const RunInputs& inputs, const LightState& light, Err
     if (!inputs.clusters.empty()) return set_errors_of_clusters(inputs, light, measure, errors);
     const ElementForest& forest = *light.forest;
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto root = static_cast<std::uint32_t>(begin); root < end; ++root) {
+        for (PatchIndex root(begin); root < end; ++root) {
             const float shown = shown_of_patch(inputs, light, measure, root);
             const float rays = std::max(light.history[root], 1.0f);
             errors.noise[root] = shown * light.noise.variance(forest, light.solution.irradiance, root, rays);
@@ -121,13 +121,13 @@ ElementErrors element_errors(const RunInputs& inputs, const LightState& light, E
     errors.bias.assign(forest.size(), 0);
     set_errors_of_patches(inputs, light, measure, errors);
     errors.noise_of_patch = errors.noise;
-    forest.for_siblings_from_roots([&](std::uint32_t first) {
+    forest.for_siblings_from_roots([&](ElementIndex first) {
         const SiblingVariation variation = sibling_variation(light, first);
         const auto [noise, bias] = added_error(light, first, variation);
-        const std::uint32_t parent = forest.parent(first);
+        const ElementIndex parent = forest.parent(first);
         const float shown = shown_of_siblings(inputs, light, measure, first);
         const Shrinkage shrinkage = shrinkage_of(light, first, variation);
-        for (std::uint32_t e = first; e < first + 4; ++e) {
+        for (ElementIndex e = first; e < first + 4; ++e) {
             const float noise_share = shrinkage.noise[e - first];
             errors.noise[e] = noise_share * (errors.noise[parent] + shown * noise);
             errors.noise_of_patch[e] = noise_share * errors.noise_of_patch[parent];

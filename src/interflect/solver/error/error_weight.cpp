@@ -11,7 +11,7 @@ ErrorMeasure default_measure(const LightState& light) {
     return light.solution.view_importance.empty() ? ErrorMeasure::surfaces : ErrorMeasure::pictures;
 }
 
-double error_weight(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, std::uint32_t element) {
+double error_weight(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, ElementIndex element) {
     if (measure == ErrorMeasure::surfaces) return 1;
     const Rgb rho = inputs.materials.surface(light.forest->patch(element), element).reflectance;
     Rgb h = light.solution.irradiance[element];
@@ -30,7 +30,7 @@ double error_reference(const RunInputs& inputs, const LightState& light, ErrorMe
     };
     const Sums sums = parallel_sum(forest.size(), elements_per_task, Sums(), [&](std::size_t begin, std::size_t end) {
         Sums sum;
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+        for (ElementIndex e(begin); e < end; ++e) {
             if (!forest.is_leaf(e)) continue;
             const double w =
                 forest.area(e) * (of_pictures ? static_cast<double>(light.solution.view_importance[e]) : 1.0);

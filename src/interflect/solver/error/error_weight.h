@@ -12,7 +12,7 @@ enum class ErrorMeasure { pictures, surfaces };
 ErrorMeasure default_measure(const LightState& light);
 
 /// Weight per area. Pictures: view importance times squared luminance of rho. Surfaces: 1.
-double error_weight(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, std::uint32_t element);
+double error_weight(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, ElementIndex element);
 
 /// Weighted mean luminance: reflected light (pictures) or irradiance (surfaces).
 double error_reference(const RunInputs& inputs, const LightState& light, ErrorMeasure measure);

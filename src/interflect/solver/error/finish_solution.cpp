@@ -47,8 +47,9 @@ void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, st
             ClusterShrinkage(state.light, clusters, unreduced).means(state.sampling.view.rays());
         for (std::size_t p = 0; p < means.size(); ++p) means[p] += weight * of_tree[p];
     }
-    for (std::uint32_t e = forest.size(); e-- > 0;) {  // patches last
-        const std::uint32_t patch = forest.patch(e);
+    for (std::uint32_t i = forest.size(); i-- > 0;) {  // patches last
+        const ElementIndex e(i);
+        const PatchIndex patch = forest.patch(e);
         for (int c = 0; c < 3; ++c)
             light[e][c] = light[patch][c] > 0 ? light[e][c] * (means[patch][c] / light[patch][c]) : means[patch][c];
     }
@@ -62,7 +63,7 @@ void finish_solution(SolverState& state) {
     const ElementErrors errors = element_errors(state.inputs, state.light, ErrorMeasure::surfaces);
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         const float within =
             std::max(0.0f, signal_among_siblings(state.light, e)) / 3;  // 1/4 + 1/16 + ... of the signal
         solution.standard_error[e] = std::sqrt(errors.noise[e]);
@@ -72,8 +73,8 @@ void finish_solution(SolverState& state) {
     solution.rays.assign(state.sampling.streams.used.begin(), state.sampling.streams.used.end());
     std::vector<Rgb> reduced = solution.irradiance;
     GroupLight reduced_groups = solution.groups, reduced_direct = solution.direct;
-    forest.for_siblings_from_roots([&](std::uint32_t first) {
-        const std::uint32_t parent = forest.parent(first);
+    forest.for_siblings_from_roots([&](ElementIndex first) {
+        const ElementIndex parent = forest.parent(first);
         const Shrinkage shrinkage = shrinkage_of(state.light, first, sibling_variation(state.light, first));
         const auto differences = [&](const std::vector<Rgb>& irradiance) {
             std::array<Rgb, 4> difference;

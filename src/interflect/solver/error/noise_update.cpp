@@ -15,14 +15,14 @@ namespace interflect::detail {
 namespace {
 
 /// Returns the mean of y z over siblings (docs/method/method.md, Errors), less the noise of rays that both have.
-double measured_signal(const LightState& light, const Estimate& fresh, std::uint32_t first) {
+double measured_signal(const LightState& light, const Estimate& fresh, ElementIndex first) {
     const ElementForest& forest = *light.forest;
-    const std::uint32_t parent = forest.parent(first);
-    const auto difference = [&](const std::vector<Rgb>& irradiance, std::uint32_t e) {
+    const ElementIndex parent = forest.parent(first);
+    const auto difference = [&](const std::vector<Rgb>& irradiance, ElementIndex e) {
         return luminance(irradiance[e]) - luminance(irradiance[parent]);
     };
     double product = 0, area = 0;
-    for (std::uint32_t e = first; e < first + 4; ++e) {
+    for (ElementIndex e = first; e < first + 4; ++e) {
         product += static_cast<double>(forest.area(e) * difference(light.solution.irradiance, e) *
                                        difference(fresh.irradiance, e));
         if (!fresh.shared_variance.empty())
@@ -38,9 +38,9 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
     const ElementForest& forest = *state.light.forest;
     const std::uint32_t roots = forest.patch_count();
     const ErrorMeasure measure = default_measure(state.light);
-    const auto check_siblings = [&](std::uint32_t first, RiskCheck& sum) {
+    const auto check_siblings = [&](ElementIndex first, RiskCheck& sum) {
         const SiblingVariation variation = sibling_variation(state.light, first);
-        const std::uint32_t parent = forest.parent(first);
+        const ElementIndex parent = forest.parent(first);
         const double w = error_weight(state.inputs, state.light, measure, parent) * forest.area(parent);
         if (!variation.is_known() || !(w > 0)) return;
         const double signal = measured_signal(state.light, fresh, first), k = variation.shrinkage();
@@ -50,7 +50,7 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
         sum.expected += w * shown * static_cast<double>(expected.noise + expected.bias);
         const double of_parent =
             parent < roots ? 0 : measured_signal(state.light, fresh, first_sibling(forest, parent));
-        for (std::uint32_t e = first; e < first + 4; ++e) {
+        for (ElementIndex e = first; e < first + 4; ++e) {
             if (!forest.is_leaf(e)) continue;
             const double of_leaf = error_weight(state.inputs, state.light, measure, e) * forest.area(e);
             const std::array<float, finer_levels> shown_of_level = shown_within(state.inputs, state.light, measure, e);
@@ -62,7 +62,7 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
     };
     const auto check = [&](std::size_t begin, std::size_t end) {
         RiskCheck part;
-        for (std::size_t i = begin; i < end; ++i) check_siblings(roots + 4 * static_cast<std::uint32_t>(i), part);
+        for (std::size_t i = begin; i < end; ++i) check_siblings(ElementIndex(roots + 4 * i), part);
         return part;
     };
     RiskCheck sum =
@@ -75,7 +75,7 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
 
 void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays) {
     const ErrorMeasure measure = default_measure(state.light);
-    const auto weight = [&](std::uint32_t e) {
+    const auto weight = [&](ElementIndex e) {
         return error_weight(state.inputs, state.light, measure, e) * state.light.forest->area(e);
     };
     if (uses_shrinkage(state.light) && state.light.noise.is_known()) {

@@ -22,7 +22,7 @@ float shown_of_pairs(float a) {
 struct Extents {
     float u, v;
 };
-Extents extents_in_pixels(const RunInputs& inputs, const LightState& light, std::uint32_t element) {
+Extents extents_in_pixels(const RunInputs& inputs, const LightState& light, ElementIndex element) {
     const ElementForest& forest = *light.forest;
     const PatchGeometry::Shape& shape = forest.geometry(forest.patch(element)).shape();
     const float u2 = shape.edge_u.length2(), v2 = shape.edge_v.length2();
@@ -41,7 +41,7 @@ float shown_of_siblings(const Extents& sibling) {
 
 }  // namespace
 
-float shown_of_patch(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, std::uint32_t patch) {
+float shown_of_patch(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, PatchIndex patch) {
     return measure == ErrorMeasure::surfaces ? 1 : shown_of_patch(extents_in_pixels(inputs, light, patch));
 }
 
@@ -50,12 +50,12 @@ float shown_of_cluster(double pixels) {
     return of_side * of_side;
 }
 
-float shown_of_siblings(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, std::uint32_t first) {
+float shown_of_siblings(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, ElementIndex first) {
     return measure == ErrorMeasure::surfaces ? 1 : shown_of_siblings(extents_in_pixels(inputs, light, first));
 }
 
 std::array<float, finer_levels> shown_within(const RunInputs& inputs, const LightState& light, ErrorMeasure measure,
-                                             std::uint32_t leaf) {
+                                             ElementIndex leaf) {
     std::array<float, finer_levels> shares;
     shares.fill(1);
     if (measure == ErrorMeasure::surfaces) return shares;

@@ -103,7 +103,7 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
         smoothed_importance(forest, psi, o.importance.smoothing, o.importance.exponent), {}, {}, {}};
     weigh_parts(emission, found, static_cast<float>(o.importance.exponent), weights);
     if (neighbourhoods.empty() || o.importance.smoothing == 0) return weights;
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
+    for (PatchIndex i{0}; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
     neighbourhoods.smooth(forest, weights.nearby, taken_over);
     for (float& x : weights.nearby) x = std::pow(x, static_cast<float>(o.importance.exponent));
     return weights;
@@ -114,11 +114,11 @@ std::vector<float> smoothed_importance(const ElementForest& forest, const Import
     const auto share = static_cast<float>(from_parent), power = static_cast<float>(exponent);
     std::vector<float> weights(forest.size());
     parallel_for_ranges(weights.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) weights[e] = importance[e];
+        for (ElementIndex e(begin); e < end; ++e) weights[e] = importance[e];
     });
-    forest.for_siblings_from_roots([&](std::uint32_t first) {
+    forest.for_siblings_from_roots([&](ElementIndex first) {
         const float parent = weights[forest.parent(first)];
-        for (std::uint32_t e = first; e < first + 4; ++e) weights[e] += share * (parent - weights[e]);
+        for (ElementIndex e = first; e < first + 4; ++e) weights[e] += share * (parent - weights[e]);
     });
     if (power == 1) return weights;
     parallel_for_ranges(weights.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {

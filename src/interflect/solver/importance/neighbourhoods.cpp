@@ -11,17 +11,17 @@ namespace interflect::detail {
 
 namespace {
 
-using Patches = std::span<std::uint32_t>;
+using Patches = std::span<PatchIndex>;
 
 std::size_t half(std::size_t count) { return count / 2; }
 
 void arrange(Patches patches, const std::vector<V3f>& centres) {
     if (patches.size() < 2) return;
     Imath::Box3f box;
-    for (const std::uint32_t p : patches) box.extendBy(centres[p]);
+    for (const PatchIndex p : patches) box.extendBy(centres[p]);
     const auto axis = static_cast<int>(box.majorAxis());
     const auto middle = patches.begin() + static_cast<std::ptrdiff_t>(half(patches.size()));
-    std::nth_element(patches.begin(), middle, patches.end(), [&](std::uint32_t a, std::uint32_t b) {
+    std::nth_element(patches.begin(), middle, patches.end(), [&](PatchIndex a, PatchIndex b) {
         return centres[a][axis] != centres[b][axis] ? centres[a][axis] < centres[b][axis] : a < b;
     });
     arrange(patches.first(half(patches.size())), centres);
@@ -32,11 +32,11 @@ void arrange(Patches patches, const std::vector<V3f>& centres) {
 
 Neighbourhoods::Neighbourhoods(const ElementForest& forest) : patches_(forest.patch_count()) {
     std::vector<V3f> centres(forest.patch_count());
-    for (std::uint32_t p = 0; p < forest.patch_count(); ++p) {
+    for (PatchIndex p{0}; p < forest.patch_count(); ++p) {
         const PatchGeometry& geometry = forest.geometry(p);
         centres[p] = geometry.point(Cell().centre(geometry.is_triangle()));
     }
-    std::iota(patches_.begin(), patches_.end(), 0u);
+    std::iota(patches_.begin(), patches_.end(), PatchIndex(0));
     arrange(patches_, centres);
 }
 
@@ -50,7 +50,7 @@ void Neighbourhoods::smooth(const ElementForest& forest, std::span<float> values
         const std::size_t here = next++;
         Sum sum;
         if (count == 1) {
-            const std::uint32_t p = patches_[first];
+            const PatchIndex p = patches_[first];
             sum = {static_cast<double>(values[p]) * forest.area(p), forest.area(p)};
         } else {
             const Sum a = self(self, first, half(count)), b = self(self, first + half(count), count - half(count));

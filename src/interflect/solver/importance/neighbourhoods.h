@@ -21,7 +21,7 @@ class Neighbourhoods {
     void smooth(const ElementForest& forest, std::span<float> values, float share) const;
 
   private:
-    std::vector<std::uint32_t> patches_;  // nodes are ranges, halved recursively
+    std::vector<PatchIndex> patches_;  // nodes are ranges, halved recursively
 };
 
 }  // namespace interflect::detail

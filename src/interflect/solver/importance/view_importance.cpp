@@ -54,7 +54,7 @@ void ViewImportance::trace_view_rays(const ElementForest& forest, const RayCaste
         });
         const auto share = static_cast<float>(views_[v].weight * rays_per_view / static_cast<double>(rays.size()));
         for (std::size_t r = 0; r < rays.size(); ++r) {
-            const std::uint32_t patch = hits[r].patch;
+            const PatchIndex patch = hits[r].patch;
             if (patch == none) continue;
             const V3f y = rays[r].origin + hits[r].distance * rays[r].direction;
             points_.push_back({patch, forest.geometry(patch).parameters_of(y), share, patch});
@@ -100,8 +100,7 @@ std::vector<float> ViewImportance::per_area(const ElementForest& forest, bool at
     for (const Point& p : points_) v[at_patches ? p.patch : p.leaf] += p.share;
     const double per_share = 1 / hit_weight_;
     parallel_for_ranges(v.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
-            v[e] = static_cast<float>(v[e] * per_share / forest.area(e));
+        for (ElementIndex e(begin); e < end; ++e) v[e] = static_cast<float>(v[e] * per_share / forest.area(e));
     });
     push(forest, v);
     pull(forest, v);

@@ -44,10 +44,10 @@ class ViewImportance {
                            std::span<const Hit> hits, float share);
 
     struct Point {
-        std::uint32_t patch;
+        PatchIndex patch;
         Parameters parameters;
-        float share;         // of all pictures, times total_weight_
-        std::uint32_t leaf;  // result of the last lookup
+        float share;        // of all pictures, times total_weight_
+        ElementIndex leaf;  // result of the last lookup
     };
     std::vector<WeightedView> views_;
     std::uint64_t seed_;

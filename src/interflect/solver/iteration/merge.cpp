@@ -39,23 +39,23 @@ void merge_into(const LightState& light, std::vector<T>& mean, const std::vector
                 const TracedIteration& iteration, const Earlier& earlier = {}) {
     const ElementForest& forest = *light.forest;
     const auto rays = static_cast<float>(iteration.weight);
-    const auto merge_one = [&](std::uint32_t e) {
+    const auto merge_one = [&](ElementIndex e) {
         const float tau = iteration.plan.warms_up ? 1.0f : rays / (earlier.rays(light.history[e]) + rays);
         mean[e] += tau * (received[e] - mean[e]);
     };
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) merge_one(e);
+        for (ElementIndex e(begin); e < end; ++e) merge_one(e);
     });
-    forest.for_siblings_from_roots([&](std::uint32_t first) {
+    forest.for_siblings_from_roots([&](ElementIndex first) {
         T sum(0);
         float area = 0;
-        for (std::uint32_t e = first; e < first + 4; ++e) {
+        for (ElementIndex e = first; e < first + 4; ++e) {
             merge_one(e);
             sum += mean[e] * forest.area(e);
             area += forest.area(e);
         }
         const auto [factor, offset] = scaling(sum / area, mean[forest.parent(first)]);
-        for (std::uint32_t e = first; e < first + 4; ++e) mean[e] = mean[e] * factor + offset;
+        for (ElementIndex e = first; e < first + 4; ++e) mean[e] = mean[e] * factor + offset;
     });
     pull(forest, mean);
 }
@@ -70,16 +70,16 @@ void merge_independent(const LightState& light, std::vector<Rgb>& mean, const st
                        const TracedIteration& iteration) {
     const ElementForest& forest = *light.forest;
     const auto rays = static_cast<float>(iteration.weight);
-    const auto merged = [&](std::uint32_t e) {
+    const auto merged = [&](ElementIndex e) {
         return mean[e] + (received[e] - mean[e]) * (rays / (light.history[e] + rays));
     };
     parallel_for_ranges(forest.patch_count(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) mean[e] = merged(e);
+        for (ElementIndex e(begin); e < end; ++e) mean[e] = merged(e);
     });
-    forest.for_siblings_from_roots([&](std::uint32_t first) {
+    forest.for_siblings_from_roots([&](ElementIndex first) {
         Rgb sum(0);
         float area = 0;
-        for (std::uint32_t e = first; e < first + 4; ++e) {
+        for (ElementIndex e = first; e < first + 4; ++e) {
             mean[e] = merged(e);
             sum += mean[e] * forest.area(e);
             area += forest.area(e);

@@ -52,7 +52,8 @@ struct LineFinder {
         for (const SourceRays& source : batch.sources)
             for (std::uint32_t r = source.begin; r < source.end; ++r) {
                 importance[r] = payload.importance(source.source);
-                normals[r] = state.light.forest->geometry(state.light.forest->patch(source.source)).normal();
+                normals[r] =
+                    state.light.forest->geometry(state.light.forest->patch(ElementIndex(source.source))).normal();
             }
         std::vector<OutdoorLine> lines;
         if (state.inputs.emission.has_sky()) {

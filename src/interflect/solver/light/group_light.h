@@ -35,7 +35,7 @@ struct GroupRadiosity {
 
     std::size_t size() const { return groups ? groups->size() : 0; }
     /// Returns B of a leaf by one group [lm/m^2 or W/m^2].
-    Rgb of(const Materials& materials, const ElementForest& forest, std::uint32_t leaf, std::size_t group) const {
+    Rgb of(const Materials& materials, const ElementForest& forest, ElementIndex leaf, std::size_t group) const {
         if ((*dimming)[group] == 0) return Rgb(0);
         const MeanSurface surface = materials.surface(forest.patch(leaf), leaf);
         const Rgb reflected = surface.reflectance * (*irradiance)[group][leaf];

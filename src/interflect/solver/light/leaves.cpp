@@ -11,12 +11,12 @@ std::vector<Leaf> leaves(const Scene& scene, const Solution& solution) {
     forest.require_made_for(scene);
     const bool has_importance = !solution.view_importance.empty();
     std::vector<Leaf> leaves;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         if (!forest.is_leaf(e)) continue;
         Leaf leaf{.element = e, .patch = forest.patch(e), .area = forest.area(e), .irradiance = solution.irradiance[e]};
         const PatchGeometry& geometry = forest.geometry(leaf.patch);
         const Cell cell = forest.cell(e);
-        for (std::uint32_t ancestor = e; ancestor != leaf.patch; ancestor = forest.parent(ancestor)) ++leaf.level;
+        for (ElementIndex ancestor = e; ancestor != leaf.patch; ancestor = forest.parent(ancestor)) ++leaf.level;
         const auto corner = [&](float u, float v) { return scene.origin + Imath::V3d(geometry.point(cell.at(u, v))); };
         if (geometry.is_triangle()) {
             leaf.vertex_count = 3;

@@ -18,7 +18,7 @@ std::vector<float> uncovered_shares(const Scene& scene, const RayCaster& ray_cas
     std::vector<float> shares;
     if (!ray_caster.has_covered_patches()) return shares;
     shares.reserve(scene.patches.size());
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) shares.push_back(ray_caster.uncovered_share(i));
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) shares.push_back(ray_caster.uncovered_share(i));
     return shares;
 }
 
@@ -34,8 +34,8 @@ Materials::Materials(const Scene& scene, std::vector<float> exitance_share)
       elements_(scene, exitance_share) {
     if (exitance_share.empty() && elements_.empty()) return;
     constexpr std::size_t patches_per_task = 64;
-    std::vector<std::uint32_t> patches;
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    std::vector<PatchIndex> patches;
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Material& material = scene.materials[scene.patches[i].material];
         const bool is_reduced = !exitance_share.empty() && exitance_share[i] != 1 && emits(material);
         if (is_reduced || material.is_textured()) patches.push_back(i);
@@ -62,7 +62,7 @@ Materials::Materials(const Scene& scene, std::vector<float> exitance_share)
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest,
                            const std::vector<Rgb>& irradiance) {
     std::vector<Rgb> b(irradiance.size());
-    for (std::uint32_t e = 0; e < b.size(); ++e) {
+    for (ElementIndex e{0}; e < b.size(); ++e) {
         const MeanSurface surface = materials.surface(forest.patch(e), e);
         b[e] = surface.exitance + surface.reflectance * irradiance[e];
     }
@@ -72,8 +72,7 @@ std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& fore
 
 RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values) {
     RgbD sum(0, 0, 0);
-    for (std::uint32_t e = 0; e < forest.patch_count(); ++e)
-        sum += RgbD(values[e]) * static_cast<double>(forest.area(e));
+    for (ElementIndex e{0}; e < forest.patch_count(); ++e) sum += RgbD(values[e]) * static_cast<double>(forest.area(e));
     return sum;
 }
 
@@ -86,7 +85,7 @@ CoveredEmission covered_emission(const Scene& scene, const RayCaster& ray_caster
     CoveredEmission covered;
     if (!ray_caster.has_covered_patches()) return covered;
     const detail::Materials materials(scene);
-    for (std::uint32_t i = 0; i < scene.patches.size(); ++i) {
+    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const float share = ray_caster.uncovered_share(i);
         const Material& material = materials.material(i);
         if (share == 1 || !detail::emits(material)) continue;

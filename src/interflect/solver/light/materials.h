@@ -22,23 +22,23 @@ class Materials {
 
     const Scene& scene() const { return *scene_; }
     bool has_panes() const { return has_panes_; }
-    const Rgb& reflectance(std::uint32_t patch) const { return material(patch).reflectance; }
-    const Rgb& exitance(std::uint32_t patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
+    const Rgb& reflectance(PatchIndex patch) const { return material(patch).reflectance; }
+    const Rgb& exitance(PatchIndex patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
     /// Exact for grey surfaces.
-    float mean_reflectance(std::uint32_t patch) const { return channel_sum(reflectance(patch)) / 3; }
-    void prefetch(std::uint32_t patch) const { __builtin_prefetch(&scene_->patches[patch].material); }
-    const Material& material(std::uint32_t patch) const {
+    float mean_reflectance(PatchIndex patch) const { return channel_sum(reflectance(patch)) / 3; }
+    void prefetch(PatchIndex patch) const { __builtin_prefetch(&scene_->patches[patch].material); }
+    const Material& material(PatchIndex patch) const {
         if (!own_materials_.empty() && has_own_[patch]) return own_materials_[has_own_.rank(patch)];
         return scene_->materials[scene_->patches[patch].material];
     }
 
-    MeanSurface surface(std::uint32_t patch, std::uint32_t element) const {
+    MeanSurface surface(PatchIndex patch, ElementIndex element) const {
         if (!elements_.empty() && element != patch)
             if (const MeanSurface* known = elements_.find(element)) return *known;
         const Material& m = material(patch);
         return {m.reflectance, m.exitance, m.transmittance};
     }
-    float mean_reflectance(std::uint32_t patch, std::uint32_t element) const {
+    float mean_reflectance(PatchIndex patch, ElementIndex element) const {
         return channel_sum(surface(patch, element).reflectance) / 3;
     }
     bool has_textures() const { return !elements_.empty(); }

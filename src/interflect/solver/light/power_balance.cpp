@@ -20,9 +20,9 @@ PowerBalance power_balance(const Scene& scene, const Solution& solution) {
     PowerBalance balance;
     balance.emitted = solution.emitted_power;
     if (!solution.iterations.empty()) balance.escaped = solution.iterations.back().escaped_power;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         if (!forest.is_leaf(e)) continue;
-        const std::uint32_t patch = forest.patch(e);
+        const PatchIndex patch = forest.patch(e);
         const MeanSurface surface = materials.surface(patch, e);
         const RgbD kept = RgbD(1) - RgbD(surface.reflectance + surface.transmittance);
         balance.absorbed += kept * RgbD(solution.irradiance[e]) * static_cast<double>(forest.area(e));

@@ -23,21 +23,21 @@ class Radiosity {
     bool emits() const { return emits_; }
 
     /// False if B is certainly 0.
-    bool may_shine(std::uint32_t e) const { return emits_ || irradiance_[e] != Rgb(0); }
+    bool may_shine(ElementIndex e) const { return emits_ || irradiance_[e] != Rgb(0); }
     /// B, or 0 if not finite.
-    Rgb of(const ElementForest& forest, std::uint32_t e) const { return of_element(forest.patch(e), e); }
-    Rgb of_element(std::uint32_t patch, std::uint32_t e) const {
+    Rgb of(const ElementForest& forest, ElementIndex e) const { return of_element(forest.patch(e), e); }
+    Rgb of_element(PatchIndex patch, ElementIndex e) const {
         const Rgb b = unchecked(patch, e);
         return is_finite(b) ? b : Rgb(0);
     }
-    bool is_not_finite(const ElementForest& forest, std::uint32_t e) const {
+    bool is_not_finite(const ElementForest& forest, ElementIndex e) const {
         return !is_finite(unchecked(forest.patch(e), e));
     }
     /// An inner element's B may then differ from its children's mean.
     bool has_textures() const { return materials_->has_textures(); }
 
   private:
-    Rgb unchecked(std::uint32_t patch, std::uint32_t e) const {
+    Rgb unchecked(PatchIndex patch, ElementIndex e) const {
         const MeanSurface surface = materials_->surface(patch, e);
         const Rgb reflected = surface.reflectance * irradiance_[e];
         return emits_ ? surface.exitance + reflected : reflected;
@@ -49,9 +49,9 @@ class Radiosity {
 };
 
 /// [lm or W]; with textures, the sum over the leaves.
-inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::uint32_t e) {
-    const std::uint32_t first_child = light.has_textures() ? forest.first_child(e) : none;
-    if (first_child == none) return RgbD(light.of(forest, e)) * static_cast<double>(forest.area(e));
+inline RgbD power_of(const ElementForest& forest, const Radiosity& light, ElementIndex e) {
+    const ElementIndex first_child = light.has_textures() ? forest.first_child(e) : no_element;
+    if (first_child == no_element) return RgbD(light.of(forest, e)) * static_cast<double>(forest.area(e));
     RgbD sum(0);
     for (std::uint32_t k = 0; k < 4; ++k) sum += power_of(forest, light, first_child + k);
     return sum;
@@ -61,7 +61,7 @@ inline RgbD power_of(const ElementForest& forest, const Radiosity& light, std::u
 inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) {
     return parallel_sum(forest.patch_count(), elements_per_task, RgbD(0), [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);
-        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) sum += power_of(forest, light, i);
+        for (PatchIndex i(begin); i < end; ++i) sum += power_of(forest, light, i);
         return sum;
     });
 }
@@ -73,7 +73,7 @@ class Importance {
     explicit Importance(std::span<const float> a, std::span<const float> b = {}) : a_(a), b_(b) {}
 
     bool empty() const { return a_.empty() && b_.empty(); }
-    float operator[](std::uint32_t e) const { return (a_.empty() ? 0 : a_[e]) + (b_.empty() ? 0 : b_[e]); }
+    float operator[](ElementIndex e) const { return (a_.empty() ? 0 : a_[e]) + (b_.empty() ? 0 : b_[e]); }
 
   private:
     std::span<const float> a_, b_;

@@ -23,10 +23,10 @@ class TexturedElements {
 
     bool empty() const { return !means_; }
 
-    MeanSurface of_patch(std::uint32_t patch, const PatchGeometry& geometry) const { return mean(patch, geometry, {}); }
+    MeanSurface of_patch(PatchIndex patch, const PatchGeometry& geometry) const { return mean(patch, geometry, {}); }
 
     /// Null if not textured, or before grow(). Not for roots.
-    const MeanSurface* find(std::uint32_t element) const {
+    const MeanSurface* find(ElementIndex element) const {
         const std::uint32_t block = (element - patch_count_) / 4;
         if (block >= slot_of_block_.size() || slot_of_block_[block] == none) return nullptr;
         return &surfaces_[4 * std::size_t{slot_of_block_[block]} + (element - patch_count_) % 4];
@@ -35,7 +35,7 @@ class TexturedElements {
     void grow(const ElementForest& forest);
 
   private:
-    MeanSurface mean(std::uint32_t patch, const PatchGeometry& geometry, const Cell& cell) const;
+    MeanSurface mean(PatchIndex patch, const PatchGeometry& geometry, const Cell& cell) const;
 
     const Scene* scene_;
     std::vector<float> exitance_share_;

@@ -31,7 +31,7 @@ void transport_importance(SolverState& state, std::int64_t rays) {
         state.rays.importance += step.rays;
         unshot = run_step(state, std::move(step)).importance;
         const double before = std::exchange(left, 0);
-        for (std::uint32_t e = 0; e < state.light.forest->size(); ++e) {
+        for (ElementIndex e{0}; e < state.light.forest->size(); ++e) {
             solution.indirect_importance[e] += unshot[e];
             if (e < state.light.forest->patch_count())
                 left += static_cast<double>(unshot[e]) * state.light.forest->area(e);
@@ -40,7 +40,7 @@ void transport_importance(SolverState& state, std::int64_t rays) {
     }
     // The untraced bounces are a geometric series with the distribution of the last one.
     const auto rest = static_cast<float>(decay / (1 - decay));
-    for (std::uint32_t e = 0; e < state.light.forest->size() && rest > 0; ++e)
+    for (ElementIndex e{0}; e < state.light.forest->size() && rest > 0; ++e)
         solution.indirect_importance[e] += rest * unshot[e];
     state.rays.of_first_importance = state.rays.importance - rays_before;
 }

@@ -14,7 +14,7 @@ namespace {
 std::vector<float> patch_importance(const LightState& light) {
     const Importance psi = importance_of(light.solution);
     std::vector<float> values;
-    for (std::uint32_t i = 0; i < light.forest->patch_count(); ++i) values.push_back(psi[i]);
+    for (PatchIndex i{0}; i < light.forest->patch_count(); ++i) values.push_back(psi[i]);
     return values;
 }
 
@@ -34,7 +34,7 @@ Noise noise_of_leaves(const RunInputs& inputs, const LightState& light, const st
     const ElementForest& forest = *light.forest;
     const Radiosity radiosity(inputs.materials, light.solution.irradiance);
     Noise noise;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         if (!forest.is_leaf(e) || !(old_q[e] > 0) || !(new_q[e] > 0)) continue;
         const double power = static_cast<double>(channel_sum(radiosity.of(forest, e))) * forest.area(e);
         const double weighted_power = power * importance[forest.patch(e)];
@@ -80,7 +80,7 @@ void ViewChange::record(const SolverState& state) {
 std::vector<float> ViewChange::history_factor(const SolverState& state,
                                               std::span<const OutdoorLine> outdoor_light) const {
     std::vector<float> old_q = old_.q;
-    for (auto e = static_cast<std::uint32_t>(old_q.size()); e < state.light.forest->size(); ++e)
+    for (ElementIndex e(old_q.size()); e < state.light.forest->size(); ++e)
         old_q.push_back(old_q[state.light.forest->parent(e)] / 4);  // elements created since then
     const Sampling now = sampling_of(state);
     const std::vector<float> new_psi = patch_importance(state.light);
@@ -117,7 +117,7 @@ bool ViewChange::fits(const SolverState& state) const {
 
 void scale_history(LightState& light, const std::vector<float>& factor) {
     if (factor.empty()) return;
-    for (std::uint32_t e = 0; e < light.history.size(); ++e) light.history[e] *= factor[light.forest->patch(e)];
+    for (ElementIndex e{0}; e < light.history.size(); ++e) light.history[e] *= factor[light.forest->patch(e)];
     light.noise.scale_by_patch(*light.forest, factor);
 }
 

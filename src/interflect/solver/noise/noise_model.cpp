@@ -27,13 +27,13 @@ NoiseModel::Spread& NoiseModel::Spread::operator+=(const Spread& other) {
 
 void NoiseModel::grow(const ElementForest& forest, std::uint32_t first) {
     inherit(forest, first, per_ray_);
-    for (std::uint32_t e = first; e < forest.size(); ++e) per_ray_[e] = 4 * per_ray_[forest.parent(e)];
+    for (ElementIndex e(first); e < forest.size(); ++e) per_ray_[e] = 4 * per_ray_[forest.parent(e)];
 }
 
-std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
+std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex first,
                                         float rays) const {
     float variance = 0, area = 0;
-    for (std::uint32_t e = first; e < first + 4; ++e) {
+    for (ElementIndex e = first; e < first + 4; ++e) {
         variance += forest.area(e) * per_ray_[e];
         area += forest.area(e);
     }
@@ -49,15 +49,15 @@ std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<c
 }
 
 void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
-                     std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight) {
+                     std::span<const float> history, float rays, const std::function<double(ElementIndex)>& weight) {
     const Spread spread =
         parallel_sum(forest.size(), elements_per_task, Spread(), [&](std::size_t begin, std::size_t end) {
             Spread sum;
-            for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+            for (ElementIndex e(begin); e < end; ++e) {
                 const float m = history[e];
                 if (!(m > 0)) continue;
                 float difference = luminance(fresh.irradiance[e]) - luminance(mean[e]);
-                if (const std::uint32_t parent = forest.parent(e); parent != none)
+                if (const ElementIndex parent = forest.parent(e); parent != none)
                     difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
                 const double w = weight(e);
                 const std::size_t n = hit_rate_class(forest, mean, e);

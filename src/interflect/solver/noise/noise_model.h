@@ -22,11 +22,11 @@ class NoiseModel {
 
     /// Returns the luminance variance of a mean over `rays` rays: of a root, or of another element's difference from
     /// its parent.
-    float variance(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e, float rays) const {
+    float variance(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex e, float rays) const {
         return scale_[hit_rate_class(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
     /// The same for a part of the mean. @param independent  Its variance for independent rays.
-    float variance_of_part(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e,
+    float variance_of_part(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex e,
                            float independent) const {
         return scale_[hit_rate_class(forest, mean, e)] * share_of_own(forest, e) * independent;
     }
@@ -34,7 +34,7 @@ class NoiseModel {
 
     /// Returns the noise variance of the siblings `first` ... `first` + 3 relative to its mean. With few rays, a
     /// sibling may be dark by chance, so the shares tend to 1.
-    std::array<float, 4> shares(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t first,
+    std::array<float, 4> shares(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex first,
                                 float rays) const;
 
     /// A new element receives a quarter of the rays on a quarter of the area.
@@ -44,7 +44,7 @@ class NoiseModel {
     /// @param history  Rays in the mean; 0: the difference from the parent is unknown.
     /// @param weight   Of the squared error; inner elements have the sum of their leaves.
     void add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
-             std::span<const float> history, float rays, const std::function<double(std::uint32_t)>& weight);
+             std::span<const float> history, float rays, const std::function<double(ElementIndex)>& weight);
 
     /// Takes the variance of independent rays from a mean with known variance, for elements from `first` on.
     /// @param history  Its rays.
@@ -55,7 +55,7 @@ class NoiseModel {
     void shrink(std::size_t size) { per_ray_.resize(size); }
 
     void scale_by_patch(const ElementForest& forest, std::span<const float> factor) {
-        for (std::uint32_t e = 0; e < per_ray_.size(); ++e) per_ray_[e] *= factor[forest.patch(e)];
+        for (ElementIndex e{0}; e < per_ray_.size(); ++e) per_ray_[e] *= factor[forest.patch(e)];
     }
     std::size_t elements() const { return per_ray_.size(); }
     void archive(StateArchive& archive) {
@@ -74,18 +74,18 @@ class NoiseModel {
     };
 
     /// Class n: about one in 2^n rays hits the element. Siblings share a class: one may be hit by chance.
-    std::size_t hit_rate_class(const ElementForest& forest, std::span<const Rgb> mean, std::uint32_t e) const {
-        const std::uint32_t parent = forest.parent(e), known = parent == none ? e : parent;
+    std::size_t hit_rate_class(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex e) const {
+        const ElementIndex parent = forest.parent(e), known = parent == none ? e : parent;
         const float h = luminance(mean[known]), rays_per_contribution = per_ray_[known] / (h * h);
         if (!(rays_per_contribution < 0x1p45f)) return hit_rate_classes - 1;
         const int n = rays_per_contribution > 1 ? std::ilogb(rays_per_contribution) : 0;
         return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
     /// Differences from the siblings' mean have three quarters of the variance.
-    static float share_of_own(const ElementForest& forest, std::uint32_t e) {
+    static float share_of_own(const ElementForest& forest, ElementIndex e) {
         return e < forest.patch_count() ? 1.0f : 0.75f;
     }
-    float independent_variance(const ElementForest& forest, std::uint32_t e) const {
+    float independent_variance(const ElementForest& forest, ElementIndex e) const {
         return share_of_own(forest, e) * per_ray_[e];
     }
 

@@ -9,7 +9,7 @@ namespace interflect::detail {
 void divide_leaves(SolverState& state, const std::vector<std::uint8_t>& splits) {
     ElementForest& forest = *state.light.forest;
     const std::uint32_t before = forest.size();
-    for (std::uint32_t e = 0; e < before && forest.size() + 4 <= state.light.options().refinement.max_elements; ++e)
+    for (ElementIndex e{0}; e < before && forest.size() + 4 <= state.light.options().refinement.max_elements; ++e)
         if (splits[e]) forest.subdivide(e);
     if (forest.size() == before) return;
     forest.put_in_order(before);

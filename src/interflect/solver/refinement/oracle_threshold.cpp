@@ -36,7 +36,7 @@ double reference_power(const Solution& so_far) {
     const ElementForest& forest = *so_far.forest;
     if (so_far.view_importance.empty()) return channel_sum(so_far.emitted_power) / 3;
     double mean_irradiance = 0, visible_area = 0;  // of the picture, as V sums to 1 [lm/m^2 or W/m^2]; [m^2]
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
+    for (PatchIndex i{0}; i < forest.patch_count(); ++i) {
         if (!(so_far.view_importance[i] > 0)) continue;
         mean_irradiance += static_cast<double>(so_far.view_importance[i]) * forest.area(i) *
                            channel_sum(RgbD(so_far.irradiance[i])) / 3;
@@ -48,7 +48,7 @@ double reference_power(const Solution& so_far) {
 double reference_importance(const Solution& so_far, const std::vector<float>& psi) {
     const ElementForest& forest = *so_far.forest;
     double sum = 0, area = 0;
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
+    for (PatchIndex i{0}; i < forest.patch_count(); ++i) {
         if (!(so_far.view_importance[i] > 0)) continue;
         sum += static_cast<double>(psi[i]) * forest.area(i);
         area += forest.area(i);

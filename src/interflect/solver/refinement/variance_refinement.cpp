@@ -58,7 +58,7 @@ class VarianceOracle {
         return std::isfinite(error) ? negligible_gain * error * error * weighted_mean_square() : 0;
     }
 
-    bool splits(std::uint32_t leaf, double min_gain) const {
+    bool splits(ElementIndex leaf, double min_gain) const {
         const auto [signal, noise] = expected_children(leaf);
         if (!(signal > min_signal * noise)) return false;
         const bool blurs =
@@ -70,7 +70,7 @@ class VarianceOracle {
     }
 
     /// True if unknown.
-    bool may_misplace(std::uint32_t leaf) const {
+    bool may_misplace(ElementIndex leaf) const {
         if (state_.light.history[leaf] == 0 || !state_.light.noise.is_known()) return true;
         return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > max_misplaced_power_;
     }
@@ -80,7 +80,7 @@ class VarianceOracle {
     struct Expected {
         float signal, noise;
     };
-    Expected expected_children(std::uint32_t leaf) const {
+    Expected expected_children(ElementIndex leaf) const {
         if (leaf < forest_.patch_count()) {
             const float h = luminance(state_.light.solution.irradiance[leaf]);
             return {assumed_square * h * h, 3 * state_.light.noise.variance(forest_, state_.light.solution.irradiance,
@@ -89,7 +89,7 @@ class VarianceOracle {
         const SiblingVariation variation = sibling_variation(state_.light, forest_.first_child(forest_.parent(leaf)));
         return {expected_decay * variation.signal(), 4 * variation.noise};
     }
-    double weight(std::uint32_t leaf) const {
+    double weight(ElementIndex leaf) const {
         double w = error_weight(state_.inputs, state_.light, measure_, leaf);
         if (!psi_.empty()) {
             const double rho = luminance(state_.inputs.materials.surface(forest_.patch(leaf), leaf).reflectance);
@@ -98,7 +98,7 @@ class VarianceOracle {
         return w * forest_.area(leaf);
     }
     /// Returns [lm or W, times importance].
-    double misplaced_power(std::uint32_t leaf, float signal) const {
+    double misplaced_power(ElementIndex leaf, float signal) const {
         const double rho = luminance(state_.inputs.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
     }
@@ -106,7 +106,7 @@ class VarianceOracle {
         const double mean = error_reference(state_.inputs, state_.light, measure_);
         double weight = measure_ == ErrorMeasure::surfaces ? 0 : state_.sampling.view.surface_share();
         if (measure_ == ErrorMeasure::surfaces)
-            for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) weight += forest_.area(i);
+            for (PatchIndex i{0}; i < forest_.patch_count(); ++i) weight += forest_.area(i);
         return mean * mean * weight;
     }
 
@@ -114,7 +114,7 @@ class VarianceOracle {
     double reference_power() const {
         if (!psi_.empty()) return error_reference(state_.inputs, state_.light, ErrorMeasure::pictures);
         double sum = 0;
-        for (std::uint32_t i = 0; i < forest_.patch_count(); ++i)
+        for (PatchIndex i{0}; i < forest_.patch_count(); ++i)
             sum += static_cast<double>(luminance(state_.light.solution.irradiance[i])) * forest_.area(i);
         return sum;
     }
@@ -134,8 +134,7 @@ std::vector<std::uint8_t> leaves_reflecting_where_received(const SolverState& st
     const VarianceOracle oracle(state);
     std::vector<std::uint8_t> blurs(state.light.forest->size(), 0);
     parallel_for_ranges(blurs.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
-            blurs[e] = state.light.forest->is_leaf(e) && oracle.may_misplace(e);
+        for (ElementIndex e(begin); e < end; ++e) blurs[e] = state.light.forest->is_leaf(e) && oracle.may_misplace(e);
     });
     return blurs;
 }
@@ -146,7 +145,7 @@ void refine_by_variance(SolverState& state) {
     const double min_gain = oracle.min_gain();
     std::vector<std::uint8_t> splits(forest.size(), 0);
     parallel_for_ranges(splits.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
+        for (ElementIndex e(begin); e < end; ++e)
             splits[e] = forest.is_leaf(e) && state.light.history[e] > 0 && oracle.splits(e, min_gain);
     });
     divide_leaves(state, splits);

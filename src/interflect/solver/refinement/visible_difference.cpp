@@ -34,7 +34,7 @@ double logarithmic_mean(const RunInputs& inputs, const LightState& light) {
     const ElementForest& forest = *light.forest;
     const Sums sums = parallel_sum(forest.size(), elements_per_task, Sums(), [&](std::size_t begin, std::size_t end) {
         Sums sum;
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+        for (ElementIndex e(begin); e < end; ++e) {
             const Rgb rho = inputs.materials.surface(forest.patch(e), e).reflectance;
             const float reflected = luminance(Rgb(rho * light.solution.irradiance[e]));
             if (!forest.is_leaf(e) || !(reflected > 0)) continue;
@@ -81,28 +81,28 @@ VisibleDifference::VisibleDifference(const RunInputs& inputs, const LightState& 
 }
 
 /// Returns the mean of the smallest ancestor that covers a square degree, or else of the patch [cd/m^2].
-float VisibleDifference::adapted_luminance(std::uint32_t leaf, float pixels) const {
+float VisibleDifference::adapted_luminance(ElementIndex leaf, float pixels) const {
     const ElementForest& forest = *light_.forest;
-    const std::uint32_t patch = forest.patch(leaf);
-    std::uint32_t e = leaf;
+    const PatchIndex patch = forest.patch(leaf);
+    ElementIndex e = leaf;
     for (; e != patch && pixels < pixels_per_degree * pixels_per_degree; pixels *= 4) e = forest.parent(e);
     const Rgb rho = inputs_.materials.surface(patch, e).reflectance;
     return std::clamp(exposure_ * luminance(Rgb(rho * light_.solution.irradiance[e])), display_black, display_white);
 }
 
 /// Returns the root mean square difference of the leaf and its siblings caused by texture [cd/m^2].
-float VisibleDifference::masking_contrast(std::uint32_t leaf) const {
+float VisibleDifference::masking_contrast(ElementIndex leaf) const {
     const ElementForest& forest = *light_.forest;
-    const std::uint32_t patch = forest.patch(leaf);
+    const PatchIndex patch = forest.patch(leaf);
     if (leaf == patch) return 0;
-    const std::uint32_t first = first_sibling(forest, leaf), parent = forest.parent(leaf);
-    const auto rho = [&](std::uint32_t e) { return luminance(inputs_.materials.surface(patch, e).reflectance); };
+    const ElementIndex first = first_sibling(forest, leaf), parent = forest.parent(leaf);
+    const auto rho = [&](ElementIndex e) { return luminance(inputs_.materials.surface(patch, e).reflectance); };
     float mean_square = 0;
-    for (std::uint32_t e = first; e < first + 4; ++e) mean_square += std::pow(rho(e) - rho(parent), 2.0f) / 4;
+    for (ElementIndex e = first; e < first + 4; ++e) mean_square += std::pow(rho(e) - rho(parent), 2.0f) / 4;
     return exposure_ * std::sqrt(mean_square) * std::max(0.0f, luminance(light_.solution.irradiance[parent]));
 }
 
-float VisibleDifference::threshold(std::uint32_t leaf) const {
+float VisibleDifference::threshold(ElementIndex leaf) const {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     const Rgb rho = inputs_.materials.surface(light_.forest->patch(leaf), leaf).reflectance;
     const float shown = exposure_ * luminance(rho);  // display luminance per irradiance

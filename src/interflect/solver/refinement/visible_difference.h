@@ -14,15 +14,15 @@ class VisibleDifference {
 
     /// Returns the smallest mean squared difference of a leaf's children that is visible directly [(lm/m^2)^2 or
     /// (W/m^2)^2]. Infinite for black leaves and for leaves outside all views.
-    float threshold(std::uint32_t leaf) const;
+    float threshold(ElementIndex leaf) const;
 
     /// Returns the smallest misplaced power, times importance, that is visible in the light of other surfaces, relative
     /// to the light in the pictures: the JND of one square degree.
     double share_of_light() const { return share_of_light_; }
 
   private:
-    float adapted_luminance(std::uint32_t leaf, float pixels) const;
-    float masking_contrast(std::uint32_t leaf) const;
+    float adapted_luminance(ElementIndex leaf, float pixels) const;
+    float masking_contrast(ElementIndex leaf) const;
 
     const RunInputs& inputs_;
     const LightState& light_;

@@ -25,27 +25,31 @@ class Payload {
     RgbD power(std::uint32_t source) const { return per_ray(source, radiated(source)); }
     RgbD power(std::uint32_t source, std::size_t group) const {
         if (source < elements_) {
-            const Rgb share = plan_.groups.of(materials_, forest_, source, group);
+            const Rgb share = plan_.groups.of(materials_, forest_, ElementIndex(source), group);
             return is_finite(share) ? per_ray(source, RgbD(share)) : RgbD(0);
         }
         return plan_.groups.has_part(*plan_.emission, source - elements_, group) ? power(source) : RgbD(0);
     }
-    double importance(std::uint32_t source) const { return source < elements_ ? importance_of_leaf(source) : 0; }
+    double importance(std::uint32_t source) const {
+        return source < elements_ ? importance_of_leaf(ElementIndex(source)) : 0;
+    }
 
   private:
     RgbD radiated(std::uint32_t source) const {
-        return source < elements_ ? RgbD(plan_.light.of(forest_, source)) : plan_.emission->power(source - elements_);
+        return source < elements_ ? RgbD(plan_.light.of(forest_, ElementIndex(source)))
+                                  : plan_.emission->power(source - elements_);
     }
     RgbD per_ray(std::uint32_t source, const RgbD& light) const {
-        if (!plan_.equal_payloads) return light * (source < elements_ ? area_per_ray(source) : per_ray(source));
+        if (!plan_.equal_payloads)
+            return light * (source < elements_ ? area_per_ray(ElementIndex(source)) : per_ray(source));
         const double sum = channel_sum(radiated(source));
         return sum > 0 ? light / sum : RgbD(0);
     }
-    double importance_of_leaf(std::uint32_t leaf) const {
+    double importance_of_leaf(ElementIndex leaf) const {
         return materials_.mean_reflectance(forest_.patch(leaf), leaf) * plan_.importance[leaf] * area_per_ray(leaf);
     }
     double per_ray(std::uint32_t source) const { return q_sum_over_rays_ / plan_.q[source]; }
-    double area_per_ray(std::uint32_t leaf) const { return forest_.area(leaf) * per_ray(leaf); }
+    double area_per_ray(ElementIndex leaf) const { return forest_.area(leaf) * per_ray(leaf); }
 
     const Materials& materials_;
     const ElementForest& forest_;

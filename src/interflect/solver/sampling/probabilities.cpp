@@ -32,7 +32,7 @@ WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, 
     const bool by_power = shares.power > 0 || shares.weighted_power > 0 || shares.power_nearby > 0;
     return parallel_sum(s.forest.size(), elements_per_task, WeightSums(), [&](std::size_t begin, std::size_t end) {
         WeightSums sums;
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+        for (ElementIndex e(begin); e < end; ++e) {
             if (importances.empty() && !s.light.may_shine(e)) continue;
             if (!s.forest.is_leaf(e)) continue;
             if (!importances.empty()) {
@@ -76,7 +76,7 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
                  for_importance = factor(shares.importance, sums.importance);
     std::vector<float> q(forest.size() + sampled.part_count());
     parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+        for (ElementIndex e(begin); e < end; ++e) {
             const double importance = importances.empty() ? 0 : for_importance * importances[e];
             double by_power = for_power;
             if (powers[e] > 0 && for_driven > 0) by_power += for_driven * sampled.importance_weight[e];

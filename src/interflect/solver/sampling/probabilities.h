@@ -24,14 +24,14 @@ struct SamplingWeights {
     std::size_t part_count() const { return emission ? emission->part_count() : 0; }
 
     /// Eq. 3: P_s, summed over the channels.
-    double power(std::uint32_t s) const {
+    double power(ElementIndex s) const {
         return channel_sum(RgbD(light.of(forest, s))) * static_cast<double>(forest.area(s));
     }
-    double power_nearby(std::uint32_t s) const { return power(s) * nearby[forest.patch(s)]; }
+    double power_nearby(ElementIndex s) const { return power(s) * nearby[forest.patch(s)]; }
     /// Eq. 9 and 10: P_s psi_s.
-    double weighted_power(std::uint32_t s) const { return power(s) * importance_weight[s]; }
+    double weighted_power(ElementIndex s) const { return power(s) * importance_weight[s]; }
     /// Eq. 8: rho_s I_s.
-    double importance(std::uint32_t s) const {
+    double importance(ElementIndex s) const {
         return static_cast<double>(materials.mean_reflectance(forest.patch(s), s)) * reflected_importance[s] *
                static_cast<double>(forest.area(s));
     }

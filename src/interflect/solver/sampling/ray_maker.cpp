@@ -79,7 +79,7 @@ void RayMaker::make(std::int64_t begin, std::int64_t end, RayBatch& batch) const
         const auto offset = static_cast<std::size_t>(from - begin), length = static_cast<std::size_t>(to - from);
         const auto skipped = static_cast<std::uint64_t>(from - first);
         if (source < elements_)
-            shoot_from_leaf(source, skipped, offset, length, batch);
+            shoot_from_leaf(ElementIndex(source), skipped, offset, length, batch);
         else
             shoot_from_part(source - elements_, skipped, offset, length, batch);
         batch.sources.push_back(
@@ -88,9 +88,9 @@ void RayMaker::make(std::int64_t begin, std::int64_t end, RayBatch& batch) const
     allocation_.for_each_source(begin, end, make_some);
 }
 
-void RayMaker::shoot_from_leaf(std::uint32_t leaf, std::uint64_t skipped, std::size_t offset, std::size_t length,
+void RayMaker::shoot_from_leaf(ElementIndex leaf, std::uint64_t skipped, std::size_t offset, std::size_t length,
                                RayBatch& batch) const {
-    const std::uint32_t patch = forest_.patch(leaf);
+    const PatchIndex patch = forest_.patch(leaf);
     const std::uint64_t place = std::uint64_t{patch} << 32 | forest_.path(leaf);
     const std::uint64_t used = leaf < streams_.used.size() ? streams_.used[leaf] : 0;
     const std::span<const StartPoint> starts = start_points_ ? start_points_->of(leaf) : std::span<const StartPoint>();

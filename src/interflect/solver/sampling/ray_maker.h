@@ -60,7 +60,7 @@ class RayMaker {
     void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const;
 
   private:
-    void shoot_from_leaf(std::uint32_t leaf, std::uint64_t skipped, std::size_t offset, std::size_t length,
+    void shoot_from_leaf(ElementIndex leaf, std::uint64_t skipped, std::size_t offset, std::size_t length,
                          RayBatch& batch) const;
     void shoot_from_part(std::uint32_t part, std::uint64_t skipped, std::size_t offset, std::size_t length,
                          RayBatch& batch) const;

@@ -38,7 +38,7 @@ StartPoints::StartPoints(std::vector<StartPoint> points) : points_(std::move(poi
     }
 }
 
-std::span<const StartPoint> StartPoints::of(std::uint32_t leaf) const {
+std::span<const StartPoint> StartPoints::of(ElementIndex leaf) const {
     const auto is_below = [](const StartPoint& p, std::uint32_t l) { return p.leaf < l; };
     const auto begin = std::lower_bound(points_.begin(), points_.end(), leaf, is_below);
     const auto end = std::lower_bound(begin, points_.end(), leaf + 1, is_below);

@@ -9,7 +9,7 @@
 namespace interflect::detail {
 
 struct StartPoint {
-    std::uint32_t leaf;
+    ElementIndex leaf;
     float power;                   ///< Sum of the channels; cumulative over the leaf in StartPoints.
     Parameters at;                 ///< On the leaf's patch.
     std::uint32_t place_on_curve;  ///< Morton code of `at`.
@@ -25,7 +25,7 @@ class StartPoints {
     explicit StartPoints(std::vector<StartPoint> points);
 
     /// Empty: uniform origins. Cost: O(log n).
-    std::span<const StartPoint> of(std::uint32_t leaf) const;
+    std::span<const StartPoint> of(ElementIndex leaf) const;
     const std::vector<StartPoint>& all() const { return points_; }
 
     /// Samples a point by power. @param points  Not empty. @param u  In [0, 1).

@@ -130,7 +130,7 @@ std::vector<Rgb> ClusterShrinkage::means(std::int64_t camera_rays) const {
 void ClusterShrinkage::measure_parts() {
     const LightState& light = *light_;
     const ElementForest& forest = *light.forest;
-    const std::vector<Sums> sums = clusters_->sums<Sums>([&](std::uint32_t p) {
+    const std::vector<Sums> sums = clusters_->sums<Sums>([&](PatchIndex p) {
         const double area = forest.area(p), all = luminance(light.solution.irradiance[p]),
                      h = luminance(irradiance_[p]);
         const double of_all =
@@ -239,8 +239,7 @@ void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vec
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
     const std::vector<float>& seen = light_->solution.view_importance;
     if (seen.empty()) return;
-    const std::vector<double> shares =
-        clusters_->sums<double>([&](std::uint32_t p) { return seen[p] * forest.area(p); });
+    const std::vector<double> shares = clusters_->sums<double>([&](PatchIndex p) { return seen[p] * forest.area(p); });
     const double fewest = fewest_camera_rays / static_cast<double>(camera_rays);
     std::vector<Region> regions(nodes.size());
     std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
@@ -256,9 +255,9 @@ void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vec
         uncertainty[patch] = 1 - parts_[i].kept;
         regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(patch);
     }
-    for (std::uint32_t p = 0; p < means.size(); ++p)
+    for (PatchIndex p{0}; p < means.size(); ++p)
         regions[region_of_patch[p]].add(seen[p], forest.area(p), uncertainty[p], RgbD(irradiance_[p]), RgbD(means[p]));
-    for (std::uint32_t p = 0; p < means.size(); ++p) {
+    for (PatchIndex p{0}; p < means.size(); ++p) {
         const Region& r = regions[region_of_patch[p]];
         for (int c = 0; c < 3 && r.share >= fewest; ++c) means[p][c] *= r.factor(seen[p], uncertainty[p], c);
     }

@@ -32,13 +32,13 @@ bool uses_shrinkage(const LightState& light) {
     return light.options().experimental.shrinkage && refines_by_variance(light.options());
 }
 
-SiblingVariation sibling_variation(const LightState& light, std::uint32_t first) {
+SiblingVariation sibling_variation(const LightState& light, ElementIndex first) {
     const ElementForest& forest = *light.forest;
     const std::vector<Rgb>& irradiance = light.solution.irradiance;
     if (light.history[first] == 0) return {0, std::numeric_limits<float>::infinity()};
     const float mean = luminance(irradiance[forest.parent(first)]);
     float area = 0, spread = 0, variance = 0;
-    for (std::uint32_t e = first; e < first + 4; ++e) {
+    for (ElementIndex e = first; e < first + 4; ++e) {
         const float difference = luminance(irradiance[e]) - mean, a = forest.area(e);
         area += a;
         spread += a * difference * difference;
@@ -46,7 +46,7 @@ SiblingVariation sibling_variation(const LightState& light, std::uint32_t first)
     }
     SiblingVariation variation{spread / area, variance / area};
     // With few rays, shrinkage leaves more noise than signal. The parent's siblings bound the signal.
-    const std::uint32_t parent = forest.parent(first);
+    const ElementIndex parent = forest.parent(first);
     if (uses_shrinkage(light) && light.history[first] < under_sampled * light.history[parent])
         variation.assumed = parent < forest.patch_count()
                                 ? std::pow(assumed_variation * mean, 2.0f)
@@ -55,7 +55,7 @@ SiblingVariation sibling_variation(const LightState& light, std::uint32_t first)
     return variation;
 }
 
-AddedError added_error(const LightState& light, std::uint32_t first, const SiblingVariation& variation) {
+AddedError added_error(const LightState& light, ElementIndex first, const SiblingVariation& variation) {
     if (!variation.is_known()) return {};  // the siblings equal their parent
     if (!uses_shrinkage(light)) return {variation.noise, 0};
     const float kept = variation.shrinkage(), noise = kept * kept * variation.noise;
@@ -65,7 +65,7 @@ AddedError added_error(const LightState& light, std::uint32_t first, const Sibli
 }
 
 /// Applies a Wiener filter (docs/method/method.md, Shrinkage).
-Shrinkage shrinkage_of(const LightState& light, std::uint32_t first, const SiblingVariation& variation) {
+Shrinkage shrinkage_of(const LightState& light, ElementIndex first, const SiblingVariation& variation) {
     const ElementForest& forest = *light.forest;
     Shrinkage s{{1, 1, 1, 1}, light.noise.shares(forest, light.solution.irradiance, first, light.history[first])};
     if (!uses_shrinkage(light) || !variation.is_known()) return s;
@@ -81,7 +81,7 @@ Shrinkage shrinkage_of(const LightState& light, std::uint32_t first, const Sibli
     return s;
 }
 
-float signal_among_siblings(const LightState& light, std::uint32_t e) {
+float signal_among_siblings(const LightState& light, ElementIndex e) {
     if (e < light.forest->patch_count()) return 0;
     const SiblingVariation variation = sibling_variation(light, first_sibling(*light.forest, e));
     return variation.is_known() ? variation.signal() : 0;

@@ -30,25 +30,25 @@ struct SiblingVariation {
     float risk() const;
 };
 
-SiblingVariation sibling_variation(const LightState& light, std::uint32_t first);
+SiblingVariation sibling_variation(const LightState& light, ElementIndex first);
 
 bool uses_shrinkage(const LightState& light);
 
 struct AddedError {
     float noise = 0, bias = 0;
 };
-AddedError added_error(const LightState& light, std::uint32_t first, const SiblingVariation& variation);
+AddedError added_error(const LightState& light, ElementIndex first, const SiblingVariation& variation);
 
 /// Factors of four siblings' differences from their parent, and their remaining noise variances, relative to the mean.
 struct Shrinkage {
     std::array<float, 4> kept, noise;
 };
-Shrinkage shrinkage_of(const LightState& light, std::uint32_t first, const SiblingVariation& variation);
+Shrinkage shrinkage_of(const LightState& light, ElementIndex first, const SiblingVariation& variation);
 
 /// Returns 0 if unknown.
-float signal_among_siblings(const LightState& light, std::uint32_t e);
+float signal_among_siblings(const LightState& light, ElementIndex e);
 
-inline std::uint32_t first_sibling(const ElementForest& forest, std::uint32_t e) {
+inline ElementIndex first_sibling(const ElementForest& forest, ElementIndex e) {
     return forest.first_child(forest.parent(e));
 }
 

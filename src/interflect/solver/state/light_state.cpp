@@ -30,14 +30,14 @@ std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
 RgbD emitted_power(const RunInputs& inputs, const ElementForest& forest) {
     const auto of_patches = [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);
-        for (auto patch = static_cast<std::uint32_t>(begin); patch < end; ++patch)
+        for (PatchIndex patch(begin); patch < end; ++patch)
             sum += RgbD(inputs.materials.exitance(patch)) * static_cast<double>(forest.area(patch));
         return sum;
     };
     return parallel_sum(forest.patch_count(), elements_per_task, RgbD(0), of_patches) + inputs.emission.total_power();
 }
 
-V3f centre_of(const ElementForest& forest, std::uint32_t element) {
+V3f centre_of(const ElementForest& forest, ElementIndex element) {
     const PatchGeometry& geometry = forest.geometry(forest.patch(element));
     return geometry.point(forest.cell(element).centre(geometry.is_triangle()));
 }
@@ -81,14 +81,14 @@ bool refines_by_variance(const SolveOptions& o) {
            o.refinement.criterion != RefinementCriterion::power;
 }
 
-float min_area(const RunInputs& inputs, const LightState& light, std::uint32_t element) {
-    const std::uint32_t patch = light.forest->patch(element);
+float min_area(const RunInputs& inputs, const LightState& light, ElementIndex element) {
+    const PatchIndex patch = light.forest->patch(element);
     const std::vector<float>& view_importance = light.solution.view_importance;
     const bool is_seen = !view_importance.empty() && view_importance[patch] > 0;
     return inputs.floor.min_area(centre_of(*light.forest, element), light.forest->geometry(patch).normal(), is_seen);
 }
 
-float pixel_area(const RunInputs& inputs, const LightState& light, std::uint32_t element) {
+float pixel_area(const RunInputs& inputs, const LightState& light, ElementIndex element) {
     const V3f normal = light.forest->geometry(light.forest->patch(element)).normal();
     return inputs.floor.pixel_area(centre_of(*light.forest, element), normal);
 }

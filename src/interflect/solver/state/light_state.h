@@ -43,7 +43,7 @@ RgbD radiated_power(const RunInputs& inputs, const LightState& light);
 bool refines_by_variance(const SolveOptions& options);
 
 /// Evaluates ElementFloor [m^2].
-float min_area(const RunInputs& inputs, const LightState& light, std::uint32_t element);
-float pixel_area(const RunInputs& inputs, const LightState& light, std::uint32_t element);
+float min_area(const RunInputs& inputs, const LightState& light, ElementIndex element);
+float pixel_area(const RunInputs& inputs, const LightState& light, ElementIndex element);
 
 }  // namespace interflect::detail

@@ -88,7 +88,7 @@ void SolverState::archive(StateArchive& archive) {
     std::vector<ReportNumbers> reports;
     for (const IterationReport& r : light.solution.iterations) reports.push_back(numbers_of(r));
     reports = archive.by_value(reports_name, std::move(reports));
-    const std::vector<std::uint32_t> parents = archive.by_value("subdivided", light.forest->subdivided());
+    const std::vector<ElementIndex> parents = archive.by_value("subdivided", light.forest->subdivided());
     archive.amounts("seconds", work.earlier_seconds);
     archive("irradiance", light.solution.irradiance);
     archive_groups(archive, "groups", light.solution.groups);

@@ -13,11 +13,11 @@ namespace {
 /// Contributions by final index of the element.
 class RenumberedSums {
   public:
-    RenumberedSums(ContributionSums& sums, std::uint32_t old_size, std::vector<std::uint32_t> old_numbers)
+    RenumberedSums(ContributionSums& sums, std::uint32_t old_size, std::vector<ElementIndex> old_numbers)
         : sums_(sums), old_size_(old_size), old_numbers_(std::move(old_numbers)) {}
 
-    Contribution take(std::uint32_t e) { return sums_.take(number(e)); }
-    std::array<std::int64_t, 3> take(std::uint32_t e, std::size_t group) { return sums_.take(number(e), group); }
+    Contribution take(ElementIndex e) { return sums_.take(number(e)); }
+    std::array<std::int64_t, 3> take(ElementIndex e, std::size_t group) { return sums_.take(number(e), group); }
     std::size_t terms() const { return sums_.terms(); }
     void read(std::size_t e, std::span<std::int64_t> terms) const { sums_.read(number(e), terms); }
     void take(std::size_t e, std::span<std::int64_t> terms) {
@@ -25,7 +25,7 @@ class RenumberedSums {
         sums_.clear_one(number(e));
     }
     void add(std::size_t e, std::span<const std::int64_t> terms) { sums_.add(number(e), terms); }
-    void move(std::uint32_t from, std::uint32_t to) {
+    void move(ElementIndex from, ElementIndex to) {
         sums_.add(number(to), take(from));
         for (std::size_t g = 0; g < sums_.groups(); ++g) sums_.add(number(to), g, take(from, g));
     }
@@ -38,13 +38,13 @@ class RenumberedSums {
 
     ContributionSums& sums_;
     std::uint32_t old_size_;
-    std::vector<std::uint32_t> old_numbers_;
+    std::vector<ElementIndex> old_numbers_;
 };
 
 void drop_excess(ElementForest& forest, RenumberedSums& sums, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
-        const std::uint32_t first = forest.size() - 4, parent = forest.drop_last_siblings();
-        for (std::uint32_t e = first; e < first + 4; ++e) sums.move(e, parent);
+        const ElementIndex first(forest.size() - 4), parent = forest.drop_last_siblings();
+        for (ElementIndex e = first; e < first + 4; ++e) sums.move(e, parent);
     }
 }
 
@@ -70,7 +70,7 @@ void blend(const ElementForest& forest, const TransportStep& step, const RayAllo
         for (std::size_t block = begin; block < end; ++block)
             allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
                 if (s >= elements) return false;
-                const auto leaf = static_cast<std::uint32_t>(s);
+                const ElementIndex leaf(s);
                 const auto left = static_cast<double>(next - first);
                 const double arrived = step.importance[leaf] * forest.area(leaf) * rays_per_importance;
                 received[leaf] = static_cast<float>((arrived * received[leaf] + found.sum(leaf)) / (arrived + left));
@@ -86,7 +86,7 @@ void convert(const ElementForest& forest, const TransportStep& step, const Contr
     if (step.carries_importance()) received.importance.resize(forest.size());
     received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));
     parallel_for_ranges(forest.size(), at_once, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+        for (ElementIndex e(begin); e < end; ++e) {
             const auto [red, green, blue, square, importance] = sums.take(e);
             const float area = forest.area(e);
             if (step.carries_power()) {

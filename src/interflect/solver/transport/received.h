@@ -43,9 +43,9 @@ Received nothing_received(const TransportStep& step, std::size_t elements);
 
 /// Variance of area-weighted means of independent elements.
 inline void pull_variance(const ElementForest& forest, std::vector<float>& variance) {
-    forest.for_siblings_from_leaves([&](std::uint32_t first) {
+    forest.for_siblings_from_leaves([&](ElementIndex first) {
         double sum = 0, area = 0;  // squared areas exceed the range of a float
-        for (std::uint32_t e = first; e < first + 4; ++e) {
+        for (ElementIndex e = first; e < first + 4; ++e) {
             const double part = forest.area(e);
             sum += variance[e] * part * part;
             area += part;

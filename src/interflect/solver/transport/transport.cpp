@@ -84,7 +84,7 @@ std::optional<FoundImportance> make_found_importance(const TransportStep& step, 
     std::vector<double> largest((forest.size() + elements_per_task - 1) / elements_per_task, 0.0);
     parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         double& most = largest[begin / elements_per_task];
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
+        for (ElementIndex e(begin); e < end; ++e)
             most = std::max<double>(most, materials.mean_reflectance(forest.patch(e), e) * step.importance[e]);
     });
     const double max_hits_per_ray = materials.has_panes() ? Panes::max_consecutive_panes + 1.0 : 1;
@@ -171,16 +171,17 @@ void for_batches_of_rank(std::size_t rays, const CommonStop& stop, const Body& b
 /// Makes the elements from `old_size` on that other ranks have made.
 void make_elements_of_ranks(Ranks& ranks, ElementForest& forest, std::uint32_t old_size) {
     struct Parent {
-        std::uint32_t patch, path;
+        PatchIndex patch;
+        std::uint32_t path;
     };
     std::vector<Parent> divided;
-    for (std::uint32_t e = old_size; e < forest.size(); e += 4)
+    for (ElementIndex e(old_size); e < forest.size(); e += 4)
         divided.push_back({forest.patch(e), forest.path(forest.parent(e))});
     divided = gather_over_ranks<Parent>(ranks, divided);
     // Parents have shorter, hence smaller paths.
     std::ranges::sort(divided, {}, [](const Parent& p) { return std::pair(p.path, p.patch); });
     for (const Parent& p : divided) {
-        const std::uint32_t element = forest.at_path(p.patch, p.path);
+        const ElementIndex element = forest.at_path(p.patch, p.path);
         if (element != none && forest.is_leaf(element)) forest.subdivide(element);
     }
 }

@@ -31,7 +31,7 @@ Walks::Walks(const Materials& materials, const ElementForest& forest, const RayC
 
 void Walks::add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const {
     const Parameters at = forest_.geometry(hit.patch).parameters_of(ray.origin + hit.distance * ray.direction);
-    const std::uint32_t leaf = forest_.leaf_at(hit.patch, at, elements_);
+    const ElementIndex leaf = forest_.leaf_at(hit.patch, at, elements_);
     walkers.received.push_back({leaf, hit.patch, at, power * RgbD(transmittance), channel_sum(power)});
 }
 

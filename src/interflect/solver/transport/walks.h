@@ -15,7 +15,8 @@ namespace interflect::detail {
 
 /// Power to be reflected by a leaf.
 struct ReflectedPower {
-    std::uint32_t leaf, patch;
+    ElementIndex leaf;
+    PatchIndex patch;
     Parameters at;  ///< Where the leaf received it.
     RgbD power;     ///< [lm or W]
     double of_ray;  ///< Power of its ray before any pane, all channels.

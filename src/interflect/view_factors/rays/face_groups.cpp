@@ -9,7 +9,7 @@ namespace interflect {
 
 namespace {
 
-bool belongs(const Scene& scene, std::uint32_t patch, FaceSides sides) {
+bool belongs(const Scene& scene, PatchIndex patch, FaceSides sides) {
     const std::uint32_t other = scene.patches[patch].other_side;
     if (sides == FaceSides::both || other == none) return true;
     return (patch < other) == (sides == FaceSides::front);
@@ -21,7 +21,7 @@ std::vector<FaceGroup> collect(const Scene& scene, FaceSides sides, const std::v
                                const GroupOf& group_of) {
     std::vector<FaceGroup> groups(names.size());
     for (std::size_t g = 0; g < names.size(); ++g) groups[g].name = names[g];
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p)
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
         if (const std::size_t g = group_of(scene.patches[p]); g < groups.size() && belongs(scene, p, sides))
             groups[g].patches.push_back(p);
     return groups;
@@ -53,7 +53,7 @@ Scene with_opaque_backs(const Scene& scene) {
         if (patch.surface != none) surface = std::max(surface, patch.surface + 1);
     for (const Patch& patch : scene.patches) {
         if (patch.other_side != none) continue;
-        Patch back{patch.vertices, black, none, 0, surface};
+        Patch back{patch.vertices, black, no_patch, 0, surface};
         std::reverse(back.vertices.begin() + 1, back.vertices.begin() + back.vertex_count());
         result.patches.push_back(back);
     }
@@ -62,7 +62,7 @@ Scene with_opaque_backs(const Scene& scene) {
 
 std::vector<FaceGroup> facet_groups(const Scene& scene, FaceSides sides) {
     std::vector<FaceGroup> groups;
-    for (std::uint32_t p = 0; p < scene.patches.size(); ++p) {
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const std::string& object = scene.objects[scene.patches[p].object];
         const bool has_name = !object.empty() || !scene.materials[scene.patches[p].material].name.empty();
         if (!has_name || !belongs(scene, p, sides)) continue;

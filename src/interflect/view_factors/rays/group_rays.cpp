@@ -26,7 +26,7 @@ GroupRays::GroupRays(const Scene& scene, const RayCaster& ray_caster, const Face
     : ray_caster_(ray_caster) {
     double area_with_covered = 0;
     sources_.reserve(group.patches.size());
-    for (const std::uint32_t p : group.patches) {
+    for (const PatchIndex p : group.patches) {
         const double share = ray_caster.uncovered_share(p);
         if (share == 0) continue;
         const double area = exact_area(scene, scene.patches[p]);

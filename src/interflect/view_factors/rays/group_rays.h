@@ -32,7 +32,7 @@ class GroupRays {
   private:
     struct Source {
         PatchGeometry geometry;
-        std::uint32_t patch;
+        PatchIndex patch;
         float offset;            // of the rays' origins above the patch [m]
         double area_up_to_here;  // with covered parts [m^2]
     };

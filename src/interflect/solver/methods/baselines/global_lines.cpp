@@ -48,7 +48,7 @@ struct LineDomain {
 
 /// Patch that faces a line, and the patch behind, if any.
 struct LineSegment {
-    std::uint32_t front, back;
+    PatchIndex front, back;
     bool is_mutual;  ///< Whether `back` also sees `front`: false through the back of a one-sided face.
 };
 
@@ -102,7 +102,7 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
         bundle.hits[kept].distance = distance + bundle.slack[i];
         bundle.slack[kept] = offsets_apart * ray_caster.ray_offset(patch) / std::abs(geometry.normal().dot(direction));
         bundle.crossed[kept] = patch;
-        bundle.segments.push_back({patch, none, true});
+        bundle.segments.push_back({patch, no_patch, true});
     }
     bundle.lines.resize(bundle.segments.size());
     bundle.reversed_hits.resize(bundle.segments.size());
@@ -121,7 +121,7 @@ class LineSums {
     LineSums(const ElementForest& forest, const Radiosity& light, double power_per_radiosity, std::int64_t lines)
         : power_per_radiosity_(power_per_radiosity), power_(0), square_(0) {
         double brightest = 0;
-        for (std::uint32_t i = 0; i < forest.patch_count(); ++i) {
+        for (PatchIndex i{0}; i < forest.patch_count(); ++i) {
             radiosity_.push_back(light.of(forest, i));
             brightest = std::max(brightest, static_cast<double>(largest_channel(radiosity_[i])));
         }
@@ -149,7 +149,7 @@ class LineSums {
 
     Received received(const ElementForest& forest) const {
         Received r;
-        for (std::uint32_t i = 0; i < received_.size(); ++i) {
+        for (PatchIndex i{0}; i < received_.size(); ++i) {
             const double area = forest.area(i);
             const RgbD arrived = power_.to_colour(received_[i]);
             const RgbD lost = power_.to_colour(escaped_[i]);
@@ -189,7 +189,7 @@ class GlobalLines final : public Passes {
   public:
     explicit GlobalLines(const SolverState& state)
         : domain_(state.inputs.scene), panes_(state.inputs.scene, state.inputs.ray_caster) {
-        for (std::uint32_t i = 0; i < state.light.forest->patch_count(); ++i)
+        for (PatchIndex i{0}; i < state.light.forest->patch_count(); ++i)
             area_ += state.light.forest->area(i) * state.inputs.ray_caster.uncovered_share(i);
     }
 
@@ -209,7 +209,7 @@ class GlobalLines final : public Passes {
             bundle.lines.resize(end - begin);
             make_lines(domain_, state.light.options().experimental.points, key, begin, bundle);
             // A line crosses each flat patch at most once.
-            for (std::uint32_t i = 0; i < forest.patch_count() && !bundle.lines.empty(); ++i) {
+            for (PatchIndex i{0}; i < forest.patch_count() && !bundle.lines.empty(); ++i) {
                 if (is_cut_short || state.work.stop.within_process().is_due()) {
                     is_cut_short = true;
                     return;
@@ -226,7 +226,7 @@ class GlobalLines final : public Passes {
         Received received = sums.received(forest);
         state.rays.escaped += received.escaped_rays;
         state.sampling.streams.used.resize(forest.size(), 0);
-        for (std::uint32_t i = 0; i < forest.size(); ++i)
+        for (ElementIndex i{0}; i < forest.size(); ++i)
             state.sampling.streams.used[i] += static_cast<std::uint64_t>(sums.started()[i]);
         return received;
     }

@@ -43,8 +43,8 @@ struct Place {
 };
 
 struct KeptRay {
-    std::uint32_t source;           // leaf, or luminaire part
-    std::uint32_t receiver = none;  // leaf, or `none` if escaped
+    std::uint32_t source;   // leaf, or luminaire part
+    ElementIndex receiver;  // leaf, or no_element if the ray escaped
     Place start, end;
 };
 
@@ -92,7 +92,7 @@ class PayloadUnits {
     FixedPoint remainder_;
 };
 
-std::uint32_t leaf_within(const ElementForest& forest, std::uint32_t e, Place place) {
+ElementIndex leaf_within(const ElementForest& forest, ElementIndex e, Place place) {
     return forest.is_leaf(e) ? e : forest.leaf_below(e, forest.cell(e), place.parameters());
 }
 
@@ -251,7 +251,7 @@ void KeptRays::follow_forest(const ElementForest& forest) {
     if (forest.size() == elements_) return;
     const Quotas of_parts(quotas_.begin() + elements_, quotas_.end());
     quotas_.resize(elements_);
-    for (std::uint32_t e = elements_; e < forest.size(); ++e)
+    for (ElementIndex e(elements_); e < forest.size(); ++e)
         quotas_.push_back(quotas_[forest.parent(e)] * forest.area(e) / forest.area(forest.parent(e)));
     quotas_.insert(quotas_.end(), of_parts.begin(), of_parts.end());
     inherit(forest, elements_, reflected_);
@@ -259,7 +259,7 @@ void KeptRays::follow_forest(const ElementForest& forest) {
     parallel_for_ranges(set_.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             KeptRay& ray = set_.rays[i];
-            if (!set_.is_from_part(i)) ray.source = leaf_within(forest, ray.source, ray.start);
+            if (!set_.is_from_part(i)) ray.source = leaf_within(forest, ElementIndex(ray.source), ray.start);
             if (ray.receiver != none) ray.receiver = leaf_within(forest, ray.receiver, ray.end);
         }
     });
@@ -299,7 +299,7 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
                 const std::uint8_t kind = is_part ? RaySet::from_part : RaySet::from_leaf;
                 const std::uint32_t source = is_part ? of_source.source - forest.size() : of_source.source;
                 for (std::uint32_t i = of_source.begin; i < of_source.end; ++i) {
-                    const KeptRay ray{source, none, is_part ? Place() : Place(batch.origins[i]), {}};
+                    const KeptRay ray{source, no_element, is_part ? Place() : Place(batch.origins[i]), {}};
                     set_.rays[merged_ + begin + i] = kept(hits[i], ray, batch.rays[i]);
                     set_.kind[merged_ + begin + i] = kind;
                     for (; next != hits_behind.end() && next->ray == i; ++next)
@@ -328,9 +328,10 @@ Estimate KeptRays::received(SolverState& state, Range rays, const Quotas& quotas
     std::vector<RgbD> payload(quotas.size(), RgbD(0));  // by source
     PayloadTotals totals;
     for (std::uint32_t s = 0; s < quotas.size(); ++s) {
-        const bool is_leaf = s < forest.size() && forest.is_leaf(s);
+        const ElementIndex leaf(s);
+        const bool is_leaf = s < forest.size() && forest.is_leaf(leaf);
         if (!(quotas[s] > 0) || (s < forest.size() && !is_leaf)) continue;
-        const RgbD power = is_leaf ? RgbD(light.of(forest, s)) * static_cast<double>(forest.area(s))
+        const RgbD power = is_leaf ? RgbD(light.of(forest, leaf)) * static_cast<double>(forest.area(leaf))
                                    : state.inputs.emission.power(s - forest.size());
         payload[s] = power / quotas[s];
         totals.power += static_cast<double>(count[s]) * payload[s];
@@ -393,7 +394,7 @@ Estimate KeptRays::collect(const LightState& light, SamplingState& sampling, con
     estimate.irradiance.resize(forest.size());
     estimate.variance.resize(forest.size());
     parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e) {
+        for (ElementIndex e(begin); e < end; ++e) {
             const Contribution sum = sampling.contributions.take(e);
             const float area = forest.area(e);
             estimate.irradiance[e] = Rgb(units.power(sum)) / area;

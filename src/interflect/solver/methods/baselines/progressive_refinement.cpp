@@ -83,7 +83,7 @@ struct PowerSeries {
 bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
     const ElementForest& forest = *state.light.forest;
     double unshot = 0;
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i)
+    for (PatchIndex i{0}; i < forest.patch_count(); ++i)
         unshot += static_cast<double>(state.inputs.materials.mean_reflectance(i) * series.unshot[i]) * forest.area(i);
     if (!(unshot > 0)) return false;
     if (series.budget.shot == 0) series.first = unshot;
@@ -124,8 +124,8 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
         beta * ratio(power, series.first_power) + (1 - beta) * ratio(weighted_power, series.first_weighted_power);
     std::vector<float> chosen = step.q;
     if (series.emits)
-        for (std::uint32_t i = 0; i < state.light.forest->size(); ++i)
-            chosen[i] = channel_sum(state.inputs.materials.exitance(i)) > 0 ? chosen[i] : 0;
+        for (ElementIndex e{0}; e < state.light.forest->size(); ++e)
+            chosen[e] = channel_sum(state.inputs.materials.exitance(state.light.forest->patch(e))) > 0 ? chosen[e] : 0;
     else
         choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);

@@ -41,14 +41,14 @@ void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::in
         double lacks = 0, lacking = 0;  // rays, with and without the surplus of other leaves
     };
     std::vector<Balance> patches(forest.patch_count());
-    const auto lacks = [&](std::uint32_t e) { return static_cast<double>(all) * plan.q[e] - shot_[e]; };
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    const auto lacks = [&](ElementIndex e) { return static_cast<double>(all) * plan.q[e] - shot_[e]; };
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         if (!forest.is_leaf(e)) continue;
         patches[forest.patch(e)].lacks += lacks(e);
         patches[forest.patch(e)].lacking += std::max(0.0, lacks(e));
     }
     double lacking = 0;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         const Balance& patch = patches[forest.patch(e)];
         const bool shoots = forest.is_leaf(e) && patch.lacks > 0;
         plan.q[e] = shoots ? static_cast<float>(std::max(0.0, lacks(e)) * (patch.lacks / patch.lacking)) : 0.0f;
@@ -84,12 +84,12 @@ Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iterati
     const Received received = run_step(state, std::move(step));
     total_ += rays;
     state.light.solution.non_finite += power.non_finite_leaves;
-    for (std::uint32_t e = 0; e < iteration.plan.old_elements; ++e)
+    for (ElementIndex e{0}; e < iteration.plan.old_elements; ++e)
         shot_[e] += static_cast<double>(state.sampling.streams.used[e] - used_before[e]);
     for (std::size_t i = 0; i < shot_by_parts_.size(); ++i)
         shot_by_parts_[i] += static_cast<double>(state.sampling.streams.used_by_parts[i] - used_by_parts_before[i]);
     shot_.resize(forest.size());
-    for (std::uint32_t e = iteration.plan.old_elements; e < forest.size(); ++e)
+    for (ElementIndex e(iteration.plan.old_elements); e < forest.size(); ++e)
         shot_[e] = shot_[forest.parent(e)] * forest.area(e) / forest.area(forest.parent(e));
     inherit(forest, iteration.plan.old_elements, received_);
     inherit(forest, iteration.plan.old_elements, received_groups_);

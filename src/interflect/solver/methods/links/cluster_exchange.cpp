@@ -62,12 +62,12 @@ void choose(std::span<const ClusterMember> members, const auto& weight, double s
 
 }  // namespace
 
-ClusterExchange::End ClusterExchange::end(std::uint32_t end) const {
+ClusterExchange::End ClusterExchange::end(ElementIndex end) const {
     if (is_cluster(end)) return {tree_.cluster(end).sphere, {}, tree_.members(end)};
     return {sphere_around(forest_, end), member_of(forest_, end), {}};
 }
 
-Sphere ClusterExchange::sphere(std::uint32_t end) const {
+Sphere ClusterExchange::sphere(ElementIndex end) const {
     return is_cluster(end) ? tree_.cluster(end).sphere : sphere_around(forest_, end);
 }
 
@@ -75,7 +75,7 @@ bool ClusterExchange::is_valid(const ElementPair& pair) const {
     const Sphere a = sphere(pair.a), b = sphere(pair.b);
     if (are_distant(a, b)) return true;
     if (is_cluster(pair.a) == is_cluster(pair.b)) return false;
-    const std::uint32_t element = is_cluster(pair.a) ? pair.b : pair.a, cluster = is_cluster(pair.a) ? pair.a : pair.b;
+    const ElementIndex element = is_cluster(pair.a) ? pair.b : pair.a, cluster = is_cluster(pair.a) ? pair.a : pair.b;
     const Sphere& around_element = is_cluster(pair.a) ? b : a;
     const PatchTree::Cluster& patches = tree_.cluster(cluster);
     const V3f line = patches.sphere.centre - around_element.centre;
@@ -123,7 +123,7 @@ Exchange ClusterExchange::estimate(const ElementPair& pair, Effort effort, std::
     if (!(exchange.area > 0)) return Exchange{};
 
     const std::size_t lines = static_cast<std::size_t>(effort) * static_cast<std::size_t>(effort);
-    const auto place_of = [&](std::uint32_t end) {
+    const auto place_of = [&](ElementIndex end) {
         return is_cluster(end) ? std::uint64_t{end} << 32 : place(forest_, end);
     };
     PointBlock random;
@@ -132,7 +132,7 @@ Exchange ClusterExchange::estimate(const ElementPair& pair, Effort effort, std::
     choose(factors.a.members(), factors.weight_a, sum_a, std::span(random.coordinate[0]).first(lines), ends_a);
     choose(factors.b.members(), factors.weight_b, sum_b, std::span(random.coordinate[1]).first(lines), ends_b);
     const auto point_of = [&](const Choice& choice, float second) {
-        const std::uint32_t e = choice.member->element;
+        const ElementIndex e = choice.member->element;
         const PatchGeometry& geometry = forest_.geometry(forest_.patch(e));
         const Cell cell = forest_.cell(e);
         return geometry.point(geometry.uniform_parameters(choice.remainder, second, {cell.u, cell.v}, cell.size));

@@ -23,7 +23,7 @@ class ClusterExchange {
                     std::uint64_t seed)
         : forest_(forest), tree_(tree), estimator_(estimator), seed_(seed) {}
 
-    Sphere sphere(std::uint32_t end) const;
+    Sphere sphere(ElementIndex end) const;
     /// Whether the approximation holds for all members, without occlusion.
     bool is_valid(const ElementPair& pair) const;
 
@@ -69,7 +69,7 @@ class ClusterExchange {
         Factors(const ClusterExchange& exchange, const ElementPair& pair);
     };
 
-    End end(std::uint32_t end) const;
+    End end(ElementIndex end) const;
 
     const ElementForest& forest_;
     const PatchTree& tree_;

@@ -42,7 +42,7 @@ struct Quadrature {
     std::array<double, capacity> weight;  // sums to 1
     std::size_t count = 0;
 
-    Quadrature(const ElementForest& forest, std::uint32_t e, Effort effort) {
+    Quadrature(const ElementForest& forest, ElementIndex e, Effort effort) {
         const PatchGeometry& geometry = forest.geometry(forest.patch(e));
         const Cell cell = forest.cell(e);
         const auto side = static_cast<std::size_t>(effort);
@@ -68,7 +68,7 @@ struct FormFactors {
     double spread = 0;  // largest minus smallest, extrapolated to the edges
 };
 
-FormFactors form_factors(const ElementForest& forest, const Quadrature& points, std::uint32_t from, std::uint32_t to) {
+FormFactors form_factors(const ElementForest& forest, const Quadrature& points, ElementIndex from, ElementIndex to) {
     const V3d normal(forest.geometry(forest.patch(from)).normal());
     const ConvexPolygon polygon(forest, to);
     FormFactors result;
@@ -90,7 +90,7 @@ struct LinesOfSight {
     std::int64_t& rays;
 
     /// Samples visibility, weighted by unoccluded light.
-    void sample(std::uint32_t small, std::uint32_t large, const Quadrature& points, Exchange& exchange) {
+    void sample(ElementIndex small, ElementIndex large, const Quadrature& points, Exchange& exchange) {
         const PatchGeometry& geometry = forest.geometry(forest.patch(large));
         const V3f normal_x = forest.geometry(forest.patch(small)).normal(), normal_y = geometry.normal();
         const Cell cell = forest.cell(large);
@@ -123,7 +123,7 @@ struct LinesOfSight {
 
 }  // namespace
 
-std::uint64_t place(const ElementForest& forest, std::uint32_t e) {
+std::uint64_t place(const ElementForest& forest, ElementIndex e) {
     return std::uint64_t{forest.patch(e)} << 32 | forest.path(e);
 }
 
@@ -141,7 +141,7 @@ double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V
     return std::max(0.0, sum / (2 * std::numbers::pi));
 }
 
-ConvexPolygon::ConvexPolygon(const ElementForest& forest, std::uint32_t e)
+ConvexPolygon::ConvexPolygon(const ElementForest& forest, ElementIndex e)
     : normal_(forest.geometry(forest.patch(e)).normal()) {
     const PatchGeometry& geometry = forest.geometry(forest.patch(e));
     const Cell cell = forest.cell(e);
@@ -156,7 +156,7 @@ double ConvexPolygon::form_factor_from(const V3d& x, const V3d& normal) const {
 }
 
 bool ExchangeEstimator::face_each_other(const ElementPair& pair) const {
-    const auto reaches_above = [&](std::uint32_t e, std::uint32_t ground) {
+    const auto reaches_above = [&](ElementIndex e, ElementIndex ground) {
         const V3d normal(forest_.geometry(forest_.patch(ground)).normal());
         const double height = normal.dot(ConvexPolygon(forest_, ground).corners()[0]) +
                               static_cast<double>(ray_caster_.ray_offset(forest_.patch(ground)));
@@ -193,7 +193,7 @@ Rgb ExchangeEstimator::transmittance(const PointOfElement& x, const PointOfEleme
 }
 
 Rgb ExchangeEstimator::one_way(const PointOfElement& from, const PointOfElement& to, std::int64_t& rays) const {
-    const std::uint32_t source = forest_.patch(from.element), target = forest_.patch(to.element);
+    const PatchIndex source = forest_.patch(from.element), target = forest_.patch(to.element);
     const V3f origin = from.position + forest_.geometry(source).normal() * ray_caster_.ray_offset(source);
     const Ray ray{origin, (to.position - origin).normalized()};
     Hit hit;

@@ -32,7 +32,7 @@ inline Rgb larger(const Rgb& x, const Rgb& y) { return {std::max(x.x, y.x), std:
 class ConvexPolygon {
   public:
     ConvexPolygon() = default;
-    ConvexPolygon(const ElementForest& forest, std::uint32_t element);
+    ConvexPolygon(const ElementForest& forest, ElementIndex element);
 
     void add(const V3d& corner) { corner_[count_++] = corner; }
     std::span<const V3d> corners() const { return {corner_.data(), count_}; }
@@ -48,12 +48,12 @@ class ConvexPolygon {
 };
 
 struct PointOfElement {
-    std::uint32_t element;
+    ElementIndex element;
     V3f position;
 };
 
 /// Identifies an element among all that the forest may ever have.
-std::uint64_t place(const ElementForest& forest, std::uint32_t element);
+std::uint64_t place(const ElementForest& forest, ElementIndex element);
 
 struct Exchange {
     /// Unoccluded A_a F_ab = A_b F_ba [m^2].

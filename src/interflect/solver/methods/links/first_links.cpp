@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t patches_per_task = 8;
 
-bool emits(const RunInputs& inputs, std::uint32_t patch) { return channel_sum(inputs.materials.exitance(patch)) > 0; }
+bool emits(const RunInputs& inputs, PatchIndex patch) { return channel_sum(inputs.materials.exitance(patch)) > 0; }
 
 /// Upper bound for surfaces inside two spheres [m^2].
 double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double area_b) {
@@ -30,20 +30,20 @@ class PatchPairs {
           forest_(*light.forest),
           epsilon_(light.options().experimental.epsilon),
           estimator_(estimator) {
-        for (std::uint32_t i = 0; i < forest_.patch_count(); ++i) {
+        for (PatchIndex i{0}; i < forest_.patch_count(); ++i) {
             spheres_.push_back(sphere_around(forest_, i));
             surface_ += forest_.area(i);
         }
     }
 
-    void add(std::uint32_t i, std::uint32_t j, std::vector<LinkCandidate>& candidates) const {
+    void add(PatchIndex i, PatchIndex j, std::vector<LinkCandidate>& candidates) const {
         if (estimator_.face_each_other({i, j}))
             candidates.push_back({{i, j}, is_weak(i, j) ? Effort::quick : Effort::thorough});
     }
 
   private:
     /// A reflector of average brightness sends at most the threshold over this exchange.
-    bool is_weak(std::uint32_t i, std::uint32_t j) const {
+    bool is_weak(PatchIndex i, PatchIndex j) const {
         return !emits(inputs_, i) && !emits(inputs_, j) &&
                largest_exchange(spheres_[i], spheres_[j], forest_.area(i), forest_.area(j)) < epsilon_ * surface_;
     }
@@ -58,22 +58,23 @@ class PatchPairs {
 
 /// Divides pairs until the exchange of clusters is valid.
 struct PairDivision {
+    const ElementForest& forest;
     const PatchTree& tree;
     const ClusterExchange& exchange;
     const PatchPairs& of_patches;
     std::size_t limit;
     std::vector<LinkCandidate> candidates = {};
 
-    void add(std::uint32_t a, std::uint32_t b) {
+    void add(ElementIndex a, ElementIndex b) {
         if (candidates.size() > limit) return;
-        if (!is_cluster(a) && !is_cluster(b)) return of_patches.add(a, b, candidates);
+        if (!is_cluster(a) && !is_cluster(b)) return of_patches.add(forest.patch(a), forest.patch(b), candidates);
         if (exchange.is_valid({a, b})) return candidates.push_back({{a, b}, Effort::quick});
         const bool divides_a =
             is_cluster(a) && (!is_cluster(b) || tree.cluster(a).sphere.radius >= tree.cluster(b).sphere.radius);
-        for (const std::uint32_t child : tree.cluster(divides_a ? a : b).children) add(child, divides_a ? b : a);
+        for (const ElementIndex child : tree.cluster(divides_a ? a : b).children) add(child, divides_a ? b : a);
     }
 
-    void add_within(std::uint32_t end) {
+    void add_within(ElementIndex end) {
         if (!is_cluster(end)) return;
         const auto& [first, second] = tree.cluster(end).children;
         add_within(first);
@@ -84,10 +85,10 @@ struct PairDivision {
 
 }  // namespace
 
-std::vector<std::uint32_t> patches_to_cluster(const RunInputs& inputs, const LightState& light) {
-    std::vector<std::uint32_t> patches;
+std::vector<PatchIndex> patches_to_cluster(const RunInputs& inputs, const LightState& light) {
+    std::vector<PatchIndex> patches;
     if (!light.options().experimental.clusters || light.forest->capacity() > first_cluster) return patches;
-    for (std::uint32_t p = 0; p < light.forest->patch_count(); ++p)
+    for (PatchIndex p{0}; p < light.forest->patch_count(); ++p)
         if (!emits(inputs, p)) patches.push_back(p);
     return patches;
 }
@@ -101,8 +102,7 @@ std::vector<LinkCandidate> pairs_of_patches(const SolverState& state, const Exch
     parallel_for_ranges(of_patch.size(), patches_per_task, state.work.stop.within_process(),
                         [&](std::size_t begin, std::size_t end) {
                             for (std::size_t i = begin; i < end && count <= limit; ++i) {
-                                for (auto b = static_cast<std::uint32_t>(i + 1); b < patches; ++b)
-                                    pairs.add(static_cast<std::uint32_t>(i), b, of_patch[i]);
+                                for (PatchIndex b(i + 1); b < patches; ++b) pairs.add(PatchIndex(i), b, of_patch[i]);
                                 count += of_patch[i].size();
                             }
                         });
@@ -117,13 +117,13 @@ std::vector<LinkCandidate> pairs_of_clusters(const RunInputs& inputs, const Ligh
                                              const ExchangeEstimator& estimator, const PatchTree& tree,
                                              const ClusterExchange& exchange, std::size_t limit) {
     const PatchPairs of_patches(inputs, light, estimator);
-    PairDivision division{tree, exchange, of_patches, limit};
+    PairDivision division{*light.forest, tree, exchange, of_patches, limit};
     const std::uint32_t patches = light.forest->patch_count();
-    for (std::uint32_t a = 0; a < patches && division.candidates.size() <= limit; ++a)
+    for (PatchIndex a{0}; a < patches && division.candidates.size() <= limit; ++a)
         if (emits(inputs, a))
-            for (std::uint32_t b = 0; b < patches; ++b)
+            for (PatchIndex b{0}; b < patches; ++b)
                 if (b != a && (b > a || !emits(inputs, b))) division.add(a, b);
-    division.add_within(first_cluster);
+    division.add_within(ElementIndex(first_cluster));
     return std::move(division.candidates);
 }
 

@@ -17,7 +17,7 @@ struct LinkCandidate {
 
 /// Returns the patches to group. Emitters are not grouped and keep one link to each patch, for accurate direct light.
 /// Empty without ExperimentalOptions::clusters.
-std::vector<std::uint32_t> patches_to_cluster(const RunInputs& inputs, const LightState& light);
+std::vector<PatchIndex> patches_to_cluster(const RunInputs& inputs, const LightState& light);
 
 /// Returns all pairs of patches that face each other; stops beyond `limit`.
 std::vector<LinkCandidate> pairs_of_patches(const SolverState& state, const ExchangeEstimator& estimator,

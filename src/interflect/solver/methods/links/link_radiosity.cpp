@@ -19,7 +19,7 @@ namespace interflect::detail {
 
 struct RefinementCandidate {
     std::size_t link;
-    std::uint32_t divided;
+    ElementIndex divided;
     double factor;  // error bound / threshold
 };
 
@@ -71,7 +71,7 @@ std::vector<T> gather(const ElementForest& forest, const ClusterExchange& cluste
         received[b] += leaving[a] * area;
     }
     gather_from_clusters(forest, clusters, links, leaving, area_of, received);
-    for (std::uint32_t e = 0; e < forest.size(); ++e) received[e] /= forest.area(e);
+    for (ElementIndex e{0}; e < forest.size(); ++e) received[e] /= forest.area(e);
     push(forest, received);
     pull(forest, received);
     return received;
@@ -82,7 +82,7 @@ std::vector<Rgb> present_radiosity(const RunInputs& inputs, LightState& light) {
     const Radiosity radiosity(inputs.materials, light.solution.irradiance);
     std::vector<Rgb> b;
     b.reserve(light.forest->size());
-    for (std::uint32_t e = 0; e < light.forest->size(); ++e) {
+    for (ElementIndex e{0}; e < light.forest->size(); ++e) {
         b.push_back(radiosity.of(*light.forest, e));
         light.solution.non_finite += radiosity.is_not_finite(*light.forest, e);
     }
@@ -167,7 +167,7 @@ RgbD LinkedElements::gather_light() {
         gather(forest_, clusters_, links_, std::vector<RgbD>(b.begin(), b.end()), &Link::area);
     RelativeChange change;
     RgbD escaped = integral(forest_, b);
-    for (std::uint32_t e = 0; e < forest_.size(); ++e) {
+    for (ElementIndex e{0}; e < forest_.size(); ++e) {
         Rgb& irradiance = state_.light.solution.irradiance[e];
         change.add(forest_.area(e), channel_sum(RgbD(irradiance)), channel_sum(received[e]));
         irradiance = Rgb(received[e]);
@@ -184,12 +184,12 @@ RgbD LinkedElements::gather_light() {
 void LinkedElements::gather_importance() {
     const std::vector<float> psi = total_importance(state_.light.solution);
     std::vector<double> reflected(psi.size());
-    for (std::uint32_t e = 0; e < forest_.size(); ++e)
+    for (ElementIndex e{0}; e < forest_.size(); ++e)
         reflected[e] = static_cast<double>(state_.inputs.materials.mean_reflectance(forest_.patch(e), e)) * psi[e];
     if (state_.inputs.materials.has_textures()) pull(forest_, reflected);
     const std::vector<double> received = gather(forest_, clusters_, links_, reflected, &Link::mean_area);
     RelativeChange change;
-    for (std::uint32_t e = 0; e < forest_.size(); ++e) {
+    for (ElementIndex e{0}; e < forest_.size(); ++e) {
         float& importance = state_.light.solution.indirect_importance[e];
         change.add(forest_.area(e), importance, received[e]);
         importance = static_cast<float>(received[e]);
@@ -204,14 +204,14 @@ template <class T>
 struct EndValues {
     std::vector<T> of_element, of_cluster;
 
-    const T& operator[](std::uint32_t end) const {
+    const T& operator[](ElementIndex end) const {
         return is_cluster(end) ? of_cluster[end - first_cluster] : of_element[end];
     }
 };
 
 template <class T>
 EndValues<T> mean_values(const ElementForest& forest, const PatchTree& tree, std::vector<T> of_element) {
-    const auto area = [&](std::uint32_t end) { return is_cluster(end) ? tree.cluster(end).area : forest.area(end); };
+    const auto area = [&](ElementIndex end) { return is_cluster(end) ? tree.cluster(end).area : forest.area(end); };
     std::vector<T> of_cluster = tree.pulled(of_element, [&](const PatchTree::Cluster& cluster, const T& x, const T& y) {
         const float area_x = area(cluster.children[0]), area_y = area(cluster.children[1]);
         return T((x * area_x + y * area_y) / (area_x + area_y));
@@ -224,7 +224,8 @@ struct RadiosityRange {
 
     RadiosityRange(const ElementForest& forest, const PatchTree& tree, const std::vector<Rgb>& b)
         : least{b, {}}, most{b, {}} {
-        for (std::uint32_t e = forest.size(); e-- > forest.patch_count();) {
+        for (std::uint32_t i = forest.size(); i-- > forest.patch_count();) {
+            const ElementIndex e(i);
             Rgb &low = least.of_element[forest.parent(e)], &high = most.of_element[forest.parent(e)];
             low = smaller(low, least[e]);
             high = larger(high, most[e]);
@@ -263,14 +264,14 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
         mean_values(forest_, tree_,
                     use == ImportanceUse::off ? std::vector<float>(forest_.size(), 1.0f) : total_importance(solution));
     std::vector<Rgb> of_element;
-    for (std::uint32_t e = 0; e < forest_.size(); ++e)
+    for (ElementIndex e{0}; e < forest_.size(); ++e)
         of_element.push_back(state_.inputs.materials.surface(forest_.patch(e), e).reflectance);
     const EndValues<Rgb> rho = mean_values(forest_, tree_, std::move(of_element));
     const double threshold = solution.options.experimental.epsilon * reference_power(solution) *
                              (use == ImportanceUse::off ? 1 : reference_importance(solution, psi.of_element));
     std::vector<RefinementCandidate> candidates;
     if (!(threshold > 0)) return candidates;
-    const auto weight = [&](std::uint32_t divided, std::uint32_t other) {
+    const auto weight = [&](ElementIndex divided, ElementIndex other) {
         const double as_receiver = largest_channel(rho[divided] * b[other]) * psi[divided];
         const double as_source =
             largest_channel(rho[other] * (range.most[divided] - range.least[divided])) * psi[other];
@@ -287,13 +288,13 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
 }
 
 /// Returns the end with the larger bound; of a cluster and another end, the larger one.
-std::uint32_t LinkedElements::divided_end(const ElementPair& ends, double over_a, double over_b) const {
+ElementIndex LinkedElements::divided_end(const ElementPair& ends, double over_a, double over_b) const {
     if (has_cluster(ends) && over_a > 0 && over_b > 0)
         return clusters_.sphere(ends.a).radius >= clusters_.sphere(ends.b).radius ? ends.a : ends.b;
     return over_a > over_b ? ends.a : ends.b;
 }
 
-bool LinkedElements::may_divide(std::uint32_t end) const {
+bool LinkedElements::may_divide(ElementIndex end) const {
     return is_cluster(end) || forest_.area(end) >= 4.0 * static_cast<double>(state_.inputs.floor.default_min_area());
 }
 
@@ -330,15 +331,15 @@ void LinkedElements::subdivide_links() {
     const std::uint32_t before = forest_.size();
     for (const RefinementCandidate& candidate : refined) {
         Link& link = links_[candidate.link];
-        const std::uint32_t divided = candidate.divided;
-        const std::uint32_t other = link.ends.a == divided ? link.ends.b : link.ends.a;
+        const ElementIndex divided = candidate.divided;
+        const ElementIndex other = link.ends.a == divided ? link.ends.b : link.ends.a;
         const bool is_occluded = link.exchange.transmittance == Rgb(0) || link.exchange.variation > 0;
         const Effort effort = is_occluded ? Effort::thorough : Effort::quick;
         if (is_cluster(divided)) {
-            for (const std::uint32_t child : tree_.cluster(divided).children)
+            for (const ElementIndex child : tree_.cluster(divided).children)
                 candidates_.push_back({{child, other}, effort});
         } else {
-            const std::uint32_t child =
+            const ElementIndex child =
                 forest_.is_leaf(divided) ? forest_.subdivide(divided) : forest_.first_child(divided);
             if (child == none) continue;
             for (std::uint32_t k = 0; k < 4; ++k) candidates_.push_back({{child + k, other}, effort});
@@ -387,7 +388,7 @@ void LinkedElements::change_views(SolverState& state) {
 
 bool LinkedElements::fits(const SolverState& state) const {
     const std::uint32_t elements = state.light.forest->size();
-    const auto exists = [&](std::uint32_t end) {
+    const auto exists = [&](ElementIndex end) {
         return is_cluster(end) ? end - first_cluster < tree_.clusters().size() : end < elements;
     };
     const auto joins_elements = [&](const auto& link) { return exists(link.ends.a) && exists(link.ends.b); };

@@ -69,8 +69,8 @@ class LinkedElements : public IterationMethod {
     void subdivide_links();
     void require_room_for(std::size_t more) const;
     std::vector<RefinementCandidate> refinement_candidates() const;
-    std::uint32_t divided_end(const ElementPair& ends, double over_a, double over_b) const;
-    bool may_divide(std::uint32_t end) const;
+    ElementIndex divided_end(const ElementPair& ends, double over_a, double over_b) const;
+    bool may_divide(ElementIndex end) const;
     void keep_affordable(std::vector<RefinementCandidate>& candidates) const;
     void describe_new_elements(std::uint32_t first);
 

@@ -43,13 +43,13 @@ PatchTree::Cluster cluster_of(const ElementForest& forest, std::span<const Clust
 
 }  // namespace
 
-ClusterMember member_of(const ElementForest& forest, std::uint32_t element) {
+ClusterMember member_of(const ElementForest& forest, ElementIndex element) {
     const PatchGeometry& geometry = forest.geometry(forest.patch(element));
     const V3f centre = geometry.point(forest.cell(element).centre(geometry.is_triangle()));
     return {centre, geometry.normal() * forest.area(element), element};
 }
 
-Sphere sphere_around(const ElementForest& forest, std::uint32_t element) {
+Sphere sphere_around(const ElementForest& forest, ElementIndex element) {
     const PatchGeometry& geometry = forest.geometry(forest.patch(element));
     const Cell cell = forest.cell(element);
     Sphere sphere{geometry.point(cell.centre(geometry.is_triangle())), 0};
@@ -63,8 +63,8 @@ Sphere sphere_around(const ElementForest& forest, std::uint32_t element) {
     return sphere;
 }
 
-PatchTree::PatchTree(const ElementForest& forest, const std::vector<std::uint32_t>& patches) {
-    for (const std::uint32_t patch : patches) members_.push_back(member_of(forest, patch));
+PatchTree::PatchTree(const ElementForest& forest, const std::vector<PatchIndex>& patches) {
+    for (const PatchIndex patch : patches) members_.push_back(member_of(forest, patch));
     if (members_.size() < 2) return;
     std::vector<std::span<ClusterMember>> ranges{members_};  // of the clusters
     for (std::size_t i = 0; i < ranges.size(); ++i) {
@@ -75,8 +75,8 @@ PatchTree::PatchTree(const ElementForest& forest, const std::vector<std::uint32_
         cluster.end_member = cluster.first_member + static_cast<std::uint32_t>(range.size());
         const std::array halves{range.first(range.size() / 2), range.subspan(range.size() / 2)};
         for (std::size_t k = 0; k < 2; ++k) {
-            cluster.children[k] = halves[k].size() == 1 ? halves[k].front().element
-                                                        : first_cluster + static_cast<std::uint32_t>(ranges.size());
+            cluster.children[k] =
+                halves[k].size() == 1 ? halves[k].front().element : ElementIndex(first_cluster + ranges.size());
             if (halves[k].size() > 1) ranges.push_back(halves[k]);
         }
         clusters_.push_back(cluster);

@@ -12,11 +12,11 @@ namespace interflect::detail {
 
 /// An end of a link is an element or, from this index on, a cluster of a PatchTree.
 inline constexpr std::uint32_t first_cluster = std::uint32_t{1} << 31;
-constexpr bool is_cluster(std::uint32_t end) { return end >= first_cluster; }
+constexpr bool is_cluster(ElementIndex end) { return end >= first_cluster; }
 
 /// Two ends of a link.
 struct ElementPair {
-    std::uint32_t a, b;
+    ElementIndex a, b;
 };
 
 constexpr bool has_cluster(const ElementPair& pair) { return is_cluster(pair.a) || is_cluster(pair.b); }
@@ -30,31 +30,31 @@ struct Sphere {
 struct ClusterMember {
     V3f centre;
     V3f area_vector;  ///< Unit normal times area [m^2].
-    std::uint32_t element;
+    ElementIndex element;
 };
 
-ClusterMember member_of(const ElementForest& forest, std::uint32_t element);
+ClusterMember member_of(const ElementForest& forest, ElementIndex element);
 /// Contains the element; the centre is the mean of its corners.
-Sphere sphere_around(const ElementForest& forest, std::uint32_t element);
+Sphere sphere_around(const ElementForest& forest, ElementIndex element);
 
 /// Binary tree of clusters: groups of at least two patches that are near each other, whatever they face.
 class PatchTree {
   public:
     struct Cluster {
         std::uint32_t first_member, end_member;
-        std::array<std::uint32_t, 2> children;  ///< Clusters or patches.
-        Sphere sphere;                          ///< Around the area-weighted mean of the patches.
-        float largest_radius;                   ///< Largest radius of a patch [m].
-        float area;                             ///< [m^2]
+        std::array<ElementIndex, 2> children;  ///< Clusters or patches.
+        Sphere sphere;                         ///< Around the area-weighted mean of the patches.
+        float largest_radius;                  ///< Largest radius of a patch [m].
+        float area;                            ///< [m^2]
     };
 
     PatchTree() = default;
-    PatchTree(const ElementForest& forest, const std::vector<std::uint32_t>& patches);
+    PatchTree(const ElementForest& forest, const std::vector<PatchIndex>& patches);
 
     /// Parents first; the first is the root. Empty for fewer than two patches.
     std::span<const Cluster> clusters() const { return clusters_; }
-    const Cluster& cluster(std::uint32_t end) const { return clusters_[end - first_cluster]; }
-    std::span<const ClusterMember> members(std::uint32_t end) const {
+    const Cluster& cluster(ElementIndex end) const { return clusters_[end - first_cluster]; }
+    std::span<const ClusterMember> members(ElementIndex end) const {
         return std::span(members_).subspan(cluster(end).first_member,
                                            cluster(end).end_member - cluster(end).first_member);
     }
@@ -63,7 +63,7 @@ class PatchTree {
     template <class T, class Combine>
     std::vector<T> pulled(const std::vector<T>& of_patch, const Combine& combine) const {
         std::vector<T> of_cluster(clusters_.size());
-        const auto value = [&](std::uint32_t end) {
+        const auto value = [&](ElementIndex end) {
             return is_cluster(end) ? of_cluster[end - first_cluster] : of_patch[end];
         };
         for (std::size_t i = clusters_.size(); i-- > 0;)

@@ -102,7 +102,7 @@ struct PathSums {
 /// Power about to leave a leaf or luminaire part.
 struct Particle {
     std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part.
-    std::uint32_t patch;   ///< Patch of the leaf; none for luminaires.
+    PatchIndex patch;      ///< Patch of the leaf; none for luminaires.
     Parameters at;         ///< Where the patch was hit, if WalkSource::starts_at_hits.
     Rgb power;
 };
@@ -175,7 +175,8 @@ class PathBatch {
     std::uint64_t number_of(std::uint32_t source) const {
         if (source >= elements_) return source - elements_ + forest_.patch_count();
         if (source < forest_.patch_count()) return source;
-        return static_cast<std::uint64_t>(forest_.path(source)) << 32 | forest_.patch(source);
+        const ElementIndex leaf(source);
+        return static_cast<std::uint64_t>(forest_.path(leaf)) << 32 | forest_.patch(leaf);
     }
 
     /// A path of source s carries W_s / (N q_s).
@@ -187,15 +188,16 @@ class PathBatch {
             const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
             const double share =
                 unit_power_ / payload_.density[s] / static_cast<double>(channel_sum(payload_.emitted[s]));
-            const std::uint32_t patch = s < elements_ ? forest_.patch(s) : none;
+            const PatchIndex patch = s < elements_ ? forest_.patch(ElementIndex(s)) : no_patch;
             const Particle particle{s, patch, {}, Rgb(RgbD(payload_.emitted[s]) * share)};
             std::fill_n(&w.particles[offset], count, particle);
             const std::uint64_t key = sub_key(key_, WalkPurpose::emission, number_of(s));
             const auto first_sample = static_cast<std::uint64_t>(from - first);
             const std::span<Ray> rays = std::span(w.rays).subspan(offset, count);
             if (s < elements_)
-                shoot_rays(forest_.geometry(patch), forest_.cell(s), ray_caster_.ray_offset(patch), first_points_, key,
-                           first_sample, w.points, rays, std::span(w.origins).subspan(offset, count));
+                shoot_rays(forest_.geometry(patch), forest_.cell(ElementIndex(s)), ray_caster_.ray_offset(patch),
+                           first_points_, key, first_sample, w.points, rays,
+                           std::span(w.origins).subspan(offset, count));
             else
                 emission_.shoot(s - elements_, first_points_, key, first_sample, w.points, rays);
         };
@@ -203,7 +205,7 @@ class PathBatch {
     }
 
     struct HitPlace {
-        std::uint32_t leaf;
+        ElementIndex leaf;
         Parameters at;
     };
     HitPlace hit_place(const Ray& ray, const Hit& hit) const {
@@ -269,7 +271,7 @@ class PathBatch {
             const Particle& p = w.particles[i];
             const PatchGeometry& geometry = forest_.geometry(p.patch);
             const float offset = ray_caster_.ray_offset(p.patch);
-            shoot_rays(geometry, forest_.cell(p.source), offset, PointSet::random, key, i, w.points,
+            shoot_rays(geometry, forest_.cell(ElementIndex(p.source)), offset, PointSet::random, key, i, w.points,
                        std::span(w.rays).subspan(i, 1), std::span(w.origins).subspan(i, 1));
             if (payload_.starts_at_hits) w.rays[i].origin = geometry.point(p.at) + geometry.normal() * offset;
         }

@@ -21,7 +21,7 @@ BatchResult follow_paths(SolverState& state, const WalkSource& payload, std::int
     state.rays.escaped += sums.escaped_rays;
     state.sampling.streams.used.resize(sums.started.size(), 0);
     BatchResult arrived;
-    for (std::uint32_t i = 0; i < sums.received.size(); ++i) {
+    for (ElementIndex i{0}; i < sums.received.size(); ++i) {
         arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / state.light.forest->area(i));
         state.sampling.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
     }
@@ -57,7 +57,7 @@ BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t ray
 WalkSource light_source(const RunInputs& inputs, const LightState& light) {
     const ElementForest& forest = *light.forest;
     WalkSource payload;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         const MeanSurface surface = inputs.materials.surface(forest.patch(e), e);
         payload.emitted.push_back(forest.is_leaf(e) ? surface.exitance * forest.area(e) : Rgb(0));
         payload.reflectance.push_back(surface.reflectance);

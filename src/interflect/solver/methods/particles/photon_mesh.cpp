@@ -53,7 +53,7 @@ class PhotonMesh final : public IterationMethod {
     }
 
   private:
-    bool has_quarters_to_divide(const SolverState& state, std::uint32_t e) const;
+    bool has_quarters_to_divide(const SolverState& state, ElementIndex e) const;
     double discarded_share(const ElementForest& forest) const;
 
     PathSeries current_, before_;
@@ -68,10 +68,10 @@ void PhotonMesh::prepare(SolverState& state) {
     before_ = current_;
     const ElementForest& forest = *state.light.forest;
     double total_area = 0;
-    for (std::uint32_t i = 0; i < forest.patch_count(); ++i) total_area += forest.area(i);
+    for (PatchIndex i{0}; i < forest.patch_count(); ++i) total_area += forest.area(i);
     for (const double least_area : {0.0, large_share * total_area}) {
         std::vector<std::uint8_t> splits(forest.size());
-        for (std::uint32_t e = 0; e < splits.size(); ++e)
+        for (ElementIndex e{0}; e < splits.size(); ++e)
             splits[e] = forest.is_leaf(e) && forest.area(e) >= 4 * min_area(state.inputs, state.light, e) &&
                         forest.area(forest.patch(e)) > least_area;
         divide_leaves(state, splits);
@@ -89,7 +89,7 @@ Estimate PhotonMesh::trace(SolverState& state, TracedIteration& iteration) {
     const ElementForest& forest = *state.light.forest;
     Estimate estimate{.irradiance = std::move(batch.irradiance), .escaped_power = batch.escaped};
     estimate.variance.assign(forest.size(), 0.0f);
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         if (!(fresh_hits_[e].sum() > 0)) continue;
         const double per_hit = luminance(estimate.irradiance[e]) / fresh_hits_[e].sum();
         estimate.variance[e] = static_cast<float>(per_hit * per_hit * fresh_hits_[e].squares());
@@ -108,14 +108,14 @@ void PhotonMesh::merge(SolverState& state, const Estimate& estimate, const Trace
     for (std::size_t e = 0; e < hits_.size(); ++e) hits_[e] += fresh_hits_[e];
 }
 
-bool PhotonMesh::has_quarters_to_divide(const SolverState& state, std::uint32_t e) const {
+bool PhotonMesh::has_quarters_to_divide(const SolverState& state, ElementIndex e) const {
     const ElementForest& forest = *state.light.forest;
-    const std::uint32_t first = forest.first_child(e);
+    const ElementIndex first = forest.first_child(e);
     if (first == none) return false;
     std::array<HitSum, 4> hits;
     std::array<float, 4> areas{};
     for (std::uint32_t k = 0; k < 4; ++k) {
-        const std::uint32_t quarter = first + k;
+        const ElementIndex quarter = first + k;
         hits[k] = hits_[quarter];
         areas[k] = forest.area(quarter);
         if (!forest.is_leaf(quarter) || areas[k] < 4 * min_area(state.inputs, state.light, quarter)) return false;
@@ -127,7 +127,7 @@ void PhotonMesh::refine(SolverState& state) {
     const ElementForest& forest = *state.light.forest;
     std::vector<std::uint8_t> splits(forest.size(), 0);
     parallel_for_ranges(splits.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (auto e = static_cast<std::uint32_t>(begin); e < end; ++e)
+        for (ElementIndex e(begin); e < end; ++e)
             if (has_quarters_to_divide(state, e)) std::fill_n(&splits[forest.first_child(e)], 4, std::uint8_t{1});
     });
     divide_leaves(state, splits);
@@ -139,9 +139,9 @@ void PhotonMesh::refine(SolverState& state) {
 /// become elements.
 double PhotonMesh::discarded_share(const ElementForest& forest) const {
     double discarded = 0, all = 0;
-    for (std::uint32_t e = 0; e < forest.size(); ++e) {
+    for (ElementIndex e{0}; e < forest.size(); ++e) {
         all += hits_[e].sum();
-        const std::uint32_t first = forest.first_child(e);
+        const ElementIndex first = forest.first_child(e);
         if (first != none && !forest.is_leaf(first)) discarded += hits_[e].sum();
     }
     return all > 0 ? discarded / all : 0;

@@ -18,7 +18,7 @@ namespace {
 Estimate independent_contributions(const LightState& light, const BatchResult& batch) {
     const double power = luminance(integral(*light.forest, batch.irradiance));
     Estimate estimate{.irradiance = batch.irradiance, .escaped_power = batch.escaped};
-    for (std::uint32_t i = 0; i < batch.irradiance.size(); ++i)
+    for (ElementIndex i{0}; i < batch.irradiance.size(); ++i)
         estimate.variance.push_back(static_cast<float>(luminance(batch.irradiance[i]) * power /
                                                        (static_cast<double>(batch.rays) * light.forest->area(i))));
     return estimate;
@@ -63,7 +63,7 @@ WalkSource particles_of_light(const RunInputs& inputs, const LightState& light) 
 WalkSource importance_from_cameras(const RunInputs& inputs, const LightState& light) {
     WalkSource payload;
     payload.is_grey = true;
-    for (std::uint32_t i = 0; i < light.forest->patch_count(); ++i) {
+    for (PatchIndex i{0}; i < light.forest->patch_count(); ++i) {
         const float rho = inputs.materials.mean_reflectance(i);
         payload.emitted.emplace_back(rho * light.solution.view_importance[i] * light.forest->area(i));
         payload.reflectance.emplace_back(rho);
@@ -133,7 +133,7 @@ void RandomWalks::merge(SolverState& state, const Estimate& estimate, const Trac
     if (shows_error) estimate_noise(state, estimate, iteration.weight);
     const double before = state.light.history[0], now = before + static_cast<double>(iteration.weight);
     const double tau = iteration.plan.warms_up ? 1 : static_cast<double>(iteration.weight) / now;  // Eq. 6
-    for (std::uint32_t i = 0; i < state.light.forest->size(); ++i)
+    for (ElementIndex i{0}; i < state.light.forest->size(); ++i)
         state.light.solution.irradiance[i] +=
             static_cast<float>(tau) * (estimate.irradiance[i] - state.light.solution.irradiance[i]);
     state.light.escaped_power += tau * (estimate.escaped_power - state.light.escaped_power);
