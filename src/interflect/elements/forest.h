@@ -21,11 +21,11 @@ class ElementForest {
   public:
     static constexpr int deepest_level = 15;
 
-    /// @param capacity  In [patches, 2^32 - 2); reserves address space.
+    /// @param capacity  Maximum number of elements, in [patches, 2^32 - 2), for which address space is reserved.
     /// @throws InputError for another capacity or a vertex index out of range; AddressSpaceError.
     ElementForest(const Scene& scene, std::size_t capacity);
 
-    /// Address space [bytes].
+    /// Address space per element [bytes].
     static constexpr std::size_t reserved_per_element = 11;
 
     /// @throws InputError for a scene of other geometry.
@@ -39,11 +39,11 @@ class ElementForest {
     std::uint32_t parent(std::uint32_t e) const { return is_root(e) ? none : block_of(e).parent; }
     float area(std::uint32_t e) const { return nodes_[e].area; }  ///< [m^2]
     int level(std::uint32_t e) const;
-    /// Returns the path from the root: 1, then two bits per level, the index of the child.
+    /// Returns the path from the root. In binary, it is 1, followed by two bits for each level: the index of the child.
     std::uint32_t path(std::uint32_t e) const {
         return is_root(e) ? 1 : block_of(e).parent_path << 2 | number_in_block(e);
     }
-    /// Returns the element with this path(), or none.
+    /// Returns the element with this path(), or `none` if it does not exist.
     std::uint32_t at_path(std::uint32_t patch, std::uint32_t path) const;
     Cell cell(std::uint32_t e) const;
     const PatchGeometry& geometry(std::uint32_t patch) const { return geometry_[patch]; }
@@ -64,30 +64,30 @@ class ElementForest {
     std::uint32_t leaf_at(std::uint32_t root, Parameters p, std::uint32_t limit = none) const {
         return leaf_below(root, Cell(), p, limit);
     }
-    /// The same from `e`; its cell must contain `p`.
+    /// Returns the leaf below `e` that contains `p`. The cell of `e` must contain `p`.
     std::uint32_t leaf_below(std::uint32_t e, Cell cell, Parameters p, std::uint32_t limit = none) const;
 
     /// Creates the children of `e` unless they exist. Thread-safe.
-    /// @return  First child; none if the forest is full or `e` is at the deepest level.
+    /// @return  The first child, or `none` if the forest is full or `e` is at the deepest level.
     std::uint32_t subdivide(std::uint32_t e);
 
     /// Sorts the elements from `first` on by level, patch and path. Not thread-safe.
-    /// @return  Old index of each element first + i.
+    /// @return  The old index of each element first + i.
     std::vector<std::uint32_t> put_in_order(std::uint32_t first);
 
-    /// Returns the order of division, for rebuild().
+    /// Returns the divided elements in the order of their division, for rebuild().
     std::vector<std::uint32_t> subdivided() const;
-    /// Divides `parents` in this order, in a forest of roots.
+    /// Divides `parents` in this order. The forest must consist of roots only.
     /// @throws InputError if an element cannot be subdivided.
     void rebuild(std::span<const std::uint32_t> parents);
 
     /// Removes the last four leaves of an ordered forest; returns their parent. Not thread-safe.
     std::uint32_t drop_last_siblings();
 
-    /// Calls body(first) per block of siblings, parents first; in parallel after put_in_order().
+    /// Calls body(first) for each block of siblings, parents before children. After put_in_order(), runs in parallel.
     template <class Body>
     void for_siblings_from_roots(const Body& body) const;
-    /// The same, children first.
+    /// Does the same with children before parents.
     template <class Body>
     void for_siblings_from_leaves(const Body& body) const;
 
@@ -114,7 +114,7 @@ class ElementForest {
     std::uint64_t scene_fingerprint_;
     std::vector<PatchGeometry> geometry_;
     std::uint32_t patch_count_;
-    /// First element of each generation, then the end.
+    /// First element of each generation, followed by the end of the last generation.
     std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;
