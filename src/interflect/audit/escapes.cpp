@@ -14,7 +14,7 @@ using namespace detail;
 
 namespace {
 
-/// A scene has a leak if the share of escaping rays is between these limits; fewer are rounding, more are an open
+/// A scene has a leak if the share of escaping rays is between these limits. A larger share belongs to an open
 /// scene.
 constexpr double min_leak = 1e-3, max_leak = 0.05;
 /// Distance between an escaping ray and parallel test rays, relative to the scene's diagonal.
