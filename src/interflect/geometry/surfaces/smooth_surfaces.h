@@ -11,15 +11,15 @@ namespace interflect::detail {
 
 struct SmoothSurfaces {
     struct Groups {
-        /// Group in [0, count) of a corner, or of the edge that starts there, [4 patch + corner].
+        /// Group, from 0 to count - 1, of a corner or of the edge that starts there. The index is 4 patch + corner.
         std::vector<std::uint32_t> group;
         std::uint32_t count = 0;
     };
-    /// Common part of two edges across which their patches continue. Parameters in [0, 1] follow each patch's vertex
-    /// order; from[0] and to[1] coincide.
+    /// Common part of two edges across which their patches continue. The parameters, from 0 to 1, follow each patch's
+    /// vertex order, so from[0] and to[1] coincide.
     struct Seam {
-        std::array<std::uint32_t, 2> edge;  ///< 4 patch + first corner.
-        std::array<float, 2> from, to;      ///< from < to.
+        std::array<std::uint32_t, 2> edge;  ///< Index of each edge: 4 patch + first corner.
+        std::array<float, 2> from, to;      ///< Parameters along each edge, from < to.
     };
     Groups corners, edges;
     std::vector<Seam> seams;
