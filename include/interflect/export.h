@@ -21,20 +21,20 @@ namespace interflect {
 /// Light of texels and vertices.
 struct BakeOptions {
     Shading shading = Shading::hybrid;  ///< `smooth`, `hybrid` or `gather`.
-    /// Points per texel or vertex where direct light is sampled, or gathered directions; >= 2. 0: the number in
-    /// default_samples. Not for Shading::smooth.
+    /// Number of points per texel or vertex at which direct light is sampled, or of gathered directions, >= 2. 0: the
+    /// number in default_samples. Ignored by Shading::smooth.
     int samples = 0;
     std::uint64_t seed = 1;
 };
 
-/// Triangles of light in vertices, except for Shading::smooth: finer where direct light varies.
+/// Triangulation for light in vertices, which is finer where direct light varies. Ignored by Shading::smooth.
 struct VertexOptions {
-    /// Largest error of interpolated direct light, relative to the irradiance there, or to the mean where that is
-    /// darker; > 0.
+    /// Maximum error of interpolated direct light, relative to the irradiance there or, if it is larger, the mean
+    /// irradiance; > 0.
     float max_error = 0.05f;
     float min_edge = 0.02f;       ///< Shorter edges are not divided [m], > 0.
     float max_edge = 0.25f;       ///< Longer edges are divided, by up to half of max_triangles [m], >= min_edge.
-    int max_triangles = 200'000;  ///< About; faces of the scene are never merged. >= 1.
+    int max_triangles = 200'000;  ///< Approximate maximum, >= 1; faces of the scene are never merged.
 };
 
 /// Quantity stored in lightmaps.
@@ -44,27 +44,29 @@ enum class LightmapContent {
 };
 
 struct LightmapOptions {
-    float texels_per_metre = 20;  ///< Minimum, > 0; less only on surfaces that would exceed an image.
-    int max_size = 4096;          ///< Side of an image [texels], 64 to 16384, a multiple of 4; more images if needed.
+    float texels_per_metre = 20;  ///< Minimum resolution, > 0; lower only on surfaces that would not fit into an image.
+    int max_size = 4096;          ///< Maximum side of an image [texels], 64 to 16384, a multiple of 4.
     int gutter = 2;               ///< Margin of each chart, filled from its edge [texels], 1 to 64.
     LightmapContent content = LightmapContent::irradiance;
     std::string image = ".exr";  ///< Format of the images beside the file: .exr or .hdr.
-    bool own_charts = false;     ///< Ignores Scene::lightmap_coordinates.
+    bool own_charts = false;     ///< Whether Scene::lightmap_coordinates are ignored.
     /// Memory limit [bytes], checked before allocation.
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
-    bool groups = false;  ///< Adds images of each light group, on the same coordinates; they sum to the total.
+    bool groups =
+        false;  ///< Whether to add images of each light group, with the same coordinates; they sum to the total.
 };
 
 /// Options of export_solution().
 struct ExportOptions {
-    /// [stops]: a radiance of 2^-exposure becomes 1, the brightest 8-bit value. Brighter colours are scaled to 1,
-    /// preserving their hue. See automatic_exposure().
+    /// Exposure [stops]: a radiance of 2^-exposure becomes 1, the brightest 8-bit value. Brighter colours are scaled to
+    /// 1, which preserves their hue. See automatic_exposure().
     float exposure = 0;
-    V3f up{0, 0, 1};                          ///< Up axis of the scene; rotated for formats with a fixed one.
-    BakeOptions bake;                         ///< For .glb, .gltf, .ply and .obj.
+    V3f up{0, 0, 1};   ///< Up axis of the scene, which is rotated for formats with a fixed up axis.
+    BakeOptions bake;  ///< For .glb, .gltf, .ply and .obj.
     std::optional<LightmapOptions> lightmap;  ///< nullopt: the light is stored in vertices.
     VertexOptions vertices;                   ///< For light in vertices.
-    /// For .ply and .obj: convex polygons of up to dozens of corners, not triangles. Some readers refuse or skip them.
+    /// Whether .ply and .obj files contain convex polygons of up to dozens of corners in place of triangles. Some
+    /// readers refuse or skip such polygons.
     bool polygons = false;
     ProbeOptions probes;           ///< For formats that store probes instead of surfaces.
     Monitor monitor;               ///< Monitors the light of texels, vertices and probes.
@@ -79,8 +81,8 @@ struct ExportedFile {
 
 /// An export format for solved scenes.
 struct ExportFormat {
-    const char* extension;  ///< ".glb"
-    const char* name;       ///< Display name: "binary glTF".
+    const char* extension;  ///< Such as ".glb".
+    const char* name;       ///< Display name, such as "binary glTF".
     bool takes_lightmaps;   ///< Whether ExportOptions::lightmap is supported.
     /// Creates the files at and beside `path`, the one at `path` last. Arguments are valid.
     std::vector<ExportedFile> (*make)(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
@@ -90,7 +92,7 @@ struct ExportFormat {
 /// All export formats; docs/files/export.md describes them.
 extern const std::span<const ExportFormat> export_formats;
 
-/// Export format for a file name's extension, ignoring case. @throws InputError that lists the extensions.
+/// Returns the export format for a file name's extension, ignoring case. @throws InputError that lists the extensions.
 const ExportFormat& require_export_format(const std::filesystem::path& path);
 
 /// Writes a solved scene in the format of the extension of `path`. Files appear under their names when all are
@@ -118,7 +120,7 @@ struct SceneExport {
 /// Extensions of export_scene(): .rad (Radiance), .xml (Mitsuba 3), .pbrt (pbrt-v4), .py (a script for Blender).
 extern const std::span<const char* const> scene_export_extensions;
 
-/// Whether export_scene() supports the extension of this path.
+/// Returns whether export_scene() supports the extension of this path.
 bool is_scene_export(const std::filesystem::path& path);
 
 /// Writes a scene for another renderer: faces with diffuse materials and images, emitters, light sources, skies as an

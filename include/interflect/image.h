@@ -50,18 +50,18 @@ void require_same_size(const Image& image, const Image& reference);
 /// @throws InputError if width or height is not a multiple of `factor`, factor < 1, and as require_pixels() does.
 Image box_downsample(const Image& image, int factor);
 
-/// Number of pixels with an infinite or NaN channel.
+/// Returns the number of pixels with an infinite or NaN channel.
 std::int64_t count_non_finite(const Image& image);
 
 enum class ImageFormat {
-    png,   ///< 8-bit sRGB, for display. Needs a tone-mapped image.
-    jpeg,  ///< As png, lossy. Can be written, and read as texture only.
-    exr,   ///< OpenEXR, linear 32-bit float, for measuring. Stores ImageMetadata.
+    png,   ///< 8-bit sRGB for display; needs a tone-mapped image.
+    jpeg,  ///< Like png, but lossy; can be written, but only read as a texture.
+    exr,   ///< OpenEXR, linear 32-bit float, for measurements; stores ImageMetadata.
     hdr,   ///< Radiance RGBE, linear, 8-bit mantissas with a common exponent.
 };
 
-/// Image format for a file name's extension (.png .jpg .jpeg .exr .hdr, ignoring case).
-/// @throws InputError, listing the extensions, for any other.
+/// Returns the image format for a file name's extension (.png .jpg .jpeg .exr .hdr, ignoring case).
+/// @throws InputError that lists the extensions, for any other extension.
 ImageFormat require_image_format(const std::filesystem::path& path);
 
 /// Whether the format stores 8-bit sRGB values and therefore needs a tone-mapped image.
@@ -74,17 +74,17 @@ constexpr bool needs_tone_mapping(ImageFormat format) {
 /// 64 bits) and .version; control characters in names are escaped.
 struct ImageMetadata {
     View view;
-    std::string quantity = "radiance [cd/m^2]";  ///< With its unit.
+    std::string quantity = "radiance [cd/m^2]";  ///< Quantity of the pixels with its unit.
     std::string scene;                           ///< Source file.
     std::string version;                         ///< Version of this program.
     std::uint64_t seed = 0;
-    float exposure = 0;  ///< Suggested for display [stops]: see tone_map().
+    float exposure = 0;  ///< Suggested exposure for display [stops]; see tone_map().
 };
 
 /// An additional layer of an OpenEXR file.
 struct ImageLayer {
-    std::string name;               ///< Prefix of the channels: name.R and so on; empty: R.
-    std::string channels;           ///< One letter each: "RGB", "XYZ", "Z".
+    std::string name;               ///< Prefix of the channels, as in name.R; if it is empty, the channel is R.
+    std::string channels;           ///< One letter for each channel, such as "RGB", "XYZ" or "Z".
     std::span<const float> values;  ///< Row by row, row 0 at the top, channels interleaved.
 };
 

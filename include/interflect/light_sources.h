@@ -25,20 +25,21 @@ struct SkyModel {
     float a = 0, b = -1, c = 0, d = -1, e = 0, g = 0;
 
     bool depends_on_sun() const { return c != 0 || e != 0; }
-    /// phi(Z) f(chi) for cos Z >= 0; negative factors are clamped to 0. @param sun_cosine  cos chi.
+    /// Returns phi(Z) f(chi) for cos Z >= 0; negative factors are clamped to 0. @param sun_cosine  Value of cos chi.
     double relative_luminance(double zenith_cosine, double sun_cosine) const;
-    /// Integral of relative_luminance() cos Z over the upper hemisphere: relative horizontal illuminance. Accurate to
-    /// five digits; takes a few milliseconds. @param sun_cosine  Cosine of the angle between zenith and sun.
+    /// Returns the integral of relative_luminance() cos Z over the upper hemisphere, which is the relative horizontal
+    /// illuminance. It is accurate to five digits and takes a few milliseconds.
+    /// @param sun_cosine  Cosine of the angle between zenith and sun.
     double horizontal_integral(double sun_cosine) const;
 };
 
-/// Types of the standard, for example 1, steep overcast; 5, uniform; 7, partly cloudy; 12, clear with low turbidity. 16
-/// is the traditional overcast sky: L(Z) = (1 + 2 cos Z) / 3 times the zenith luminance.
+/// Returns a type of the standard: for example, 1 is steep overcast, 5 uniform, 7 partly cloudy, 12 clear with low
+/// turbidity. Type 16 is the traditional overcast sky: L(Z) = (1 + 2 cos Z) / 3 times the zenith luminance.
 /// @param type  1 to 16, otherwise InputError.
 SkyModel cie_standard_sky(int type);
 
-/// Type by name: "overcast" (1), "uniform" (5), "intermediate" (7), "clear" (12) or "cie-1" to "cie-16"; 0 for any
-/// other name.
+/// Returns the type of a named sky: "overcast" (1), "uniform" (5), "intermediate" (7), "clear" (12) or "cie-1" to
+/// "cie-16"; 0 for any other name.
 int cie_sky_type(std::string_view name);
 
 /// Fault of a model, in words without a subject; empty if valid. The luminance must be finite and not 0 everywhere.
@@ -47,7 +48,7 @@ std::string sky_fault(const SkyModel& model);
 /// Sky and sun from a model of daylight.
 struct ModelledDaylight {
     SkyModel model;
-    double sky_illuminance = 0;  ///< Horizontal, of the sky alone [lx].
+    double sky_illuminance = 0;  ///< Horizontal illuminance from the sky alone [lx].
     double sun_illuminance = 0;  ///< Illuminance of a surface facing the sun [lx].
 };
 /// All-weather model: sky luminance by Perez, Seals and Michalsky 1993, efficacies by Perez et al. 1990 with 2 cm of
@@ -112,11 +113,11 @@ struct PointLight {
 /// Emits into a cone, with full intensity near its axis. Between the two angles intensity is proportional to the
 /// squared difference of cosines to the outer angle.
 struct SpotLight {
-    V3f position{0, 0, 0};    ///< As of PointLight [m].
+    V3f position{0, 0, 0};    ///< Relative to Scene::origin [m].
     V3f direction{0, 0, -1};  ///< Need not be normalised.
-    Rgb intensity{0, 0, 0};   ///< On the axis [lm/sr = cd, or W/sr], >= 0.
-    float inner_angle = 0;    ///< From the axis [degrees]: full intensity up to this angle. In [0, outer_angle].
-    float outer_angle = 45;   ///< Zero intensity from this angle on. In (0, 180].
+    Rgb intensity{0, 0, 0};   ///< Intensity on the axis [lm/sr = cd, or W/sr], >= 0.
+    float inner_angle = 0;    ///< Angle from the axis up to which the intensity is full [degrees], in [0, outer_angle].
+    float outer_angle = 45;   ///< Angle from the axis beyond which the intensity is zero [degrees], in (0, 180].
     float inner_cosine() const;
     float outer_cosine() const;
 };
@@ -127,7 +128,7 @@ struct DirectionalLight {
     Rgb irradiance{0, 0, 0};    ///< Irradiance of a surface perpendicular to the light [lm/m^2 or W/m^2], >= 0.
     float diameter = 0;         ///< Angular diameter of the disc [degrees]; 0: parallel light. In [0, 90].
     float disc_sine() const;    ///< Sine of the angle from the disc's centre to its edge.
-    Rgb disc_radiance() const;  ///< E / (pi sin^2); only with a disc.
+    Rgb disc_radiance() const;  ///< E / (pi sin^2) with disc_sine(); only if there is a disc.
 };
 /// Angular diameter of the Sun at its mean distance from the Earth [degrees].
 inline constexpr float sun_diameter = 0.533f;
@@ -140,9 +141,9 @@ struct UniformSky {
 /// A hemisphere of sky over a uniform ground, all of one colour.
 struct SkyDome {
     SkyModel model;
-    Rgb irradiance{0, 0, 0};  ///< Horizontal, unobstructed, of the sky alone [lm/m^2 or W/m^2].
-    V3f zenith{0, 0, 1};      ///< Need not be normalised; neither need `sun`.
-    V3f sun{0, 0, 1};         ///< Towards the sun, not below the horizon. The sun itself is a DirectionalLight.
+    Rgb irradiance{0, 0, 0};  ///< Unobstructed horizontal irradiance from the sky alone [lm/m^2 or W/m^2].
+    V3f zenith{0, 0, 1};      ///< Direction of the zenith; need not be normalised.
+    V3f sun{0, 0, 1};         ///< Direction of the sun, not below the horizon; need not be normalised.
     /// Radiance below the horizon, times pi, over `irradiance`: the ground's reflectance if only the sky lights it.
     float ground = 0;
 };
@@ -167,7 +168,7 @@ struct MeasuredLight {
     V3f position{0, 0, 0};                      ///< Centre of the opening [m].
     V3f direction{0, 0, -1};                    ///< Nadir direction; need not be normalised.
     V3f c0{1, 0, 0};        ///< Direction in the C0 half plane; need not be perpendicular to the nadir.
-    bool mirrored = false;  ///< C90 is on the opposite side.
+    bool mirrored = false;  ///< Whether C90 is on the opposite side.
     Rgb factor{1, 1, 1};    ///< Factor of the intensities, >= 0.
 };
 
@@ -182,10 +183,10 @@ struct Luminaire {
 /// its unit.
 Rgb rating(const Luminaire& luminaire);
 
-/// Whether it surrounds the scene: a uniform sky, a dome or a map.
+/// Returns whether a luminaire surrounds the scene: a uniform sky, a dome or a map.
 bool is_sky(const Luminaire& luminaire);
 
-/// "point", "spot", "directional", "sky", "measured", "sky-dome" or "environment".
+/// Returns "point", "spot", "directional", "sky", "measured", "sky-dome" or "environment".
 const char* kind_name(const Luminaire& luminaire);
 
 /// Fault of a luminaire, in words without a subject; empty if valid.

@@ -22,7 +22,7 @@ namespace interflect {
 /// Shape of an infinitesimal receiver. Cylinders have no ends.
 enum class Receiver {
     planar,
-    cylindrical,      ///< All around an axis: the visibility of faces from all directions (EN 12464-1).
+    cylindrical,      ///< A cylinder: measures the visibility of faces from all directions (EN 12464-1).
     semicylindrical,  ///< The half of a cylinder that faces one direction (CIE 136; EN 13201).
 };
 
@@ -39,7 +39,7 @@ struct MeasuringPoint {
 /// Irradiance at a measuring point [lux = lm/m^2, or W/m^2].
 struct MeasuredIrradiance {
     Rgb direct{0, 0, 0};    ///< Light received straight from the sources.
-    Rgb indirect{0, 0, 0};  ///< Reflected at least once.
+    Rgb indirect{0, 0, 0};  ///< Light reflected at least once.
     /// Standard error of the sum from gathering alone, without the solution's own error.
     Rgb standard_error{0, 0, 0};
     float indirect_error = 0;  ///< Standard error of the mean over the channels of `indirect`.
@@ -53,7 +53,7 @@ struct MeasuredIrradiance {
 /// Options of measure_irradiance() and rate_glare().
 struct MeasuringOptions {
     Shading shading = Shading::gather;  ///< `gather` or `path`.
-    int samples = 0;  ///< Paths per point, >= 2; with a target the minimum. 0: the number in default_samples.
+    int samples = 0;  ///< Paths per point, >= 2; the minimum if there is a target. 0: the number in default_samples.
     int max_samples = default_max_samples;  ///< Maximum number of paths per point with a target, >= samples.
     /// Target of the root mean square over the points of their standard error, relative to the mean irradiance of
     /// neighbours in the list or, if larger, of all points; >= 0; 0: no target. A single point stops by its own
@@ -64,7 +64,7 @@ struct MeasuringOptions {
     std::uint64_t seed = 1;
 };
 
-/// Measures irradiance as for a pixel, see Shading. For cylinders, the mean over their normals (CIE 136).
+/// Measures irradiance by the methods of Shading. For cylinders, it is the mean over their normals (CIE 136).
 /// @param solution  Of the same scene, as is `ray_caster`; may be null for Shading::path, which ignores it.
 /// @return          One entry per point. Points with too few samples after an interruption have an infinite standard
 ///                  error.
@@ -93,9 +93,9 @@ inline constexpr double usual_boundary = 0.5;
 
 /// Coplanar faces, on or above which light is measured.
 struct PlanarArea {
-    std::string name;                 ///< Name of the object that contains them.
-    V3f normal{0, 0, 1};              ///< Unit length, towards the lit side.
-    std::vector<PatchIndex> patches;  ///< Its faces: indices into Scene::patches.
+    std::string name;                 ///< Name of the object that contains the faces.
+    V3f normal{0, 0, 1};              ///< Unit normal, towards the lit side.
+    std::vector<PatchIndex> patches;  ///< The faces, as indices into Scene::patches.
     double area = 0;                  ///< Area of the faces [m^2].
 };
 
@@ -106,12 +106,15 @@ struct PlanarArea {
 ///         (nearly) equally large, with their normals.
 PlanarArea find_surface(const Scene& scene, const std::string& object, const std::optional<V3f>& facing = {});
 
-/// The largest horizontal plane of an object's upward faces, such as the top of a desk; the highest of equal ones.
+/// Finds the largest horizontal plane of an object's upward faces, such as the top of a desk; the highest of equal
+/// planes.
 /// @throws InputError as find_surface() does.
 PlanarArea find_top(const Scene& scene, const std::string& object);
 
-/// The floor at or below a height: the scene's upward faces there in the horizontal plane with the largest total area.
-/// @param height  World z [m]. @throws InputError if no such face exists.
+/// Finds the floor at or below a height: the upward faces of the scene in the horizontal plane with the largest total
+/// area.
+/// @param height  World z [m].
+/// @throws InputError if no such face exists.
 PlanarArea find_floor(const Scene& scene, double height);
 
 /// Divides an area by the objects of its faces, ordered by size. Copies of an array ("floor.a0", "floor.a1.2" in MGF)
@@ -147,7 +150,7 @@ MeasuringGrid area_grid(const Scene& scene, const PlanarArea& area, const GridOp
 /// @return            The grid with `enclosed` set; grids without columns (lines, points) are unchanged.
 MeasuringGrid without_enclosed_points(const Scene& scene, const RayCaster& ray_caster, MeasuringGrid grid);
 
-/// `count` equidistant points from a to b, inclusive.
+/// Returns `count` equidistant points from a to b, inclusive.
 /// @throws InputError for fewer than 2 points, for more than max_measuring_points, and for equal ends.
 MeasuringGrid line_grid(const Imath::V3d& a, const Imath::V3d& b, int count);
 
@@ -184,12 +187,12 @@ SolutionError estimate_solution_error(std::span<const MeasuredIrradiance> gather
 
 IlluminanceSummary summarise(std::span<const MeasuredIrradiance> measured, const SolutionError& solution_error = {});
 
-/// Unobstructed horizontal illuminance outside, from the scene's skies without its sun [lx]: the reference of daylight
-/// factors. nullopt without a sky.
+/// Returns the unobstructed horizontal illuminance outside, from the scene's skies without its sun [lx], which is the
+/// reference of daylight factors; nullopt without a sky.
 std::optional<double> exterior_illuminance(const Scene& scene);
 
-/// Whether there are sources other than the sky, including the sun. Illuminance over exterior_illuminance() is then not
-/// a daylight factor.
+/// Returns whether the scene has other light sources than skies, including the sun. Illuminance over
+/// exterior_illuminance() is then not a daylight factor.
 bool has_other_light_than_sky(const Scene& scene);
 
 /// Position and gaze of an observer.
@@ -201,24 +204,24 @@ struct Observer {
 /// Visible part of a light source: emitting patches of an object, or a measured luminaire.
 struct GlareSource {
     std::string name;           ///< Name of the object or the luminaire; for patches outside objects, of the material.
-    double luminance = 0;       ///< Mean over the visible part [cd/m^2].
-    double solid_angle = 0;     ///< Omega of the visible part [sr].
+    double luminance = 0;       ///< Mean luminance of the visible part [cd/m^2].
+    double solid_angle = 0;     ///< Solid angle omega of the visible part [sr].
     double position_index = 1;  ///< Mean index p: L^2 omega / p^2 equals `glare` for uniform luminance.
     double glare = 0;           ///< Integral of L^2 / p^2 over the solid angle [cd^2 sr / m^4].
-    bool is_rated = true;       ///< False outside of the table of position indices: UGR excludes the source.
+    bool is_rated = true;       ///< False outside the table of position indices; UGR then excludes the source.
 };
 
 /// Unified Glare Rating for an observer.
 struct GlareRating {
     double ugr = -std::numeric_limits<double>::infinity();  ///< Minus infinity without visible sources.
     double standard_error = 0;                              ///< Standard error of `ugr`, due to the background.
-    double background_luminance = 0;                        ///< Lb [cd/m^2].
+    double background_luminance = 0;                        ///< Background luminance Lb [cd/m^2].
     /// Visible sources: rated sources first, both kinds in order of decreasing glare.
     std::vector<GlareSource> sources{};
 };
 
-/// Position index p of Guth, as fitted by Levin (1975): 1 on the line of sight, increasing away from it; equal for
-/// mirror images above and below it. Directions need not be normalised.
+/// Returns the position index p of Guth, as fitted by Levin (1975). It is 1 on the line of sight, increases away from
+/// it, and is equal for mirror images above and below it. Directions need not be normalised.
 /// @param towards            Direction of the source.
 /// @param line_of_sight, up  Need not be perpendicular.
 /// @return  Infinity for directions not in front of the observer.
@@ -230,7 +233,7 @@ double position_index(const V3f& towards, const V3f& line_of_sight, const V3f& u
 /// @param line_of_sight, up  As for position_index().
 bool has_position_index(const V3f& towards, const V3f& line_of_sight, const V3f& up = V3f(0, 0, 1));
 
-/// UGR = 8 log10(0.25 / Lb * sum of L^2 omega / p^2) over the rated sources (CIE 117:1995).
+/// Returns UGR = 8 log10(0.25 / Lb * sum of L^2 omega / p^2) over the rated sources (CIE 117:1995).
 /// @param background_luminance  Lb [cd/m^2]; if it is 0 and sources are visible, the result is infinity.
 double unified_glare_rating(double background_luminance, std::span<const GlareSource> sources);
 
@@ -253,8 +256,9 @@ std::vector<GlareRating> rate_glare(const Scene& scene, const Solution* solution
                                     std::span<const Observer> observers, const MeasuringOptions& options = {},
                                     const Monitor& monitor = {});
 
-/// Real spherical harmonics of degree 0, 1 and 2 in a unit direction, orthonormal over the sphere: Y00, Y1-1, Y10, Y11,
-/// Y2-2, Y2-1, Y20, Y21, Y22, with the signs of Ramamoorthi and Hanrahan 2001 (Y1-1, Y10, Y11 grow with y, z, x).
+/// Returns the real spherical harmonics of degree 0, 1 and 2 in a unit direction, orthonormal over the sphere: Y00,
+/// Y1-1, Y10, Y11, Y2-2, Y2-1, Y20, Y21, Y22. The signs are those of Ramamoorthi and Hanrahan 2001: Y1-1, Y10 and Y11
+/// increase with y, z and x.
 std::array<float, 9> spherical_harmonics(const V3f& direction);
 
 /// Irradiance of small surfaces at a point, as a function of their normal.
@@ -266,17 +270,17 @@ struct IrradianceProbe {
     /// Standard error of irradiance() from sampling and from the number of facets, root mean square over all normals,
     /// mean over the channels; without the solution's own error.
     float standard_error = 0;
-    /// Inside a solid or in the dark: more than a quarter of all directions hit the back of a one-sided face, or no
-    /// light arrives. Exclude from interpolation.
+    /// Whether the probe is inside a solid or in the dark: more than a quarter of all directions hit the back of a
+    /// one-sided face, or no light arrives. Exclude such probes from interpolation.
     bool is_inside = false;
 
     IrradianceProbe() { coefficients.fill(Rgb(0)); }
-    /// Irradiance for a unit normal. May be slightly negative for light from few directions.
+    /// Returns the irradiance for a unit normal. It may be slightly negative for light from few directions.
     Rgb irradiance(const V3f& normal) const;
 };
 
 struct ProbeOptions {
-    float spacing = 1;  ///< Maximum grid spacing [m]; > 0.
+    float spacing = 1;  ///< Maximum spacing of the grid [m], > 0.
     int rays = 2048;    ///< Gathered directions per probe, 8 to 2^20; at least 256 are used.
     std::uint64_t seed = 1;
 };
@@ -285,8 +289,8 @@ struct ProbeOptions {
 struct ProbeGrid {
     Imath::V3d first{0, 0, 0};            ///< Position of the lowest probe, in world coordinates [m].
     Imath::V3d step{0, 0, 0};             ///< Distance of neighbours along each axis [m].
-    std::array<int, 3> count{};           ///< Along each axis.
-    std::vector<IrradianceProbe> probes;  ///< x fastest, then y, then z.
+    std::array<int, 3> count{};           ///< Number of probes along each axis.
+    std::vector<IrradianceProbe> probes;  ///< Ordered by z, then y, then x; x varies fastest.
 
     Imath::V3d position(std::size_t probe) const;  ///< World coordinates [m].
 };
@@ -307,7 +311,7 @@ ProbeGrid irradiance_probes(const Scene& scene, const Solution& solution, const 
 /// Fault of the place of a measuring point.
 enum class PointFault {
     sound,    ///< No fault.
-    outside,  ///< A quarter of its front directions leave a closed room.
+    outside,  ///< Outside the scene: a quarter of its front directions leave a closed room.
     behind    ///< Inside a solid: most rays first pass the back of a one-sided face.
 };
 

@@ -18,7 +18,7 @@ Rgb false_colour(float position);
 
 enum class Spacing {
     linear,
-    logarithmic,  ///< 0 has the colour of the smallest value.
+    logarithmic,  ///< The value 0 has the colour of the smallest value.
 };
 
 struct ColourScale {
@@ -29,19 +29,20 @@ struct ColourScale {
     float position(float value) const;
 };
 
-/// Fits a scale to the finite values. Linear: from 0, or a negative minimum, to the maximum. Logarithmic: at most six
-/// decades of positive values, without 0.5% at each end. Without values, `high` is 1.
+/// Fits a scale to the finite values. A linear scale extends from 0, or from a negative minimum, to the maximum. A
+/// logarithmic scale has at most six decades of the positive values, without 0.5% of them at each end. Without values,
+/// `high` is 1.
 ColourScale fit_scale(std::vector<float> values, Spacing spacing);
 
 /// Fits a linear scale from 0 to a round number that at most 2% of the positive, finite values exceed.
 ColourScale fit_round_scale(std::vector<float> values);
 
-/// Converts the first channel. 0 becomes black; non-finite pixels stay unchanged.
+/// Converts the first channel to false colours. 0 becomes black; non-finite pixels are unchanged.
 Image false_colours(const Image& values, const ColourScale& scale);
 
-/// Anti-aliased; labels long lines, omits short ones, and ends lines at jumps.
-/// @param picture  In false colours.
-/// @param values   In the first channel; 0 replaces non-finite values.
+/// Draws anti-aliased lines of equal value. Long lines have labels, short lines are omitted, and lines end at jumps.
+/// @param picture  Picture in false colours.
+/// @param values   Values in the first channel; 0 replaces non-finite values.
 /// @throws InputError if the sizes differ.
 Image with_isolines(const Image& picture, const Image& values, std::span<const float> levels, const ColourScale& scale);
 
@@ -51,13 +52,14 @@ Image with_isolines(const Image& picture, const Image& values, std::span<const f
 /// @throws InputError for more than max_image_pixels or an invalid title or scale.
 Image with_legend(const Image& picture, const ColourScale& scale, const std::string& title);
 
-/// [pixels]
+/// Returns the height of a legend for a picture of this width [pixels].
 int legend_height(int width);
 
-/// Whether the whole legend takes at most half the picture. @throws InputError for an invalid title.
+/// Returns whether the whole legend takes at most half of the picture. @throws InputError for an invalid title.
 bool legend_fits(int width, int height, const std::string& title);
 
-/// Returns at most `most` values, ascending: 1, 2, 5 times powers of ten, or multiples of one.
+/// Returns at most `most` round values in ascending order: 1, 2 and 5 times powers of ten, or multiples of such a
+/// number.
 /// @throws InputError if `most` < 3 or the scale is invalid.
 std::vector<float> round_values(const ColourScale& scale, int most);
 

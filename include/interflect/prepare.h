@@ -72,7 +72,7 @@ struct Finding {
 
 struct ValidateOptions {
     std::size_t places = 3;         ///< Maximum number of places listed per kind.
-    float high_reflectance = 0.9f;  ///< Above paints, paper and snow; in (0, 1).
+    float high_reflectance = 0.9f;  ///< Threshold above the reflectance of paints, paper and snow, in (0, 1).
 };
 
 /// Finds problems that would spoil a solution. Call it with the scene as read, before cut_at_contacts(). Problems:
@@ -107,7 +107,8 @@ std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_cas
 /// @throws InputError above `max_patches`, for an invalid edge and a scene with faults.
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_patches);
 
-/// Returns an edge length [m]: 1/48 of the diagonal of the scene, or more for at most about 200,000 patches.
+/// Returns an edge length for split_patches() [m]: 1/48 of the scene's diagonal, or more if it would make more than
+/// about 200,000 patches.
 float default_mesh_size(const Scene& scene);
 
 /// Returns a minimum element side [m]: 5 mm, at most a thousandth of the area-weighted median patch side.
@@ -115,8 +116,8 @@ double default_element_size(const Scene& scene);
 
 /// Axis that points up in a scene.
 struct UpAxis {
-    const char* axis;      ///< "x", "-x", "y", ...
-    const char* evidence;  ///< "views": nearly certain; "light": a guess.
+    const char* axis;      ///< Such as "x", "-x" or "y".
+    const char* evidence;  ///< "views" if it is nearly certain; "light" if it is a guess.
 
     V3f direction() const;  ///< Unit vector.
 };
@@ -129,31 +130,31 @@ std::optional<UpAxis> find_up_axis(const Scene& scene);
 struct MemoryNeed {
     std::size_t scene = 0;
     std::size_t ray_tracer = 0;  ///< Includes coincident faces.
-    std::size_t patches = 0;     ///< Without elements.
-    std::size_t rest = 0;        ///< Program, threads, hits of camera rays.
+    std::size_t patches = 0;     ///< Memory of the solver for patches, without elements.
+    std::size_t rest = 0;        ///< Memory of the program, threads and hits of camera rays.
 
-    /// Arrays of the solver [bytes]. Measured: 98 to 109 for 0.7 to 3 million elements.
+    /// Memory of the solver's arrays for an element [bytes]. Measured: 98 to 109 for 0.7 to 3 million elements.
     std::size_t per_element = 128;
 
-    /// Sum of the parts but for elements [bytes].
+    /// Returns the sum of all parts except elements [bytes].
     std::size_t without_elements() const { return scene + ray_tracer + patches + rest; }
-    /// For a number of elements, at least one per patch [bytes].
+    /// Returns the memory for a number of elements, at least one per patch [bytes].
     std::size_t with(std::size_t elements) const { return without_elements() + elements * per_element; }
 };
 
 /// Predicts the memory of a run. Excludes links of method hr, 24 bytes each.
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster);
-/// Includes SolveOptions::keep_direct.
+/// Predicts the memory of a run with these options, including SolveOptions::keep_direct.
 MemoryNeed memory_need(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options);
 
-/// Returns the number of elements that fit into a memory. @param bytes  [bytes].
+/// Returns the number of elements that fit into a memory. @param bytes  Size of the memory [bytes].
 /// @throws InputError with the required memory if the patches do not fit.
 std::size_t elements_within(const MemoryNeed& need, std::size_t bytes, const Scene& scene);
 
 /// First hits of a view's rays, as shares of the picture.
 struct ViewCoverage {
-    double nothing = 0;  ///< No face.
-    double backs = 0;    ///< The back of a one-sided face; the rays pass through it.
+    double nothing = 0;  ///< Rays without a hit.
+    double backs = 0;    ///< Rays that first meet the back of a one-sided face, and pass through it.
 };
 
 /// Traces a view's rays through 36 rows of pixels. From outside of a scene, most rays meet nothing or backs.

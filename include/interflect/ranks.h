@@ -21,22 +21,22 @@ class Ranks {
     using Bytes = std::vector<std::byte>;
 
     virtual ~Ranks() = default;
-    virtual int rank() const = 0;   ///< From 0.
-    virtual int count() const = 0;  ///< At least 1.
+    virtual int rank() const = 0;   ///< Number of this process, from 0.
+    virtual int count() const = 0;  ///< Number of processes, at least 1.
 
     /// Sends parts[r] to rank r. @return  Received bytes, by sender.
     virtual std::vector<Bytes> exchange(const std::vector<Bytes>& parts) = 0;
     /// Returns the bytes of all ranks, whose numbers may differ.
     virtual std::vector<Bytes> gather(std::span<const std::byte> bytes) = 0;
-    /// Copies the bytes of rank 0 to all ranks; equal sizes.
+    /// Copies the bytes of rank 0 to all ranks. All ranks must pass equal sizes.
     virtual void broadcast(std::span<std::byte> bytes) = 0;
-    /// Ends all processes at once, for faults of one.
+    /// Ends all processes at once, after a fault of one of them.
     [[noreturn]] virtual void abort(int exit_code) = 0;
 
-    /// Work of the functions above.
+    /// Data sent by the functions above, and their time.
     struct Traffic {
         std::int64_t bytes = 0;  ///< Sent to other ranks.
-        double seconds = 0;      ///< Including the time in which this process waited for others.
+        double seconds = 0;      ///< Time, including that of waiting for other processes.
     };
     /// Traffic of this process so far.
     virtual Traffic traffic() const = 0;

@@ -26,13 +26,13 @@ struct EmbreeRates {
 
 /// One measurement of the solver.
 struct SolverRates {
-    EmbreeRates embree;  ///< For the rays of an iteration.
+    EmbreeRates embree;  ///< Rates of Embree for the rays of an iteration.
     double solver = 0;   ///< [rays/s]
     /// Shares of the solver's time, each measured alone: generating rays, tracing, finding the hit leaves, and choosing
     /// elements with the oracle.
     double making_rays = 0, tracing = 0, receiving = 0, refinement = 0;
 
-    /// Share of the rest: work per element of every iteration.
+    /// Share of the remaining time: work per element of every iteration.
     double sweeps() const { return std::max(0.0, 1 - making_rays - tracing - receiving - refinement); }
 };
 
@@ -52,16 +52,16 @@ SolverMeasurement measure_solver(const Scene& scene, const RayCaster& ray_caster
 struct PictureMeasurement {
     struct Round {
         double seconds = 0;
-        EmbreeRates embree;  ///< For the recorded rays.
+        EmbreeRates embree;  ///< Rates of Embree for the recorded rays.
     };
     std::int64_t rays = 0;                         ///< Number of rays of the picture.
-    std::size_t recorded = 0;                      ///< Rays sampled from these.
+    std::size_t recorded = 0;                      ///< Number of these rays that were recorded.
     double camera = 0, reflected = 0, shadow = 0;  ///< Shares of the rays by kind.
     std::vector<Round> rounds;
 };
 
 /// Draws a picture once to record its rays, then in every round.
-/// @param solution   Null for shading without one.
+/// @param solution   Null for a shading without a solution.
 /// @param max_rays   Maximum number of recorded rays, > 0.
 /// @param rounds     > 0.
 /// @throws InputError as render() does.

@@ -26,8 +26,8 @@ struct Ray {
 
 /// First hit of a ray.
 struct Hit {
-    PatchIndex patch{};  ///< The side that was hit; none if the ray escapes.
-    float distance = 0;  ///< [m]
+    PatchIndex patch{};  ///< Patch that was hit; none if the ray escapes.
+    float distance = 0;  ///< Distance of the hit from the origin [m].
 };
 
 /// Ray tracer for a scene, based on Embree. Immutable and thread-safe.

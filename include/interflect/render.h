@@ -31,13 +31,13 @@ struct SmoothingOptions {
     float crease_angle = 30;
 };
 
-/// Options of render(). The ones for paths have no effect unless traces_paths().
+/// Options of render(). The options for paths have no effect unless traces_paths() holds for the shading.
 struct PictureOptions {
     int width = 1280;  ///< [pixels], >= 1.
     int height = 720;  ///< [pixels], >= 1.
     Shading shading = Shading::hybrid;
-    /// Camera rays per pixel, >= 1, or paths, >= 2; powers of two are stratified best. With a target or a time limit
-    /// the minimum. 0: the number in default_samples.
+    /// Number of camera rays per pixel, >= 1, or of paths, >= 2; the minimum if there is a target or a time limit.
+    /// Powers of two are stratified best. 0: the number in default_samples.
     int samples = 0;
     int max_samples = default_max_samples;  ///< Maximum number of paths per pixel with a target, >= samples.
     /// Target of the picture's relative error (Rendering::relative_error), >= 0; 0: every pixel gets `samples`
@@ -50,14 +50,14 @@ struct PictureOptions {
     /// Whether the camera sees mirrors (Material::specular_reflectance). Flat and smooth shading show none.
     bool mirrors = true;
     SmoothingOptions smoothing{};  ///< For Shading::smooth.
-    int light_walks = 16'384;      ///< For Shading::instant: walks from the light sources for a batch of paths, >= 1.
+    int light_walks = 16'384;      ///< For Shading::instant: number of walks from the light sources per batch, >= 1.
     std::uint64_t seed = 1;
 };
 
 /// Reflected light of a subset of a picture's samples.
 struct SampledLight {
-    Image direct;    ///< Reflected once, in the picture's unit.
-    Image indirect;  ///< Reflected more often.
+    Image direct;    ///< Light reflected once, in the picture's unit.
+    Image indirect;  ///< Light reflected more than once.
     /// Estimated variance of `direct` and `indirect`, the mean over the channels, [y * width + x].
     std::vector<float> direct_variance, indirect_variance;
 };
@@ -67,13 +67,13 @@ struct PictureLayers {
     Image emitted;  ///< Radiance straight from emitters, in the picture's unit.
     /// All other light of the picture.
     SampledLight reflected;
-    bool is_indirect_interpolated = false;  ///< By Shading::hybrid: indirect light has no noise to remove.
+    bool is_indirect_interpolated = false;  ///< True for Shading::hybrid, whose indirect light has no noise to remove.
     /// Light of two independent halves of the samples.
     std::array<SampledLight, 2> halves;
-    Image albedo;              ///< Reflectance of the visible surface; 1 in a picture of irradiance.
-    Image normal;              ///< Its normal, towards the camera; shorter than 1 if several surfaces are visible.
-    Image position;            ///< Its position, relative to the scene's origin [m].
-    std::vector<float> depth;  ///< Its distance from the camera [m]; 0 without a hit.
+    Image albedo;    ///< Reflectance of the visible surface; 1 in a picture of irradiance.
+    Image normal;    ///< Normal of the visible surface, towards the camera; shorter than 1 as a mean of several.
+    Image position;  ///< Position of the visible surface, relative to the scene's origin [m].
+    std::vector<float> depth;  ///< Distance of the visible surface from the camera [m]; 0 without a hit.
     std::vector<float> level;  ///< Level of the visible element of the solution; 0 without one.
     float pixel_angle = 0;     ///< Angle of a pixel's side at the centre of the picture [rad]; 0 if orthographic.
     float pixel_size = 0;      ///< Side of a pixel in an orthographic picture [m]; else 0.
@@ -94,12 +94,12 @@ struct Rendering {
     /// smooth shading.
     double relative_error = std::numeric_limits<double>::quiet_NaN();
     std::int64_t rays = 0;               ///< Camera rays, reflected rays and shadow rays.
-    std::int64_t shadow_rays = 0;        ///< Included in `rays`.
+    std::int64_t shadow_rays = 0;        ///< Number of shadow rays, which are included in `rays`.
     std::int64_t paths = 0;              ///< Number of paths; 0 in flat and smooth shading.
     std::vector<std::uint32_t> batches;  ///< Batches of paths of each pixel; its standard error needs two.
     std::int64_t escaped_rays = 0;       ///< Camera rays and reflected rays without a hit.
     std::int64_t non_finite_pixels = 0;  ///< Number of pixels with an infinite or NaN value, which `image` keeps.
-    bool interrupted = false;            ///< Stopped by the caller.
+    bool interrupted = false;            ///< Whether the caller stopped it.
 };
 
 /// Draws a view of a solved scene by any Shading.
@@ -133,7 +133,7 @@ Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& vi
 /// @return  The picture, in the same unit.
 Image denoise(const PictureLayers& layers);
 
-/// Number of each element of a solution.
+/// A quantity of the elements of a solution.
 enum class ElementQuantity {
     irradiance,         ///< Luminance of H [lm/m^2 or W/m^2].
     importance,         ///< Importance psi [1/m^2].
@@ -143,16 +143,16 @@ enum class ElementQuantity {
     error,              ///< Relative standard error of the luminance of H.
 };
 
-/// Name and unit: "irradiance [lm/m^2]".
+/// Returns the name and unit, such as "irradiance [lm/m^2]".
 std::string label(ElementQuantity quantity);
 
 /// A picture of numbers.
 struct QuantityPicture {
-    Image values;  ///< Means over visible surfaces; 0 without surfaces.
-    Image shown;   ///< False colours; escaped rays are black.
+    Image values;  ///< Means of the quantity over visible surfaces; 0 without surfaces.
+    Image shown;   ///< The values in false colours; escaped rays are black.
     ColourScale scale;
-    std::int64_t non_finite_pixels = 0;  ///< In either image.
-    bool interrupted = false;            ///< The remaining pixels are 0.
+    std::int64_t non_finite_pixels = 0;  ///< Number of pixels that are infinite or NaN in either image.
+    bool interrupted = false;            ///< Whether the caller stopped it; the remaining pixels are 0.
 };
 
 /// Draws a number of the visible elements, without shading, in false colours. The scale is fitted to the visible

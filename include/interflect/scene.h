@@ -35,10 +35,10 @@ inline constexpr std::uint32_t max_texels_of_side = 1u << 14;
 /// Largest texture coordinate. Single precision resolves 1 / 2000 texel there.
 inline constexpr float farthest_texture_coordinate = 4096;
 
-/// Bilinear interpolation of the texture at (u, v), between texel centres.
+/// Returns the texture at (u, v), by bilinear interpolation between texel centres.
 Rgb texel_at(const Texture& texture, const V2f& coordinate);
 
-/// Maximum of each channel: an upper bound of the interpolated texture.
+/// Returns the maximum of each channel, which is an upper bound of the interpolated texture.
 Rgb largest_texel(const Texture& texture);
 
 /// Fault of a texture (its size, a texel that is negative or not finite), in words without a subject; empty if valid.
@@ -60,12 +60,13 @@ struct LightGroup {
 /// Maximum number of groups, including that of unmatched sources.
 inline constexpr std::size_t max_light_groups = 32;
 
-/// Whether a pattern matches all of `name`. O(product of both lengths).
+/// Returns whether a pattern matches all of `name`. Cost: O(product of both lengths).
 bool matches(std::string_view pattern, std::string_view name);
-/// Whether a pattern matches the name of an object, "room.desk.leg", or of an enclosing one, "room" or "room.desk".
+/// Returns whether a pattern matches the name of an object, such as "room.desk.leg", or of an enclosing object, "room"
+/// or "room.desk".
 bool matches_object(std::string_view pattern, std::string_view name);
 
-/// Group of each source: the first whose pattern matches.
+/// Group of each light source, which is the first group whose pattern matches.
 struct SourceGroups {
     std::vector<std::string> names;          ///< Names of Scene::light_groups, then "other" if a source matches none.
     std::vector<std::uint8_t> of_patch;      ///< Index into names; undefined for patches that do not emit.
@@ -77,17 +78,18 @@ struct SourceGroups {
     std::size_t index_of(const std::string& name) const;
 };
 
-/// Empty for a scene without groups. @throws InputError for more than max_light_groups or a duplicate name.
+/// Returns the group of each source; empty for a scene without groups.
+/// @throws InputError for more than max_light_groups or a duplicate name.
 SourceGroups source_groups(const Scene& scene);
 
-/// @throws InputError for a group without sources, and as source_groups().
+/// Requires that each group has sources. @throws InputError for a group without sources, and as source_groups() does.
 void require_sources_of_groups(const Scene& scene);
 
-/// One group for each top-level object with a source; if at most one object has sources, one for each material and
-/// luminaire. @throws InputError for more than max_light_groups.
+/// Returns a group for each top-level object that has sources. If at most one object has sources, returns a group for
+/// each emitting material and each luminaire. @throws InputError for more than max_light_groups.
 std::vector<LightGroup> groups_by_name(const Scene& scene);
 
-/// Copy of the scene with the sources of each group scaled. Materials keep their order.
+/// Returns a copy of the scene with the sources of each group scaled. Materials keep their order.
 /// @param factors  One per group of source_groups(scene); >= 0.
 Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<float>& factors);
 
@@ -190,16 +192,16 @@ void require_no_faults(const std::vector<Fault>& faults, const std::string& purp
 /// Largest coordinate of faces and views, in the world and from the scene's origin [m]; a double resolves 1/8 m there.
 inline constexpr double farthest_coordinate = 1e15;
 
-/// Whether no coordinate of a point exceeds farthest_coordinate or is NaN.
+/// Returns whether no coordinate of a point exceeds farthest_coordinate or is NaN.
 bool is_within_reach(const Imath::V3d& point);
 
-/// Area of a patch [m^2].
+/// Returns the area of a patch [m^2].
 float patch_area(const Scene& scene, const Patch& patch);
 
-/// Unit normal of a patch, towards its lit side; of a warped quadrilateral the mean over its area.
+/// Returns the unit normal of a patch, towards its lit side. For a warped quadrilateral it is the mean over its area.
 V3f patch_normal(const Scene& scene, const Patch& patch);
 
-/// Whether a patch or a luminaire emits light.
+/// Returns whether a patch or a luminaire emits light.
 bool emits_light(const Scene& scene);
 
 /// Returns the view of that name. @throws InputError that lists the views.
@@ -209,9 +211,9 @@ const View& find_view(const Scene& scene, const std::string& name);
 View overview(const Scene& scene);
 
 /// Returns an orthographic view of the scene beyond a plane, with a margin; z up, or y in views along z.
-/// @param point  On the plane, in world coordinates [m].
+/// @param point      Point on the plane, in world coordinates [m].
 /// @param direction  Normal to the plane; not 0.
-/// @param aspect  Width over height.
+/// @param aspect     Width over height of the picture.
 View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& direction, float aspect);
 
 /// @throws InputError for a view that defines no picture of this size: without a direction, with pixels finer than

@@ -61,7 +61,7 @@ constexpr bool traces_paths(Shading shading) { return shading != Shading::flat &
 struct DefaultSamples {
     int pixel = 0;   ///< Camera rays or paths.
     int texel = 0;   ///< Points where direct light is sampled, or gathered directions; 1: the centre of the texel.
-    int vertex = 0;  ///< The same. More than for a texel, because a vertex affects a larger surface.
+    int vertex = 0;  ///< As for a texel, but more, because a vertex affects a larger surface.
     int point = 0;   ///< Paths of a measuring point.
 };
 

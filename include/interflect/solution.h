@@ -25,9 +25,10 @@ class ElementForest;
 struct IterationReport {
     int iteration = 0;  ///< 0 is the preparation of the run, if any.
     double seconds = 0;
-    std::int64_t rays = 0;             ///< Sum of the two below; in a combined iteration every ray carries both.
-    std::int64_t power_rays = 0;       ///< For power, by the sampling distribution.
-    std::int64_t importance_rays = 0;  ///< For importance; combined iterations split their rays in proportion.
+    std::int64_t rays = 0;        ///< Sum of the two below; in a combined iteration every ray carries both.
+    std::int64_t power_rays = 0;  ///< Rays sampled by power.
+    std::int64_t importance_rays =
+        0;  ///< Rays sampled by importance; combined iterations split their rays in proportion.
     std::int64_t escaped_rays = 0;
     std::uint32_t elements = 0, leaves = 0;
     RgbD total_power{0, 0, 0};    ///< Sum of P [lm or W].
@@ -49,7 +50,7 @@ struct IterationReport {
 
 struct IterationTraffic {
     int iteration = 0;
-    std::vector<Ranks::Traffic> of_ranks;  ///< Since the last iteration.
+    std::vector<Ranks::Traffic> of_ranks;  ///< Traffic of each rank since the last iteration.
 };
 
 /// Solution and history of a run. Vectors have one entry per element of the forest; inner elements hold the mean of
@@ -68,18 +69,18 @@ struct Solution {
     /// Largest channel of M + H of each patch before dim() [as H]; empty if not dimmed. Exports choose the faces that
     /// they show from it, so that all dimmed states have the same faces.
     std::vector<float> undimmed_light;
-    std::vector<float> view_importance;       ///< v; empty without a view.
-    std::vector<float> indirect_importance;   ///< psi - v; empty without a view.
-    std::vector<float> standard_error;        ///< Estimate for the luminance of H [as H].
+    std::vector<float> view_importance;       ///< View importance v [1/m^2]; empty without a view.
+    std::vector<float> indirect_importance;   ///< Indirect importance psi - v [1/m^2]; empty without a view.
+    std::vector<float> standard_error;        ///< Estimated standard error of the luminance of H [as H].
     std::vector<float> discretisation_error;  ///< Estimated deviation of H within the element from its mean [as H].
     std::vector<float> rays;                  ///< Number of rays started on the element.
     SolveOptions options;
     std::vector<IterationReport> iterations;
-    /// Of iterations by several processes; not in solution files and checkpoints.
+    /// Traffic of iterations by several processes; not in solution files and checkpoints.
     std::vector<IterationTraffic> traffic;
     RgbD emitted_power{0, 0, 0};  ///< Power of all sources [lm or W].
     std::int64_t non_finite = 0;  ///< Non-finite radiosities, which are not shot; 0 in a correct run.
-    bool interrupted = false;     ///< Stopped by the caller before a limit was reached.
+    bool interrupted = false;     ///< Whether the caller stopped the run before a limit was reached.
 };
 
 /// A leaf of the mesh: a patch that is not divided, or a piece of one.
@@ -98,21 +99,22 @@ struct Leaf {
     float discretisation_error = 0;  ///< As Solution::discretisation_error.
 };
 
-/// The mesh of a solution, with one entry per leaf, in the order of the elements.
-/// @throws InputError for a solution of another scene. O(elements).
+/// Returns the mesh of a solution, with one entry per leaf, in the order of the elements. Cost: O(elements).
+/// @throws InputError for a solution of another scene.
 std::vector<Leaf> leaves(const Scene& scene, const Solution& solution);
 
 /// Balance of the emitted power, per channel [lm or W].
 struct PowerBalance {
-    RgbD emitted{0, 0, 0};   ///< By surfaces, and by luminaires into the scene.
-    RgbD absorbed{0, 0, 0};  ///< Sum of (1 - rho - tau) H A, with H from the solution.
-    RgbD escaped{0, 0, 0};   ///< Through openings, averaged as irradiance is.
+    RgbD emitted{0, 0, 0};   ///< Power emitted by surfaces, and by luminaires into the scene.
+    RgbD absorbed{0, 0, 0};  ///< Absorbed power: sum of (1 - rho - tau) H A, with H from the solution.
+    RgbD escaped{0, 0, 0};   ///< Power lost through openings, averaged as irradiance is.
 
     /// Unaccounted power, relative to emitted power, summed over all channels; 0 without emission.
     double relative_difference() const;
 };
 
-/// Power balance of a solution of the scene. The difference contains the noise of averaged iterations. O(elements).
+/// Computes the power balance of a solution. The difference contains the noise of averaged iterations. Cost:
+/// O(elements).
 PowerBalance power_balance(const Scene& scene, const Solution& solution);
 
 /// Scales the sources of a light group and all of its light, without tracing rays; the result equals a solution of the
@@ -139,8 +141,8 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
 /// @throws InputError for a file that is missing, damaged or of another kind.
 SolvedScene read_solution(const std::filesystem::path& path);
 
-/// Whether the file starts like a solution file of this or an older version; false if it cannot be read. True for a
-/// current file with damaged first bytes.
+/// Returns whether the file starts like a solution file of this or an older version; false if it cannot be read. Also
+/// true for a current file with damaged first bytes.
 bool is_solution_file(const std::filesystem::path& path);
 
 }  // namespace interflect

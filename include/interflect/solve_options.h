@@ -58,15 +58,15 @@ struct Method {
 /// All methods.
 extern const std::span<const Method> methods;
 
-/// The method of that name. @throws InputError that lists the methods.
+/// Returns the method of that name. @throws InputError that lists the methods.
 const Method& find_method(const std::string& name);
 
-/// Default of SolveOptions, replaced by default_method().
+/// Default of SolveOptions, which default_method() replaces.
 inline constexpr Method automatic_method{.name = "automatic"};
-/// ihsrr with views, else hsrr.
+/// Returns the method ihsrr if there are views, else hsrr.
 const Method& default_method(bool has_views);
 
-/// Above this, the fixed-point sums of transport would round the payload of single rays.
+/// With more rays, the fixed-point sums of transport would round the payload of single rays.
 inline constexpr std::int64_t max_rays_per_iteration = 100'000'000'000;
 inline constexpr int max_camera_rays = 1 << 22;
 
@@ -100,18 +100,20 @@ struct ImportanceOptions {
 struct ExperimentalOptions {
     PointSet points = PointSet::sobol;
 
-    /// False: each iteration is an independent pass, which follows light from the emitters until little is left; passes
-    /// are averaged. True: as in the paper, each iteration is one bounce of the running mean, from darkness through
-    /// warm_up iterations; methods that keep every ray then skip the initial pass.
+    /// If false, each iteration is an independent pass, which follows light from the emitters until little is left;
+    /// passes are averaged. If true, each iteration is one bounce of the running mean, as in the paper, from darkness
+    /// through warm_up iterations; methods that keep every ray then skip the initial pass.
     bool one_bounce = false;
     int warm_up = 0;     ///< Iterations with tau = 1 before averaging begins; >= 0.
     int iterations = 0;  ///< Number of averaged iterations, >= 0; 0: until a limit is reached.
     /// Rays per iteration, at most max_rays_per_iteration; 0: grows with the number of rays averaged.
     std::int64_t rays_per_iteration = 0;
 
-    /// With RefinementCriterion::variance: reduces differences that are mostly noise (docs/method/method.md).
+    /// With RefinementCriterion::variance: whether differences that are mostly noise are reduced
+    /// (docs/method/method.md).
     bool shrinkage = true;
-    /// With shrinkage: also between neighbouring patches that face alike. Method hr: links clusters of many patches.
+    /// Whether shrinkage also reduces differences between neighbouring patches with similar normals. For method hr:
+    /// whether it links clusters of patches.
     bool clusters = true;
     /// Threshold of Eq. 14 and 15 at 20 million averaged rays, relative to visible power (without a view: emitted
     /// power); > 0. Method hr uses it unchanged.
@@ -126,7 +128,7 @@ struct ExperimentalOptions {
 
     bool separate_iterations = false;    ///< Separate steps for importance and power ('si'), else combined ('ci').
     bool importance_at_patches = false;  ///< Importance per patch, else per leaf ('hi').
-    bool total_importance = false;       ///< Eq. 9 instead of Eq. 10.
+    bool total_importance = false;       ///< Whether importance is that of Eq. 9, not of Eq. 10.
     double alpha = 0.1;                  ///< Fraction of rays for importance, Eq. 11; in [0, 1].
     double beta = 0.1;  ///< Fraction of power rays that ignore importance, so all light is sampled; in [0, 1].
 };
@@ -165,8 +167,8 @@ struct GivenLimits {
 /// defaults that depend on other settings.
 struct GivenSettings {
     std::optional<Method> method = {};             ///< Default: default_method() for the views.
-    std::optional<ImportanceUse> importance = {};  ///< Default: as the method.
-    GivenLimits limits = {};                       ///< Without any: those of SolveOptions.
+    std::optional<ImportanceUse> importance = {};  ///< Default: that of the method.
+    GivenLimits limits = {};                       ///< If none is given, the limits of SolveOptions apply.
     /// Whether the preset of the paper applies. `others` then starts from use_published_algorithm().
     bool is_published = false;
     /// ExperimentalOptions::rays_per_iteration. Default: 1/110 of the rays with the preset, otherwise 0.

@@ -23,11 +23,11 @@ struct SavedRun;
 
 /// State of a run when Solver::advance() returns.
 struct AdvanceReport {
-    double error = std::numeric_limits<double>::infinity();  ///< Estimated; infinite before an estimate exists.
-    std::int64_t rays = 0;                                   ///< Since the run began.
-    double seconds = 0;                                      ///< Spent in Solver::advance() since the run began.
-    bool is_finished = false;                                ///< The run has reached a limit of its plan.
-    bool is_stopped = false;                                 ///< Monitor::stop ended it.
+    double error = std::numeric_limits<double>::infinity();  ///< Estimated error; infinite before an estimate exists.
+    std::int64_t rays = 0;                                   ///< Number of rays since the run began.
+    double seconds = 0;                                      ///< Time in Solver::advance() since the run began [s].
+    bool is_finished = false;                                ///< Whether the run has reached a limit of its plan.
+    bool is_stopped = false;                                 ///< Whether Monitor::stop ended it.
 };
 
 /// Solves Eq. 1 of Prikryl et al. 2000 step by step; see solve().
@@ -68,14 +68,14 @@ class Solver {
     /// @throws InputError for a limit out of range.
     void set_plan(const Limits& limits);
 
-    /// Current solution, computed on first request in O(elements).
+    /// Returns the current solution, which is computed on first request in O(elements).
     /// @note The reference is valid until the solver changes.
     const Solution& solution() const;
-    /// The same, valid also when the solver has changed or is gone; without a copy.
+    /// Returns the current solution without a copy. It remains valid when the solver changes or is destroyed.
     std::shared_ptr<const Solution> shared_solution() const;
-    /// The same without a copy. The solver must not be used afterwards.
+    /// Returns the current solution without a copy. The solver must not be used afterwards.
     Solution take_solution() &&;
-    /// The scene, with its sources as scaled by set_dimming().
+    /// Returns the scene, with its sources scaled by set_dimming().
     const Scene& scene() const { return *shared_scene(); }
     const RayCaster& ray_caster() const { return *shared_ray_caster(); }
     std::shared_ptr<const Scene> shared_scene() const;
@@ -85,7 +85,7 @@ class Solver {
     /// Writes the complete state to a solution file (docs/files/solution-file.md), through a temporary file.
     /// @throws std::runtime_error if it cannot be written.
     void save(const std::filesystem::path& path) const;
-    /// Returns the bytes of such a file without checksums, for another process of the same program.
+    /// Returns the bytes of a file of save() without checksums, for another process of the same program.
     std::string image() const;
     /// Reads a file of save(). @throws InputError for a file that is missing, damaged, without the state of a run, or
     /// of another version of Interflect.

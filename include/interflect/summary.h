@@ -18,7 +18,7 @@ namespace interflect {
 struct MaterialSummary {
     std::uint32_t material = 0;        ///< Index into Scene::materials.
     double area = 0;                   ///< Area of its faces, one side of each [m^2].
-    RgbD reflectance{0, 0, 0};         ///< Mean over these faces, with textures.
+    RgbD reflectance{0, 0, 0};         ///< Mean reflectance of these faces, with textures.
     std::size_t emitting_patches = 0;  ///< Number of patches that emit.
     std::size_t emitting_objects = 0;  ///< Objects that contain these patches.
     double emitting_area = 0;          ///< Area of these patches [m^2].
@@ -31,7 +31,7 @@ struct SceneSummary {
     std::size_t triangles = 0;               ///< Number of triangular patches; others are quadrilaterals.
     std::size_t two_sided = 0;               ///< Number of patches on two-sided faces.
     double area = 0;                         ///< Area of all faces, one side of each [m^2].
-    RgbD emitted_power{0, 0, 0};             ///< By surfaces, and by luminaires into the scene [lm or W].
+    RgbD emitted_power{0, 0, 0};             ///< Power emitted by surfaces, and by luminaires into the scene [lm or W].
     std::vector<MaterialSummary> materials;  ///< Used materials, by index.
     std::vector<RgbD> luminaires;            ///< Power of each luminaire; of outside light, into the scene [lm or W].
 };
@@ -42,7 +42,7 @@ SceneSummary summarise(const Scene& scene, const RayCaster& ray_caster);
 
 /// Emission that is lost because coincident faces cover the emitters.
 struct CoveredEmission {
-    std::int64_t wholly = 0, partly = 0;  ///< Numbers of emitting patches.
+    std::int64_t wholly = 0, partly = 0;  ///< Number of emitting patches that are wholly and partly covered.
     RgbD power{0, 0, 0};                  ///< Lost power [lm or W].
 };
 

@@ -27,20 +27,20 @@ Scene with_opaque_backs(const Scene& scene);
 /// Sides of two-sided faces that belong to groups; the others only block. One-sided faces always belong.
 enum class FaceSides {
     both,
-    front,  ///< The side in the file: vertices counter-clockwise.
+    front,  ///< The side in the file, from which the vertices are counter-clockwise.
     back,
 };
 
-/// One group per patch that has a named object or material, in the order of the scene. Names: "object:index" or
-/// "index".
+/// Returns a group for each patch that has a named object or material, in the order of the scene. The names are
+/// "object:index" or "index".
 std::vector<FaceGroup> facet_groups(const Scene& scene, FaceSides sides = FaceSides::both);
-/// One group per named object that has patches, in the order of Scene::objects. Nested objects are separate groups;
-/// patches without an object belong to no group.
+/// Returns a group for each named object that has patches, in the order of Scene::objects. Nested objects are separate
+/// groups; patches without an object belong to no group.
 std::vector<FaceGroup> object_groups(const Scene& scene, FaceSides sides = FaceSides::both);
-/// One group per named material that has patches, in the order of Scene::materials.
+/// Returns a group for each named material that has patches, in the order of Scene::materials.
 std::vector<FaceGroup> material_groups(const Scene& scene, FaceSides sides = FaceSides::both);
 
-/// object_groups(), or material_groups() if no object with patches has a name.
+/// Returns object_groups(), or material_groups() if no object with patches has a name.
 std::vector<FaceGroup> named_groups(const Scene& scene, FaceSides sides = FaceSides::both);
 
 /// A group by the names of its objects or materials.
@@ -48,7 +48,7 @@ struct FacePattern {
     std::string name;
     std::string pattern;  ///< As LightGroup::pattern.
 };
-/// Each patch belongs to the first pattern that matches its object or its material, if any.
+/// Returns a group for each pattern. A patch belongs to the first pattern that matches its object or material, if any.
 /// @throws InputError for a pattern without patches, an empty name or pattern, and a repeated name.
 std::vector<FaceGroup> pattern_groups(const Scene& scene, std::span<const FacePattern> patterns,
                                       FaceSides sides = FaceSides::both);

@@ -53,22 +53,22 @@ struct RenderArguments {
     SolverOptions solver;
     PathTracerArguments path;
     std::filesystem::path output;
-    Size size;               // of the picture with its legend
-    PictureOptions picture;  // of the view, see complete()
+    Size size;               // size of the picture with its legend
+    PictureOptions picture;  // options of the view, see complete()
     Exposure exposure;
     Tonemap tonemap = Tonemap::srgb;
     float display_luminance = usual_display_luminance;
     Shown shown = Shown::light;
     FalseColourOptions false_colour;
-    int legend_rows = 0;  // at the foot of the picture
+    int legend_rows = 0;  // height of the legend at the foot of the picture
     bool has_default_samples = true;
 
     bool is_in_false_colours() const { return is_quantity(shown) || false_colour.measured; }
     /// Height of the view, above the legend [pixels].
     int rows() const { return size.height - legend_rows; }
-    /// Time left to the command [s]; infinite without --time.
+    /// Time left for the command [s]; infinite without --time.
     double seconds_left() const { return solver.time() - seconds_of_process(); }
-    /// Sets the options of the view that follow from others.
+    /// Derives the options of the view from the other options.
     void complete() {
         picture.width = size.width;
         picture.height = rows();
@@ -80,7 +80,7 @@ struct RenderArguments {
     }
 };
 
-/// Returns the requested view, the scene's first, or an overview.
+/// Returns the requested view, else the first view of the scene, else an overview.
 View view_to_draw(const Scene& scene, const RenderArguments& options) {
     if (options.cut.is_given()) return options.cut.view(scene, options.size.width, options.rows());
     const std::vector<View> views = options.view.views(scene);
@@ -96,10 +96,10 @@ View view_to_draw(const Scene& scene, const RenderArguments& options) {
 struct Picture {
     Image image;
     std::string quantity = "radiance [cd/m^2]";
-    std::optional<float> exposure;  // empty if it has no meaning
+    std::optional<float> exposure;  // [stops]; empty for false colours
     std::int64_t non_finite_pixels = 0;
-    bool is_dark = false;  // no light is visible
-    Rendering traced{};    // source of the layers
+    bool is_dark = false;  // whether no light is visible
+    Rendering traced{};    // result of path tracing, from which layers are written
 };
 
 bool is_for_people(const RenderArguments& options) { return needs_tone_mapping(require_image_format(options.output)); }
@@ -108,13 +108,14 @@ bool is_black(const Image& image) {
     return std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0); });
 }
 
-/// Returns the exposure [stops]. Operators for absolute luminance choose the brightness, so automatic is 0.
+/// Returns the exposure [stops]. The automatic exposure is 0 for operators of absolute luminance, which choose the
+/// brightness themselves.
 float exposure_of(const Image& light, const RenderArguments& options) {
     const bool automatic = options.exposure.relative && !is_absolute(options.tonemap);
     return options.exposure.stops + (automatic ? automatic_exposure(light) : 0);
 }
 
-/// Uses false colours for display formats only.
+/// Draws false colours in display formats; other formats contain the values.
 Picture picture_of_numbers(const Image& values, const RenderArguments& options) {
     Picture picture;
     picture.quantity = options.false_colour.label();
@@ -122,7 +123,7 @@ Picture picture_of_numbers(const Image& values, const RenderArguments& options) 
     return picture;
 }
 
-/// Uses tone mapping for display formats only.
+/// Applies tone mapping for display formats; other formats contain the light.
 Picture picture_of_light(const Image& light, const RenderArguments& options) {
     Picture picture;
     picture.exposure = exposure_of(light, options);
@@ -131,7 +132,7 @@ Picture picture_of_light(const Image& light, const RenderArguments& options) {
     return picture;
 }
 
-/// @param light  Radiance, or irradiance if that is shown.
+/// Converts the light to a picture. @param light  Radiance, or irradiance if that is shown.
 Picture picture_of(const Image& light, std::int64_t non_finite_pixels, const RenderArguments& options) {
     Picture picture = options.false_colour.measured ? picture_of_numbers(luminances(light), options)
                                                     : picture_of_light(light, options);
@@ -140,7 +141,7 @@ Picture picture_of(const Image& light, std::int64_t non_finite_pixels, const Ren
     return picture;
 }
 
-/// @param solution  Null for shading without one.
+/// Draws the light by tracing paths. @param solution  Null for shading without a solution.
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
     Rendering traced = run_path_tracer(scene, solution, ray_caster, view, options.picture, options.path);
@@ -174,7 +175,7 @@ int legend_rows(const RenderArguments& options) {
     return 0;
 }
 
-/// Uses false colours for display formats only.
+/// Draws a quantity of the elements, in false colours for display formats.
 Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                       const RenderArguments& options) {
     DrawingProgress progress;
@@ -202,8 +203,8 @@ std::array<NamedFile, 3> outputs_of(const RenderArguments& options) {
         {{"--output", options.output}, {"--stats", options.solver.stats}, {"--error-image", options.path.error_image}}};
 }
 
-/// Whether coarser pictures may precede the final one: not within a time limit, not in .exr and .hdr, and not in pipes
-/// and devices.
+/// Returns whether coarser pictures may precede the final picture. Previews are not written under a time limit, in .exr
+/// and .hdr, for small pictures, and to pipes and devices.
 bool takes_previews(const RenderArguments& options) {
     constexpr std::size_t fewest_pixels = 1 << 16;  // smaller pictures take less than a second
     if (std::isfinite(options.solver.time())) return false;
@@ -213,7 +214,7 @@ bool takes_previews(const RenderArguments& options) {
     return options.output != "-" && (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status));
 }
 
-/// Writes a picture of the light so far, with few samples, which a better one replaces.
+/// Writes a preview of the light so far, with few samples. A later picture replaces it.
 void write_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
     constexpr int preview_samples = 4;
@@ -252,7 +253,7 @@ DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const Ray
     return predict_time_of_elements(scene, solution, ray_caster, view, options.picture);
 }
 
-/// Draws smooth shading instead of paths if a signal leaves pixels without light.
+/// Draws the light of a solution. If a signal stops path tracing before every pixel has light, draws smooth shading.
 Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                       RenderArguments& options) {
     if (traces_paths(options.picture.shading)) {
@@ -270,7 +271,7 @@ Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, co
                                       : draw_light(solved, ray_caster, view, options);
 }
 
-/// Draws the light of a solution; solves a scene first.
+/// Draws the light of a solution. If the input is a scene, solves it first.
 void run_solution(RenderArguments& options, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
@@ -278,7 +279,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     const View view = view_to_draw(solved.scene, options);
     require_picture(view, options.size.width, options.size.height, solved.scene.origin);
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
-    // A plan shows the whole scene equally: importance has no benefit.
+    // A plan drawing shows the whole scene equally, so importance has no benefit.
     const std::vector<View> important = options.cut.is_given() ? std::vector<View>() : std::vector{view};
     SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
     if (!solved_before)
@@ -294,13 +295,15 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     if (is_limited) {
         const double left = std::max(shortest_time, options.seconds_left());
         seconds_to_preview = std::min(seconds_to_preview, left / 10);
-        solve_options.limits.time = left / 3;  // until the time of drawing is known
+        solve_options.limits.time = left / 3;  // provisional, until the drawing time is predicted
         if (options.has_default_samples && traces_paths(options.picture.shading))
-            options.picture.samples = options.picture.max_samples;  // the time ends the picture
+            options.picture.samples = options.picture.max_samples;  // the time limit ends the picture earlier
     }
 
     std::optional<DrawingTime> planned;
-    const auto plan_or_preview = [&](const Solution& so_far) -> std::optional<Limits> {
+    // Called once after some seconds of solving. Writes a preview; with --time, predicts the drawing time and returns
+    // the time limit that remains for solving.
+    const auto preview_and_plan_time = [&](const Solution& so_far) -> std::optional<Limits> {
         if (takes_previews(options)) write_preview(solved.scene, so_far, ray_caster, view, options);
         if (!is_limited) return {};
         planned = plan_drawing(solved.scene, so_far, ray_caster, view, options);
@@ -313,8 +316,9 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     };
     if (!solved_before)
         solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory, {},
-                                    {.after = seconds_to_preview, .use = plan_or_preview});
-    if (traces_paths(options.picture.shading) && !planned && !is_stop_requested()) plan_or_preview(solved.solution);
+                                    {.after = seconds_to_preview, .use = preview_and_plan_time});
+    if (traces_paths(options.picture.shading) && !planned && !is_stop_requested())
+        preview_and_plan_time(solved.solution);
 
     if (is_limited && planned) {
         PictureOptions& picture = options.picture;
@@ -328,7 +332,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     if (!solved_before) stats.write(solved.scene, solved.solution);
 }
 
-/// Draws the light by paths without a solution; uses only the scene of a solution file.
+/// Draws the light by tracing paths without a solution. From a solution file, only the scene is used.
 void run_paths(const RenderArguments& options, PendingFile& output) {
     Scene scene = read_scene_or_solution(options.scene, options.dimming).scene;
     require_no_scene_files(scene, outputs_of(options));
@@ -344,7 +348,7 @@ void run_paths(const RenderArguments& options, PendingFile& output) {
 
 /// @throws std::runtime_error if a picture of elements does not fit into memory.
 void require_memory_for_elements(Size size) {
-    constexpr std::size_t bytes_per_pixel = 64;  // measured: 56 for light, picture and false colours
+    constexpr std::size_t bytes_per_pixel = 64;  // measured: 56 bytes for light, picture and false colours
     require_free_memory(size.pixels() * bytes_per_pixel,
                         fmt::format("a picture of {} x {} pixels", size.width, size.height),
                         "a smaller --size needs less");
@@ -375,14 +379,14 @@ void check_false_colours(const RenderArguments& options) {
                      options.output.string());
 }
 
-/// Refuses all invalid options before the first ray.
+/// Checks all options before it traces the first ray, then draws the picture.
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
     check_option("--output", [&] { return require_image_format(options.output); });
     Shading& shading = options.picture.shading;
     const bool uses_solution = needs_solution(shading);
     if (options.shown != Shown::light && uses_solution && traces_paths(shading))
-        shading = Shading::smooth;  // of elements
+        shading = Shading::smooth;  // quantities of elements are drawn without tracing paths
     if (!uses_solution)
         refuse_solver_options(command);
     else if (!traces_paths(shading))

@@ -302,8 +302,9 @@ Size parse_size(const std::string& text) {
     std::string_view rest = text;
     double width = 0, height = 0;
     const bool parsed = take_number(rest, width) && take(rest, 'x') && take_number(rest, height) && rest.empty();
-    const auto fits = [](double n) { return n >= 1 && n <= 32768 && n == std::floor(n); };
-    if (!parsed || !fits(width) || !fits(height)) refuse(text, "WIDTHxHEIGHT, such as 640x360, each from 1 to 32768");
+    const auto is_valid_extent = [](double n) { return n >= 1 && n <= 32768 && n == std::floor(n); };
+    if (!parsed || !is_valid_extent(width) || !is_valid_extent(height))
+        refuse(text, "WIDTHxHEIGHT, such as 640x360, each from 1 to 32768");
     return {static_cast<int>(width), static_cast<int>(height)};
 }
 

@@ -14,12 +14,14 @@ using namespace detail;
 
 namespace {
 
+/// A scene has a leak if the share of escaping rays is between these limits. A larger share belongs to an open
+/// scene.
 constexpr double min_leak = 1e-3, max_leak = 0.05;
-/// Distance from an escaping ray to its parallels, relative to the scene's diagonal.
+/// Distance between an escaping ray and parallel test rays, relative to the scene's diagonal.
 constexpr float distance_beside = 0.02f;
 constexpr std::size_t rays_beside = 8;
 
-/// Returns whether most parallels of a ray hit something.
+/// Returns whether most of the rays parallel to an escaping ray hit a surface.
 bool is_through_a_gap(const RayCaster& ray_caster, const Ray& ray, float distance) {
     const V3f& d = ray.direction;
     const V3f across = (std::abs(d.x) < 0.5f ? V3f(1, 0, 0) : V3f(0, 1, 0)).cross(d).normalized(),

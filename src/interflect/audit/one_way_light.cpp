@@ -20,11 +20,13 @@ using namespace detail;
 
 namespace {
 
+/// Sums of the light of faces.
 struct LightByFace {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, double> power;  // by object and material
+    std::map<std::pair<std::uint32_t, std::uint32_t>, double> power;  // power by object and material
     double sum = 0, reflected = 0;
 
-    /// @param received  How often the light is received, including the first time.
+    /// Adds light that arrives at a face. @param received  Number of times that surfaces receive it, including the
+    /// first.
     void add(const Patch& face, double arriving, double received) {
         power[{face.object, face.material}] += arriving * received;
         sum += arriving * received;
@@ -37,13 +39,13 @@ struct LightByFace {
     }
 };
 
-/// Compares the hits of light rays and of their reverses.
+/// Compares the hits of light rays with the hits of the reversed rays.
 class WaysBack {
   public:
     WaysBack(const Scene& scene, const RayCaster& ray_caster)
         : scene_(scene), ray_caster_(ray_caster), materials_(scene, ray_caster) {}
 
-    /// @param source  The patch that the ray leaves; for a luminaire the index `none`.
+    /// Tests a ray. @param source  Patch at the start of the ray; `none` for luminaires.
     void add(const Ray& ray, PatchIndex source, double power) {
         Hit hit = trace(ray);
         if (hit.patch == none) return;
@@ -53,7 +55,7 @@ class WaysBack {
             extra_.add(scene_.patches[face], power, spread(place, hit.patch));
             return;
         }
-        // Faces behind a one-sided one may see the source through its back.
+        // From faces behind a one-sided face, the source may be visible through its back.
         const std::uint32_t stops = hit.patch;
         while (scene_.patches[hit.patch].other_side == none) {
             const Ray behind{place - ray_caster_.ray_offset(hit.patch) * normal(hit.patch), ray.direction};
@@ -84,15 +86,15 @@ class WaysBack {
     std::uint32_t face_between(const V3f& start, std::uint32_t source, const V3f& place, PatchIndex patch) const {
         constexpr float rounding = 1e-4f, offsets = 8;
         const float offset = ray_caster_.ray_offset(patch), distance = (start - place).length();
-        if (!(distance > 0)) return none;  // in a corner
+        if (!(distance > 0)) return none;  // the ray starts in a corner
         const Hit back = trace({place + offset * normal(patch), (start - place) / distance});
         const bool is_seen =
             back.patch == none || back.patch == source || back.distance >= distance * (1 - rounding) - offsets * offset;
         return is_seen ? none : back.patch;
     }
 
-    /// Samples how often light is received from `place` on, by a random walk. It ends at one-way lines of sight, so
-    /// light inside closed solids counts 0.
+    /// Samples by a random walk how many surfaces receive light that starts at `place`. The walk ends at one-way lines
+    /// of sight, so light inside closed solids counts 0.
     double spread(V3f place, PatchIndex patch) {
         constexpr float longest_walk = 1000;
         float sum = 0;
@@ -128,7 +130,7 @@ void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solutio
                  from.power_of_each());
 }
 
-/// Traces rays of each part in proportion to its power, rounded up.
+/// Traces rays of each luminaire part. Their number is in proportion to its power, rounded up.
 void add_luminaires(const Scene& scene, WaysBack& ways) {
     const Emission emission(scene);
     const double total = channel_sum(emission.total_power());

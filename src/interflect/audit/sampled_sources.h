@@ -19,12 +19,12 @@ inline constexpr std::int64_t audit_rays = 1 << 16;
 /// Leaves sampled systematically in proportion to their power.
 struct SampledSources {
     std::vector<ElementIndex> leaves;
-    double power = 0;  ///< Sum of channels and leaves.
+    double power = 0;  ///< Total power, sum of the channels.
 
     double power_of_each() const { return power / static_cast<double>(leaves.size()); }
 };
 
-/// @throws InputError for a ray caster or a solution of another scene.
+/// Samples leaves. @throws InputError for a ray caster or a solution of another scene.
 SampledSources sample_sources(const Scene& scene, const RayCaster& ray_caster, const Solution& solution);
 
 /// Samples a ray from a leaf. @param sample  Index of the ray's random numbers. @param points  Working memory.

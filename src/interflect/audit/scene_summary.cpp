@@ -11,7 +11,7 @@ using namespace detail;
 
 namespace {
 
-/// Objects with an emitting patch of each material, by index.
+/// Indices of the objects that have an emitting patch, for each material.
 using EmittingObjects = std::map<std::uint32_t, std::set<std::uint32_t>>;
 
 void add_shape(const Scene& scene, const Patch& patch, SceneSummary& summary) {
@@ -21,7 +21,7 @@ void add_shape(const Scene& scene, const Patch& patch, SceneSummary& summary) {
     summary.two_sided += patch.other_side != none;
 }
 
-/// Adds area and reflectance of each face once.
+/// Adds the area and reflectance of a face. Call it for one side of each face.
 void add_face(const Scene& scene, const Materials& materials, PatchIndex i, SceneSummary& summary,
               MaterialSummary& of_material) {
     const double area = patch_area(scene, scene.patches[i]);

@@ -20,7 +20,7 @@ struct Cell {
     }
 
     unsigned child_at(Parameters p, bool triangle) const {
-        const float per_size = 1 / size;  // exact: a power of two
+        const float per_size = 1 / size;  // exact, because the size is a power of two
         const float s = (p.u - u) * per_size, t = (p.v - v) * per_size;
         const bool right = s >= 0.5f, upper = t >= 0.5f, central = triangle & !right & !upper & (s + t >= 0.5f);
         // No child of a triangle is both right and upper.

@@ -17,7 +17,7 @@ namespace interflect::detail {
 namespace {
 
 std::size_t valid_capacity(std::size_t capacity, std::size_t patches) {
-    constexpr std::size_t end = 0xfffffffeu;  // reserved from here on
+    constexpr std::size_t end = 0xfffffffeu;  // larger numbers are reserved
     if (capacity < patches || capacity >= end)
         throw InputError(
             fmt::format("a forest of at most {} elements: expected at least the {} patches and less than {}", capacity,
@@ -87,7 +87,7 @@ ElementIndex ElementForest::subdivide(ElementIndex e) {
     std::atomic_ref<std::uint32_t> slot(nodes_[e].first_child.value);
     std::uint32_t state = none;
     if (level(e) >= deepest_level || !slot.compare_exchange_strong(state, being_made, std::memory_order_acquire)) {
-        while (state == being_made) {  // another thread needs tens of nanoseconds
+        while (state == being_made) {  // another thread makes the children, which takes tens of nanoseconds
             std::this_thread::yield();
             state = slot.load(std::memory_order_acquire);
         }
@@ -104,7 +104,7 @@ ElementIndex ElementForest::subdivide(ElementIndex e) {
     blocks_[(first - patch_count()) / 4] = {e, patch(e), path(e)};
     for (std::uint32_t k = 0; k < 4; ++k) {
         const Cell cell = parent.child(k, geometry.is_triangle());
-        // Exact, because the Jacobian is linear.
+        // The Jacobian at the centre gives the exact area, because the Jacobian is linear.
         const float area = geometry.jacobian(cell.centre(geometry.is_triangle())) * cell.size * cell.size;
         nodes_[first + k] = {no_element, geometry.is_triangle() ? 0.5f * area : area};
     }

@@ -22,11 +22,11 @@ class ElementForest {
   public:
     static constexpr int deepest_level = 15;
 
-    /// @param capacity  In [patches, 2^32 - 2); reserves address space.
+    /// @param capacity  Maximum number of elements, in [patches, 2^32 - 2), for which address space is reserved.
     /// @throws InputError for another capacity or a vertex index out of range; AddressSpaceError.
     ElementForest(const Scene& scene, std::size_t capacity);
 
-    /// Address space [bytes].
+    /// Address space per element [bytes].
     static constexpr std::size_t reserved_per_element = 11;
 
     /// @throws InputError for a scene of other geometry.
@@ -40,11 +40,11 @@ class ElementForest {
     ElementIndex parent(ElementIndex e) const { return is_root(e) ? no_element : block_of(e).parent; }
     float area(ElementIndex e) const { return nodes_[e].area; }  ///< [m^2]
     int level(ElementIndex e) const;
-    /// Returns the path from the root: 1, then two bits per level, the index of the child.
+    /// Returns the path from the root. In binary, it is 1, followed by two bits for each level: the index of the child.
     std::uint32_t path(ElementIndex e) const {
         return is_root(e) ? 1 : block_of(e).parent_path << 2 | number_in_block(e);
     }
-    /// Returns the element with this path(), or none.
+    /// Returns the element with this path(), or `none` if it does not exist.
     ElementIndex at_path(PatchIndex patch, std::uint32_t path) const;
     Cell cell(ElementIndex e) const;
     const PatchGeometry& geometry(PatchIndex patch) const { return geometry_[patch]; }
@@ -65,30 +65,30 @@ class ElementForest {
     ElementIndex leaf_at(PatchIndex root, Parameters p, std::uint32_t limit = none) const {
         return leaf_below(root, Cell(), p, limit);
     }
-    /// The same from `e`; its cell must contain `p`.
+    /// Returns the leaf below `e` that contains `p`. The cell of `e` must contain `p`.
     ElementIndex leaf_below(ElementIndex e, Cell cell, Parameters p, std::uint32_t limit = none) const;
 
     /// Creates the children of `e` unless they exist. Thread-safe.
-    /// @return  First child; none if the forest is full or `e` is at the deepest level.
+    /// @return  The first child, or `none` if the forest is full or `e` is at the deepest level.
     ElementIndex subdivide(ElementIndex e);
 
     /// Sorts the elements from `first` on by level, patch and path. Not thread-safe.
-    /// @return  Old index of each element first + i.
+    /// @return  The old index of each element first + i.
     std::vector<ElementIndex> put_in_order(std::uint32_t first);
 
-    /// Returns the order of division, for rebuild().
+    /// Returns the divided elements in the order of their division, for rebuild().
     std::vector<ElementIndex> subdivided() const;
-    /// Divides `parents` in this order, in a forest of roots.
+    /// Divides `parents` in this order. The forest must consist of roots only.
     /// @throws InputError if an element cannot be subdivided.
     void rebuild(std::span<const ElementIndex> parents);
 
     /// Removes the last four leaves of an ordered forest; returns their parent. Not thread-safe.
     ElementIndex drop_last_siblings();
 
-    /// Calls body(first) per block of siblings, parents first; in parallel after put_in_order().
+    /// Calls body(first) for each block of siblings, parents before children. After put_in_order(), runs in parallel.
     template <class Body>
     void for_siblings_from_roots(const Body& body) const;
-    /// The same, children first.
+    /// Does the same with children before parents.
     template <class Body>
     void for_siblings_from_leaves(const Body& body) const;
 
@@ -117,7 +117,7 @@ class ElementForest {
     std::uint64_t scene_fingerprint_;
     PerPatch<PatchGeometry> geometry_;
     std::uint32_t patch_count_;
-    /// First element of each generation, then the end.
+    /// First element of each generation, followed by the end of the last generation.
     std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;

@@ -8,9 +8,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Squares per side of a non-linear quadrilateral.
+/// Number of squares per side into which a non-linear quadrilateral is divided.
 constexpr int squares_per_side = 4;
-/// Relative twist.
+/// Maximum relative twist of a parallelogram.
 constexpr float rounding = 1e-5f;
 
 template <class Vector>
@@ -29,7 +29,8 @@ bool is_linear(const Scene& scene, const Patch& patch) {
     return is_parallelogram(corners) && is_parallelogram(coordinates);
 }
 
-/// [m^2], accurate below the rounding of positions.
+/// Returns twice the area of a triangle [m^2]. It is computed from edges, because differences of positions are less
+/// accurate.
 double doubled_area(const PatchGeometry::Shape& shape, const std::array<Parameters, 3>& p) {
     const auto edge = [&](const Parameters& a, const Parameters& b) {
         const double au = a.u, av = a.v, bu = b.u, bv = b.v;

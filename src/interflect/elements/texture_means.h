@@ -9,13 +9,14 @@
 
 namespace interflect::detail {
 
-/// Area-weighted means over cells, exact for linear texture coordinates, else by 32 triangles per cell.
+/// Area-weighted means of textures over cells. They are exact for linear texture coordinates. Other cells are divided
+/// into 32 triangles.
 class TextureMeans {
   public:
-    /// @param scene  Valid; must outlive this.
+    /// @param scene  Must be valid, and must outlive this.
     explicit TextureMeans(const Scene& scene);
 
-    /// Returns 1 without a texture.
+    /// Returns the mean texel over a cell; 1 without a texture.
     Rgb mean(std::uint32_t texture, const Patch& patch, const PatchGeometry& geometry, const Cell& cell) const;
 
   private:

@@ -19,11 +19,11 @@ struct SceneFormat {
     const char* extension;
     std::string (*describe)(ForeignScene& scene);
     std::string (*escape)(std::string_view file_name);
-    std::string_view excluded;  // characters that cannot be escaped
+    std::string_view excluded;  // characters of file names that the format cannot escape
 };
 constexpr std::array<SceneFormat, 4> scene_formats{{
     {".rad", radiance_description, quotable, ""},
-    {".xml", mitsuba_description, xml_text, "$"},  // begins a parameter
+    {".xml", mitsuba_description, xml_text, "$"},  // Mitsuba replaces parameters that begin with $
     {".pbrt", pbrt_description, quotable, ""},
     {".py", blender_description, quotable, ""},
 }};

@@ -19,7 +19,7 @@ using namespace detail;
 
 namespace {
 
-/// Archives options that depend on the machine.
+/// Archives the options whose default depends on the machine.
 void archive_options(StateArchive& archive, SolveOptions& options) {
     options.refinement.max_elements =
         archive.by_value("options/max_elements", std::vector{options.refinement.max_elements}).at(0);
@@ -39,7 +39,7 @@ void write_run(Run& run, Solution result, SolveOptions options, const Write& wri
 
 Solution detail::dark_solution(const Scene& scene) {
     Solution dark;
-    dark.options.method = default_method(false);  // files name one
+    dark.options.method = default_method(false);  // a file must name a method
     dark.forest = std::make_shared<ElementForest>(scene, scene.patches.size());
     const std::size_t elements = dark.forest->size();
     dark.irradiance.assign(elements, Rgb(0));

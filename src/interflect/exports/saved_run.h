@@ -10,28 +10,29 @@
 namespace interflect::detail {
 
 struct SavedRun {
-    SolvedScene solved;  ///< Sources are undimmed; apply Solution::dimming.
+    SolvedScene solved;  ///< Its sources are undimmed; apply Solution::dimming.
     StateArchive state;
 };
 
-/// @throws InputError as read_solution(), or for a state that is missing or of another version.
+/// Reads a saved run. @throws InputError as read_solution() does, or if the state is missing or of another version.
 SavedRun read_saved_run(const std::filesystem::path& path);
 
-/// Returns the name of the scene of a saved run; empty for any other file. Does not verify checksums.
+/// Returns the name of the scene of a saved run; an empty name for other files. Does not verify checksums.
 std::string scene_of_saved_run(const std::filesystem::path& path);
 
 /// Reads the bytes of solution_image(). @throws std::runtime_error
 SavedRun read_saved_image(std::span<const char> image);
 SolvedScene read_solution_image(std::span<const char> image);
 
-/// Omits a null state. @throws as the public write_solution().
+/// Writes a solution file, with the state of its run unless `state` is null. Throws as the public write_solution()
+/// does.
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                     const StateArchive* state);
 
-/// Makes a solution without light; its file contains the scene.
+/// Makes a solution without light, whose file contains the scene.
 Solution dark_solution(const Scene& scene);
 
-/// Returns the bytes of such a file without checksums.
+/// Returns the bytes of a solution file without checksums.
 std::string solution_image(const Scene& scene, const Solution& solution, const StateArchive* state);
 
 }  // namespace interflect::detail

@@ -29,8 +29,8 @@ using namespace detail;
 
 namespace {
 
-/// Version 3 adds origin, contacts and surfaces of patches; 4 checksums, options and result; 5 all iterations; 6
-/// direct light.
+/// Versions of the format. Version 3 adds the origin, contacts and surfaces of patches; version 4 checksums, options
+/// and the result; version 5 all iterations; version 6 direct light.
 constexpr int format_version = 7, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
               first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
@@ -110,7 +110,7 @@ constexpr std::array<ElementNumbers, 5> element_numbers = {
      {"/solution/view_importance", "view importance", &Solution::view_importance, true, 2},
      {"/solution/indirect_importance", "indirect importance", &Solution::indirect_importance, true, 2}}};
 
-/// Returns "" if valid.
+/// Returns the first fault of the numbers; "" if they are valid.
 std::string fault_of(std::span<const float> numbers, std::size_t per_element, const ElementForest& forest,
                      const char* what) {
     if (numbers.size() != per_element * forest.size()) return fmt::format("{} and elements differ in number", what);
@@ -175,7 +175,7 @@ std::vector<double> history_numbers(const Solution& solution) {
     return numbers;
 }
 
-/// A non-empty history replaces the last iteration.
+/// Reads the history. If it is not empty, it replaces the report of the last iteration.
 void read_history(const Hdf5Reader& file, Solution& solution) {
     const std::size_t columns = report_columns().size();
     const std::vector<double> numbers = file.read<double>(history_dataset, columns);
@@ -197,7 +197,7 @@ void read_direct(const Hdf5Reader& file, Solution& solution) {
 
 void read_groups(const Hdf5Reader& file, SolvedScene& solved) {
     Solution& solution = solved.solution;
-    const std::size_t named = solved.scene.light_groups.size();  // other sources may form one more group
+    const std::size_t named = solved.scene.light_groups.size();  // sources without a group may form one more group
     const bool has_names =
         solution.group_names.size() == named || (named > 0 && solution.group_names.size() == named + 1);
     if (!has_names || solution.dimming.size() != solution.group_names.size())
@@ -237,7 +237,7 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
 }
 
 struct VerifiedFile {
-    bool has_checksums;  // true for a memory image
+    bool has_checksums;  // also true for a file in memory
     Hdf5Reader arrays;
 };
 
@@ -286,7 +286,7 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
 }
 
 constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
-/// Increase whenever an array of the state changes.
+/// Version of the state. Increase it whenever an array of the state changes.
 constexpr int state_version = 5;
 
 std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {
@@ -357,7 +357,7 @@ auto read_or_refuse(const std::filesystem::path& path, const char* fault, const 
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const Json::exception& e) {
-        const std::string_view text = e.what();  // begins with "[json.exception.type_error.302] "
+        const std::string_view text = e.what();  // it begins with a code, such as "[json.exception.type_error.302] "
         throw InputError(path, 0, fmt::format("{}: its description: {}", fault, text.substr(text.find(']') + 2)));
     } catch (const std::exception& e) {
         throw InputError(path, 0, fmt::format("{}: {}", fault, e.what()));

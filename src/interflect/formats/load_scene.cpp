@@ -52,7 +52,7 @@ const Format& format_of(const fs::path& path) {
                      fmt::format("no scene format is known by the extension '{}'; known: {}", extension, known));
 }
 
-/// @throws InputError unless all files are Radiance's.
+/// @throws InputError unless all files are Radiance files.
 void require_joinable(const fs::path& first, const std::vector<fs::path>& further) {
     if (further.empty()) return;
     const auto require_rad = [](const fs::path& path) {

@@ -24,10 +24,11 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+/// A small part of a glare source, as seen from the observer.
 struct Place {
     V3f towards;
     float distance = 0;      // [m]
-    PatchIndex patch;        // required hit; default: free up to `distance`
+    PatchIndex patch;        // patch that the ray must hit; none: it must be free up to `distance`
     Rgb radiance{0, 0, 0};   // [cd/m^2]
     double solid_angle = 0;  // [sr]
     double position_index = 1;
@@ -37,8 +38,8 @@ struct Place {
 struct Sums {
     std::string name;
     bool is_rated = true;
-    double solid_angle = 0, luminance = 0, squared = 0,
-           glare = 0;  // over the solid angle of 1, L, L^2, L^2/p^2
+    // Integrals of 1, L, L^2 and L^2 / p^2 over the solid angle.
+    double solid_angle = 0, luminance = 0, squared = 0, glare = 0;
 
     void add(double l, double omega, double p) {
         solid_angle += omega;
@@ -66,7 +67,7 @@ class SourcePlaces {
     std::vector<Sums>& sums() { return sums_; }
 
   private:
-    /// Cells have nearly constant directions.
+    /// Divides an emitting patch into cells, each of which has a nearly constant direction.
     void add_patch(PatchIndex index) {
         constexpr float cells_per_distance = 8;
         constexpr int fewest = 2, most = 16;
@@ -101,8 +102,9 @@ class SourcePlaces {
         return rated > 0 && static_cast<std::size_t>(rated) < count;
     }
 
-    /// CIE 117 rates a luminaire by the direction of its centre: L = I / A_p, omega = A_p / r^2 and one p. Samples over
-    /// the opening find its visible part.
+    /// Adds a luminaire. CIE 117 rates it by the direction of its centre: L = I / A_p and omega = A_p / r^2, with
+    /// intensity I, projected area A_p and distance r, and a single position index p. Samples over the opening
+    /// determine its visible part.
     void add_luminaire(const Luminaire& luminaire, const MeasuredLight& light) {
         constexpr int per_side = 8, count = per_side * per_side;
         if (light.web->opening.is_point()) return;
@@ -138,7 +140,7 @@ class SourcePlaces {
     V3f eye_, line_of_sight_;
     std::vector<Place> places_;
     std::vector<Sums> sums_;
-    std::map<std::pair<std::string, bool>, std::size_t> by_name_;  // and whether rated
+    std::map<std::pair<std::string, bool>, std::size_t> by_name_;  // keys: name, and whether the source is rated
 };
 
 void require_direction(const Observer& observer) {
@@ -174,7 +176,7 @@ double position_index(const V3f& towards, const V3f& line_of_sight, const V3f& u
 }
 
 bool has_position_index(const V3f& towards, const V3f& line_of_sight, const V3f& up) {
-    constexpr double highest = 1.9, widest = 3;  // relative to R
+    constexpr double highest = 1.9, widest = 3;  // limits of the table of CIE 117, relative to the distance R
     const auto [sight, above] = frame_of_sight(line_of_sight, up);
     const Imath::V3d source(towards);
     const double r = source.dot(sight), h = std::abs(source.dot(above)), t = std::abs(source.dot(sight.cross(above)));

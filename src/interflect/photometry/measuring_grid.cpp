@@ -16,7 +16,7 @@ namespace {
 
 using V2d = Imath::V2d;
 
-/// Relative rounding that must not add a cell.
+/// Relative rounding error that must not add a cell.
 constexpr double rounding = 1e-5;
 
 void require_valid(const GridOptions& options) {

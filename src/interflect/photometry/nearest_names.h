@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Levenshtein distance (1965).
+/// Returns the number of edits between two names (Levenshtein 1965).
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -26,7 +26,7 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-/// Lists the most similar names. "top" also finds "desk.top".
+/// Returns a text with the most similar names. "top" is also similar to "desk.top".
 inline std::string text_of_nearest(const std::string& name, std::span<const std::string> names) {
     constexpr std::size_t max_reported = 5, max_compared = 10'000;
     struct Candidate {

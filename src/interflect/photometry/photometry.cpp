@@ -9,7 +9,7 @@ namespace interflect {
 
 namespace {
 
-/// Integrates luminance times cosine exactly above the horizon.
+/// Returns the illuminance on a horizontal plane: the exact integral of luminance times cosine over the sky.
 double horizontal_illuminance(const EnvironmentMap& map) {
     const Texture& image = *map.image;
     const auto height_squared = [&](std::uint32_t edge) {

@@ -21,15 +21,15 @@ using namespace detail;
 
 namespace {
 
-/// Cosine of 0.8 degrees.
+/// Minimum cosine between normals of faces in one plane: 0.8 degrees.
 constexpr float same_plane_cosine = 0.9999f;
-/// Relative to the extent of all faces.
+/// Maximum distance of faces from their common plane, relative to the extent of all faces.
 constexpr double same_plane_distance = 1e-4;
-/// Objects with more planes are curved.
+/// Maximum number of planes of an object. Objects with more planes are curved.
 constexpr std::size_t max_planes = 256;
-/// Relative difference.
+/// Relative difference below which areas count as equal.
 constexpr double equal_areas = 0.01;
-/// Cosine of 10 degrees.
+/// Minimum cosine between the normal of a face and the direction that it should face: 10 degrees.
 constexpr float facing_cosine = 0.98481f;
 
 bool is_part_of(const std::string& name, const std::string& object) {
@@ -43,7 +43,7 @@ std::string object_name(const Scene& scene, PatchIndex patch) {
 
 bool is_number(std::string_view text) { return !text.empty() && text.find_first_not_of("0123456789") == text.npos; }
 
-/// "floor.a0.a12" becomes "floor".
+/// Returns a name without the numbers of copies: "floor.a0.a12" becomes "floor".
 std::string_view without_copies(std::string_view name) {
     for (std::string_view rest = name;;) {
         const std::size_t dot = rest.rfind('.');
@@ -109,9 +109,9 @@ double height_of(const Scene& scene, const PlanarArea& plane) {
     return scene.origin.z + static_cast<double>(PatchGeometry(scene, scene.patches[plane.patches.front()]).centre().z);
 }
 
-/// Whether all faces of an area lie within others of its plane.
+/// Returns whether all faces of an area lie within other areas of the same plane.
 bool is_covered(const Scene& scene, const PlanarArea& area, std::span<const PlanarOutline> others) {
-    constexpr float inwards = 0.01f;  // of the way to the centre
+    constexpr float inwards = 0.01f;  // corners are moved by this share of the way to the centre
     const auto is_within = [&](const Imath::V3d& x) {
         return std::any_of(others.begin(), others.end(), [&](const PlanarOutline& outline) {
             const Imath::V3d d = x - outline.origin;
@@ -129,7 +129,7 @@ bool is_covered(const Scene& scene, const PlanarArea& area, std::span<const Plan
 }
 
 std::string text_of_direction(const V3f& direction) {
-    const V3f n = direction + V3f(0);  // avoids -0
+    const V3f n = direction + V3f(0);  // changes -0 to 0
     return fmt::format("{:.3g},{:.3g},{:.3g}", n.x, n.y, n.z);
 }
 

@@ -13,12 +13,12 @@ namespace {
 using V2d = Imath::V2d;
 using V3d = Imath::V3d;
 
-/// Distance relative to the area's size; exceeds the rounding of vertices.
+/// Tolerance of distances, relative to the size of the area. It exceeds the rounding of vertices.
 constexpr double on_line = 1e-5;
 
 double tolerance_of(const Imath::Box2d& box) { return on_line * (box.max - box.min).length(); }
 
-/// Andrew's monotone chain; counter-clockwise.
+/// Returns the convex hull, counter-clockwise, by Andrew's monotone chain.
 std::vector<V2d> convex_hull(std::vector<V2d> points) {
     std::sort(points.begin(), points.end(),
               [](const V2d& a, const V2d& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
@@ -48,7 +48,7 @@ Imath::Box2d turned_box(const std::vector<V2d>& points, double angle) {
     return box;
 }
 
-/// Returns [rad], in [-pi/4, pi/4]; prefers 0.
+/// Returns the angle of the smallest enclosing rectangle, in [-pi/4, pi/4] [rad]; 0 if the gain is negligible.
 double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
     constexpr double quarter = std::numbers::pi / 2, better = 1 - 1e-4;
     const auto area = [&](double angle) {
@@ -69,8 +69,8 @@ double angle_of_smallest_rectangle(const std::vector<V2d>& hull) {
 /// Interval of a segment, as distances from its start [m].
 using Interval = std::pair<double, double>;
 
-/// Clips a segment to a convex, counter-clockwise face, enlarged by a margin. Returns first > second if nothing is
-/// left.
+/// Clips a segment to a convex, counter-clockwise face that is enlarged by a margin. If the segment is outside, the
+/// result has first > second.
 Interval part_within(const std::vector<V2d>& face, const PlanarSegment& segment, double margin) {
     const V2d along = (segment.b - segment.a) / segment.length();
     Interval part{0, segment.length()};

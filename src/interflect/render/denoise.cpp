@@ -17,7 +17,7 @@ using namespace detail;
 namespace {
 
 constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2, mean_radius = 4;  // [pixels]
-/// k^2 of Rousselle et al. 2012.
+/// The factor k^2 of the noise variance in the distance of patches (Rousselle et al. 2012).
 constexpr float noise_share = 0.45f * 0.45f;
 constexpr float min_albedo = 0.01f;
 constexpr float normal_scale = 0.1f;  // about 18 degrees
@@ -29,7 +29,7 @@ float exp_minus(float d) {
     return t4 * t4;
 }
 
-/// Irradiance / pi.
+/// Irradiance over pi, by pixel, and its variance.
 struct Field {
     std::array<std::vector<float>, 3> value;
     std::vector<float> grey, variance;
@@ -58,7 +58,7 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
     return field;
 }
 
-/// Direct light comes first.
+/// Direct light, then indirect light.
 using Fields = std::array<Field, 2>;
 std::size_t noisy_kinds(const PictureLayers& layers) { return layers.is_indirect_interpolated ? 1 : 2; }
 
@@ -74,7 +74,7 @@ Vectors coordinates(const Image& image) {
     return vectors;
 }
 
-/// Visible surfaces, by pixel.
+/// Geometry of the visible surface of each pixel.
 class Surfaces {
   public:
     explicit Surfaces(const PictureLayers& layers)
@@ -141,7 +141,8 @@ void for_pixels(const Surfaces& surfaces, const auto& visit) {
     });
 }
 
-/// Averages over neighbours on the same surface. The variance is large at edges of objects, and must not spread.
+/// Averages each pixel over its neighbours on the same surface, so that the large variance at edges of objects does not
+/// spread.
 std::vector<float> surface_mean(const Surfaces& surfaces, const std::vector<float>& values) {
     std::vector<float> means(values.size());
     for_pixels(surfaces, [&](std::size_t i, int x, int y) {
@@ -163,12 +164,12 @@ Fields make_fields(const PictureLayers& layers, const Surfaces& surfaces, const 
     return fields;
 }
 
-/// Sum of the weights of each pixel's pairs, [half][kind of light].
+/// Sum S_i of the weights of each pixel's pairs, indexed by [half of the samples][direct or indirect].
 using WeightSums = std::array<std::array<std::vector<float>, 2>, 2>;
 
-/// Rows of a picture. Light moves between the pixels i and k of a pair by w_ik / max(S_i, S_k) times the difference of
-/// their values, where w is symmetric and S_i is the sum of w_ik over k. Each exchange keeps the sum of
-/// both pixels, so the sum over all pixels is exact for any weights.
+/// Filters a band of rows. The pixels i and k of a pair exchange w_ik / max(S_i, S_k) times the difference of their
+/// values, where w is symmetric and S_i is the sum of w_ik over k. Each exchange preserves the sum of both pixels, so
+/// the sum over all pixels is preserved for any weights.
 class Band {
   public:
     Band(const PictureLayers& layers, const Surfaces& surfaces, const std::array<Fields, 2>& halves, int first_row,
@@ -183,7 +184,7 @@ class Band {
           difference_(pixel_at(0, end_row - first_row + 2 * patch_radius, width_ + 2)),
           shape_(at(0, end_row - first_row)) {}
 
-    /// @param sums  Receives the sums of these rows.
+    /// Adds the weights of this band's pixels to `sums`.
     void sum_weights(WeightSums& sums) {
         visit_pairs([&](std::size_t h, std::size_t kind, int x, int y, std::size_t k, std::span<const float> weight) {
             static_cast<void>(k);
@@ -192,7 +193,7 @@ class Band {
         });
     }
 
-    /// @param irradiance  Receives the result, over pi.
+    /// Adds the exchanged light to `irradiance`, which contains the noisy light [irradiance over pi].
     void filter(const WeightSums& sums, Image& irradiance) {
         visit_pairs([&](std::size_t h, std::size_t kind, int x, int y, std::size_t k, std::span<const float> weight) {
             const std::size_t i = at(x, y);
@@ -212,8 +213,9 @@ class Band {
   private:
     static constexpr int per_chunk = 64;
 
-    /// Calls visit(half, kind, x, y, k, weights) for the pairs of pixels (x, y), (x + 1, y), ... and k, k + 1, ...; the
-    /// weights of a half come from the light of the other.
+    /// Calls visit(half, kind, x, y, k, weights) for a row of pairs: weights[n] belongs to pixel (x + n, y) and pixel k
+    /// + n. The weights of each half come from the light of the other half, so they are independent of the filtered
+    /// light.
     void visit_pairs(const auto& visit) {
         for (int dy = -window_radius; dy <= window_radius; ++dy)
             for (int dx = -window_radius; dx <= window_radius; ++dx) {
@@ -229,7 +231,8 @@ class Band {
     }
 
     std::size_t at(int x, int y) const { return pixel_at(x, y, width_); }
-    /// Index in difference_, which has another column at each end of its rows; row 0 is first_ - patch_radius.
+    /// Index in difference_, whose rows have an additional column at both ends. Its row 0 is row first_ - patch_radius
+    /// of the picture.
     std::size_t padded(int x, int row) const { return pixel_at(x + 1, row, width_ + 2); }
     std::pair<int, int> columns(int dx) const { return {std::max(0, -dx), std::min(width_, width_ - dx)}; }
     bool has_row(int y) const { return y >= 0 && y < height_; }
@@ -246,7 +249,7 @@ class Band {
         }
     }
 
-    /// Relative to the noise.
+    /// Sets difference_ to the squared differences of the light, relative to its noise.
     void compare_light(const Field& field, int dx, int dy) {
         constexpr float tiny = 1e-20f;
         std::fill(difference_.begin(), difference_.end(), 0.0f);
@@ -276,7 +279,7 @@ class Band {
                 }
     }
 
-    /// Weights of the pairs of (x, y), (x + 1, y), ...
+    /// Computes the weights of `count` pairs, whose first pixels are (x, y), (x + 1, y), ...
     void weigh_row(int x, int y, int count, std::array<float, per_chunk>& weight) const {
         const std::size_t first = at(x, y - first_);
         const float* above = &difference_[padded(x, y - first_)];
@@ -296,7 +299,7 @@ class Band {
     std::vector<float> difference_, shape_;
 };
 
-/// Light before filtering: mean of both halves, over pi.
+/// Returns the light before filtering: the mean irradiance of both halves, over pi.
 Image noisy_irradiance(const PictureLayers& layers, const std::array<Fields, 2>& halves) {
     Image irradiance(layers.albedo.width, layers.albedo.height);
     for (std::size_t i = 0; i < irradiance.pixels.size(); ++i)

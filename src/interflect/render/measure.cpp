@@ -19,7 +19,7 @@ using namespace detail;
 
 namespace {
 
-/// Offset at the farthest vertex [m], because the point may lie on any surface.
+/// Returns an offset that exceeds rounding at the farthest vertex [m], because the point may lie on any surface.
 float offset_for(const Scene& scene, const V3f& position) {
     constexpr float relative_offset = 0x1p-17f;
     float reach = 0;
@@ -55,7 +55,7 @@ Gauge gauge_of(const MeasuringPoint& point, std::size_t index, const Imath::V3d&
     return gauge;
 }
 
-/// Options of a picture with a pixel per point.
+/// Returns the options of a picture with one pixel per point.
 /// @throws InputError for a shading that is not available for points.
 PictureOptions picture_options(const MeasuringOptions& options, std::size_t points) {
     return {.width = static_cast<int>(points),

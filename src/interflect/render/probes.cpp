@@ -22,14 +22,14 @@ using namespace detail;
 
 namespace {
 
-/// Rows of sphere_quadrature(): 128 facets.
+/// Rows of sphere_quadrature(), which give 2 x 8^2 = 128 facets.
 constexpr int rows_of_facets = 8;
-/// Error of irradiance() by the facets for light from one direction, root mean square over normals and rotations,
-/// relative to its irradiance; at most 1.3%. With 50 facets 0.6%, at most 3.7%.
+/// Error that 128 facets cause in irradiance(), for light from one direction: root mean square over normals and
+/// rotations, relative to its irradiance. The maximum is 1.3%. With 50 facets, it would be 0.6%, and 3.7% at most.
 constexpr float error_of_facets = 0.0018f;
 constexpr std::size_t probes_at_once = 1024;
 
-/// Relative to the scene's origin [m].
+/// Returns the bounding box of the scene, relative to its origin [m].
 Imath::Box3d bounds_of(const Scene& scene) {
     Imath::Box3d bounds;
     for (const Patch& patch : scene.patches)
@@ -37,7 +37,7 @@ Imath::Box3d bounds_of(const Scene& scene) {
     return bounds;
 }
 
-/// Uniform (Shoemake 1992).
+/// Returns a uniformly distributed rotation (Shoemake 1992).
 Imath::M33f random_rotation(std::uint64_t seed, std::uint64_t index) {
     constexpr float pi = std::numbers::pi_v<float>;
     const auto words = random_words(seed, index);
@@ -47,7 +47,8 @@ Imath::M33f random_rotation(std::uint64_t seed, std::uint64_t index) {
     return rotation.toMatrix33();
 }
 
-/// Probes are small white balls. Their facets are measuring points at the same position.
+/// Probes as small white balls. The facets of a ball are measuring points at the position of the probe, with different
+/// normals.
 class Balls {
   public:
     Balls(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const ProbeOptions& options)
@@ -99,7 +100,8 @@ class Balls {
                 variance += share * share * error * error / sphere;
             }
         }
-        // Assumes that all direct light has one direction; its mean over all normals is a quarter of the largest.
+        // Assume that all direct light has one direction. Its mean irradiance over all normals is then a quarter of the
+        // largest, so `direct` is four times the mean.
         probe.standard_error = std::hypot(std::sqrt(variance), error_of_facets * direct);
         constexpr float max_backs = 0.25f;
         probe.is_inside =
@@ -107,7 +109,8 @@ class Balls {
         return probe;
     }
 
-    /// Share of directions that meet one-sided faces from behind.
+    /// Returns the share of directions in which x is behind a one-sided face: a ray back from the first hit meets the
+    /// face.
     float share_of_backs(const V3f& x, std::span<const SphereNode> directions) const {
         std::vector<Ray> rays;
         for (const SphereNode& node : directions) rays.push_back({x, node.direction});

@@ -15,7 +15,7 @@ void share_light(const Scene& scene, const Solution* solution, const RayCaster& 
     const Monitor monitor{.on_progress = {}, .ranks = &ranks};
     std::optional<KnownIrradiance> known;
     if (solution) known.emplace(known_irradiance(scene, *solution->forest, solution->irradiance));
-    std::optional<TracedScene> traced;  // of gauges, with interpolated irradiance
+    std::optional<TracedScene> traced;  // scene for gauges, created when it is first needed
     const auto scene_of_gauges = [&]() -> const TracedScene& {
         known.value().is_interpolated = true;
         if (!traced) traced.emplace(scene, ray_caster);
@@ -48,7 +48,7 @@ void share_light(const Scene& scene, const Solution* solution, const RayCaster& 
                 case LightOrder::Kind::end:
                     return;
             }
-        } catch (const Stopped&) {  // also thrown in rank 0
+        } catch (const Stopped&) {  // rank 0 throws it as well, and reports it
         }
     }
 }

@@ -11,8 +11,8 @@ struct SphereNode {
     float weight;  ///< [sr]
 };
 
-/// 2 rows^2 nodes: Gauss-Legendre in the polar cosine, equal azimuths. Exact for spherical harmonics below degree 2
-/// rows.
+/// Returns 2 rows^2 nodes: Gauss-Legendre nodes in the polar cosine, times equal steps of azimuth. The quadrature is
+/// exact for spherical harmonics of degree below 2 rows.
 std::vector<SphereNode> sphere_quadrature(int rows);
 
 }  // namespace interflect::detail

@@ -29,7 +29,7 @@ void Run::dim_sources() {
 
 void Run::dim(std::size_t group, float factor) {
     Solution& solution = state.light.solution;
-    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // a dark group keeps its light
+    const float change = factor > 0 ? factor / known_dimming[group] : 1;  // the stored light of a dark group is kept
     if (factor > 0) known_dimming[group] = factor;
     solution.dimming[group] = factor;
     for (Rgb& h : solution.groups[group]) h *= change;
@@ -54,7 +54,7 @@ Solution Run::snapshot() {
 void Run::archive(StateArchive& archive) {
     state.archive(archive);
     method->archive(archive);
-    if (archive.reads() && !method->fits(state))
+    if (archive.reads() && !method->is_consistent(state))
         throw std::runtime_error("the state of the run: arrays and elements differ in number");
     archive("is_prepared", is_prepared);
     archive("is_finished", is_finished);

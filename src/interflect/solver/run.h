@@ -16,24 +16,24 @@
 namespace interflect::detail {
 
 struct Run {
-    /// @param caster  Of this scene. @throws InputError as Solver does.
+    /// @param caster  Ray caster of this scene. @throws InputError as Solver does.
     Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster, const SolveOptions& options);
 
     const std::shared_ptr<const Scene> undimmed_scene;
-    std::shared_ptr<const Scene> scene = undimmed_scene;  // with current exitances
+    std::shared_ptr<const Scene> scene = undimmed_scene;  // scene with the current exitances
     const std::shared_ptr<const RayCaster> ray_caster;
     SolverState state;
     const std::unique_ptr<IterationMethod> method;
     bool is_prepared = false, is_finished = false;
-    double error = std::numeric_limits<double>::infinity();  // for the current views
+    double error = std::numeric_limits<double>::infinity();  // estimated error for the current views
     int iteration = 0;
-    std::vector<float> known_dimming;  // factors of the stored light
+    std::vector<float> known_dimming;  // dimming factors of the stored light, which dark groups keep
 
     std::mutex finishing;  // guards `finished`
     std::shared_ptr<const Solution> finished;
 
     void dim(std::size_t group, float factor);
-    /// Copies the forest.
+    /// Returns the current solution, with a copy of the forest.
     Solution snapshot();
     /// @throws std::runtime_error if the data are inconsistent.
     void archive(StateArchive& archive);
@@ -42,7 +42,7 @@ struct Run {
     void dim_sources();
 };
 
-/// Main loop, until a limit of the call or the run. @throws Interrupted
+/// Runs iterations until a limit of the call or of the run is reached. @throws Interrupted
 void iterate_until(Run& run, const Limits& call_limits);
 
 }  // namespace interflect::detail

@@ -25,7 +25,7 @@ void start_time_limit(Work& work, const Limits& limits) {
     work.stop.limit_time(work.start_of_this_call, limits.time - work.earlier_seconds);
 }
 
-/// An interruption restores the state; deterministic methods keep finished links.
+/// Runs a step. If it is interrupted, restores the state; deterministic methods keep finished links.
 /// @throws Interrupted
 template <class Step>
 void run_or_restore(Run& run, const Step& step) {
@@ -51,8 +51,8 @@ void prepare(Run& run) {
     start_time_limit(state.work, state.light.options().limits);
 }
 
-/// Extends a completed run if more rays are requested. @param requested_rays  Since the run began.
-/// @return  0 rays if the run is over.
+/// Plans the next iteration; it has 0 rays if the run is over. Extends a completed run if more rays are requested.
+/// @param requested_rays  Total number of rays since the run began.
 IterationPlan plan_or_extend(Run& run, std::int64_t requested_rays) {
     SolverState& state = run.state;
     IterationPlan next = run.method->plan(state);
@@ -72,7 +72,7 @@ void iterate_until(Run& run, const Limits& call_limits) {
     const std::int64_t before = state.rays.schedule.rays();
     const std::int64_t requested_rays = call_limits.rays < unlimited - before ? before + call_limits.rays : unlimited;
     const double target_error = std::max(call_limits.until, state.light.options().limits.until);
-    bool has_advanced = !run.is_prepared;  // preparation is progress, too
+    bool has_advanced = !run.is_prepared;  // preparation counts as progress
     prepare(run);
     run.is_finished = false;
     while (!(run.error <= target_error) && state.rays.schedule.rays() < requested_rays) {
@@ -84,7 +84,7 @@ void iterate_until(Run& run, const Limits& call_limits) {
         TracedIteration iteration{plan};
         run_or_restore(run, [&] {
             method.update_importance(state, iteration);                // Eq. 7, 8
-            const Estimate estimate = method.trace(state, iteration);  // Eq. 1; rays: Eq. 3, 9-11, mesh: Eq. 14, 15
+            const Estimate estimate = method.trace(state, iteration);  // Eq. 1; rays by Eq. 3, 9-11, mesh by Eq. 14, 15
             method.merge(state, estimate, iteration);                  // Eq. 6
             method.refine(state);                                      // by variance
         });
@@ -99,7 +99,7 @@ void iterate_until(Run& run, const Limits& call_limits) {
 }  // namespace detail
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
-    // Non-owning: both outlive the solver.
+    // The pointers own nothing, because both objects outlive the solver.
     const std::shared_ptr<const Scene> shared_scene(std::shared_ptr<void>(), &scene);
     const std::shared_ptr<const RayCaster> shared_caster(std::shared_ptr<void>(), &ray_caster);
     Solver solver(shared_scene, options, shared_caster);

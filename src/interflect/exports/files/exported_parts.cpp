@@ -37,7 +37,7 @@ Image image_of(const Texture& texture) {
 
 std::vector<std::string> plain_names(const std::vector<std::string>& names, const char* kind, std::size_t most) {
     std::set<std::string> taken;
-    std::map<std::string, int> next_numbers;  // by base name
+    std::map<std::string, int> next_numbers;  // next number to append, for each base name
     std::vector<std::string> plain;
     for (const std::string& name : names) {
         const std::string base = plain_name(name, kind).substr(0, most);
@@ -76,7 +76,7 @@ std::vector<ExportedFile> texture_files(const std::filesystem::path& path, const
 
 void require_nameable(const std::filesystem::path& path, std::string_view excluded) {
     const std::string stem = path.stem().string();
-    std::string without_backslashes = stem;  // escaped() may change backslashes
+    std::string without_backslashes = stem;  // escaped() may change backslashes, which are allowed
     std::erase(without_backslashes, '\\');
     if (escaped(without_backslashes) == without_backslashes && stem.find_first_of(excluded) == stem.npos) return;
     throw InputError(path, 0,

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Makes unique names of letters, digits, '_', '-' and '.', with a letter or '_' first.
+/// Makes unique names that consist of letters, digits, '_', '-' and '.', and begin with a letter or '_'.
 /// @param kind  Replaces an empty name.
 /// @param most  Maximum length before a number is appended.
 std::vector<std::string> plain_names(const std::vector<std::string>& names, const char* kind,
@@ -17,8 +17,8 @@ std::vector<std::string> plain_names(const std::vector<std::string>& names, cons
 std::vector<std::string> material_names(const Scene& scene);
 std::vector<std::string> object_names(const Scene& scene);
 
-/// Names a file beside an export: "room-xml-sky.exr" for "room.xml" and "sky.exr". Exports of one stem in other formats
-/// have other names.
+/// Returns the path of a file beside an export, such as "room-xml-sky.exr" for "room.xml" and "sky.exr". The format is
+/// part of the name, so exports with the same stem in other formats have other names.
 std::filesystem::path path_beside(const std::filesystem::path& path, const std::string& name);
 
 /// Encodes textures beside `path`: PNG if lossless, otherwise OpenEXR.

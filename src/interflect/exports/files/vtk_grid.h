@@ -12,7 +12,7 @@
 
 namespace interflect::detail {
 
-/// Rows of `components` numbers.
+/// An array of rows, each of which has `components` numbers.
 struct VtkArray {
     std::string name;
     std::size_t components;
@@ -24,20 +24,20 @@ class VtkGrid {
   public:
     using Sink = std::function<void(const VtkArray&)>;
 
-    /// Keeps references.
+    /// Refers to its arguments.
     VtkGrid(const Scene& scene, const Solution& solution)
         : scene_(scene), solution_(solution), polygons_(lit_polygons(scene, solution)) {}
 
     std::size_t point_count() const { return polygons_.vertices.size(); }
     std::size_t cell_count() const { return polygons_.size(); }
-    /// World coordinates [m]; double if the scene's origin is not 0.
+    /// Returns world coordinates [m], in double precision if the scene's origin is not 0.
     VtkArray points() const;
     std::vector<std::int64_t> connectivity() const;
     /// Returns cell_count() + 1 bounds in connectivity().
     std::vector<std::int64_t> offsets() const;
     std::vector<std::uint8_t> types() const;
 
-    /// The first array is the default for display.
+    /// Pass each array of data to the sink. Programs display the first array by default.
     void visit_point_data(const Sink& sink) const;
     void visit_cell_data(const Sink& sink) const;
 

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Renames temporary files when all are complete; returns the final paths.
+/// Writes all files under temporary names, and renames them when all are complete. Returns the final paths.
 /// @throws InputError for an invalid path; std::runtime_error if writing fails.
 std::vector<std::filesystem::path> write_files(const std::vector<ExportedFile>& files);
 

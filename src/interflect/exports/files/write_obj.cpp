@@ -20,7 +20,7 @@ namespace {
 
 std::string text_of_colour(const Rgb& colour) { return fmt::format("{} {} {}", colour.x, colour.y, colour.z); }
 
-/// MTL reads greys as linear: cancels the sRGB encoding of PNG.
+/// Encodes opacity as PNG. Readers of MTL take its greys as linear, so decoded values cancel the sRGB encoding of PNG.
 std::string opacity_png(const Texture& opacity) {
     Image image(static_cast<int>(opacity.width), static_cast<int>(opacity.height));
     for (std::size_t i = 0; i < opacity.texels.size(); ++i) image.pixels[i] = Rgb(srgb_decode(opacity.texels[i].x));
@@ -103,7 +103,7 @@ void append_faces(std::string& text, const Scene& scene, const ElementForest& fo
 
 std::vector<ExportedFile> make_obj(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options) {
-    require_nameable(path, "#\\");  // '#' begins a comment; '\' separates folders
+    require_nameable(path, "#\\");  // in OBJ, '#' begins a comment and '\' separates folders
     if (path.stem().string().starts_with(' '))
         throw InputError(
             path, 0,

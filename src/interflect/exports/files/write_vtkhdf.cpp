@@ -23,7 +23,7 @@ void add_array(Hdf5Writer& file, const std::string& folder, const VtkArray& arra
                array.numbers);
 }
 
-/// The grid has one part.
+/// Writes a count as an array with one entry, because the grid has one part.
 void add_count(Hdf5Writer& file, const char* name, std::size_t count) {
     const std::array number{static_cast<std::int64_t>(count)};
     file.write<std::int64_t>(fmt::format("{}/{}", root_group, name), number);

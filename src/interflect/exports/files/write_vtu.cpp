@@ -52,7 +52,7 @@ void add_geometry(VtkDocument& file, const VtkGrid& grid) {
     file.open("Cells");
     const std::vector<std::int64_t> offsets = grid.offsets();
     file.add<std::int64_t>("connectivity", grid.connectivity());
-    file.add("offsets", std::span(offsets).subspan(1));  // end of each cell
+    file.add("offsets", std::span(offsets).subspan(1));  // the format stores the end of each cell only
     file.add<std::uint8_t>("types", grid.types());
     file.close("Cells");
 }

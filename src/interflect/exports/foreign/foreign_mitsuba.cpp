@@ -86,9 +86,10 @@ std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
     return shape(mesh) + (has_back ? shape(mesh.shifted_backs(scene.distance_of_backs())) : "");
 }
 
-/// A disc that appears under the sun's angle in the whole scene: sensors and emitters have no other kind of disc.
+/// Describes the sun as a distant disc that has the sun's angle as seen from the whole scene, because Mitsuba has no
+/// emitter for directional light with an angle.
 std::string sun_text(const ForeignScene& scene, const DirectionalLight& sun) {
-    constexpr float relative_distance = 1e4f;  // the angle differs by 1e-4 within the scene
+    constexpr float relative_distance = 1e4f;  // the angle varies by 1e-4 within the scene
     const V3f direction = sun.direction.normalized();
     const float sine = sun.disc_sine(), distance = relative_distance * std::max(scene.size, 1e-3f);
     const V3f position = scene.centre - distance * direction;
@@ -126,7 +127,8 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
     return "";
 }
 
-/// Mapping of 'envmap': left edge -z, +x a quarter to the right, upper edge +y.
+/// Returns the direction of a point of an 'envmap': -z at the left edge, +x a quarter to the right, +y at the upper
+/// edge.
 V3f envmap_direction(float x, float y) {
     const float azimuth = 2 * pi * x, polar = pi * y;
     return {std::sin(azimuth) * std::sin(polar), std::cos(polar), -std::cos(azimuth) * std::sin(polar)};
@@ -137,7 +139,7 @@ V3f envmap_direction(float x, float y) {
 
 std::string mitsuba_description(ForeignScene& scene) {
     using namespace for_mitsuba;
-    // Shadow rays of 'path' end at masks, those of 'volpath' pass their holes.
+    // Shadow rays of the integrator 'path' end at masks; those of 'volpath' pass their holes.
     const bool has_holes = std::any_of(scene.meshes.begin(), scene.meshes.end(),
                                        [&](const ForeignMesh& mesh) { return scene.is_cut_out(mesh); });
     std::string text = fmt::format(

@@ -13,13 +13,14 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Returns [degrees], as pbrt expects. @param fov  Vertical.
+/// Returns the field of view along the shorter side of the picture, as pbrt expects [degrees].
+/// @param fov  Vertical field of view [degrees].
 float shorter_fov(const ForeignScene& scene, float fov) {
     const float aspect = static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
     return aspect >= 1 ? fov : 360 / pi * std::atan(aspect * std::tan(fov / 360 * pi));
 }
 
-/// Mirrors x, since pbrt's cameras are left-handed.
+/// Describes a camera. Mirrors x, because pbrt's cameras are left-handed.
 std::string camera_text(const ForeignScene& scene, const View& view) {
     std::string text = fmt::format("Scale -1 1 1\nLookAt {}  {}  {}\n", triple(V3f(view.eye)),
                                    triple(V3f(view.look_at)), triple(view.up));
@@ -84,7 +85,7 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire) {
     return "";
 }
 
-/// EqualAreaSquareToSphere() of pbrt-v4 (Clarberg 2008).
+/// Maps the unit square to directions, as EqualAreaSquareToSphere() of pbrt-v4 does (Clarberg 2008).
 V3f octahedral_direction(float x, float y) {
     const float u = 2 * x - 1, v = 2 * y - 1, a = std::abs(u), b = std::abs(v);
     const float signed_distance = 1 - (a + b), distance = std::abs(signed_distance), r = 1 - distance;

@@ -21,11 +21,12 @@ using Imath::V3d;
 
 constexpr float pi = std::numbers::pi_v<float>;
 constexpr float efficacy = 179;        // [lm/W]
-constexpr float lamp_radius = 0.005f;  // of spheres for point lights [m]
+constexpr float lamp_radius = 0.005f;  // radius of spheres that represent point lights [m]
 
 std::string numbers(const V3f& v) { return "3 " + triple(v); }
 
-/// Adds an edge of repeated texels, between which Radiance interpolates across the border of the image.
+/// Encodes a texture with an additional edge of repeated texels, so that Radiance interpolates across the border of the
+/// image.
 std::string tile_bytes(const Texture& texture) {
     const std::uint32_t width = texture.width + 2, height = texture.height + 2;
     Texture tile{"", width, height, {}};
@@ -38,17 +39,17 @@ std::string tile_bytes(const Texture& texture) {
     return hdr_bytes(tile);
 }
 
-/// An image of a material.
+/// Image file of a material.
 struct Tile {
     std::string file;
-    std::uint32_t width = 0, height = 0;  // without the edge
+    std::uint32_t width = 0, height = 0;  // size without the additional edge
 };
 
 Tile add_tile(ForeignScene& scene, const std::string& name, const Texture& texture) {
     return {scene.add_file(name + ".hdr", tile_bytes(texture)), texture.width, texture.height};
 }
 
-/// Describes a texture coordinate as an expression, an affine function of the position.
+/// Returns an expression of Radiance for a texture coordinate, which is an affine function of the position.
 std::string affine(const std::array<V3f, 3>& corners, const std::array<float, 3>& values) {
     const V3d origin(corners[0]), a = V3d(corners[1]) - origin, b = V3d(corners[2]) - origin;
     const V3d normal = a.cross(b);
@@ -58,9 +59,10 @@ std::string affine(const std::array<V3f, 3>& corners, const std::array<float, 3>
                        gradient.y, gradient.z);
 }
 
-/// Describes a coordinate of a picture of `size` pixels along it. In Radiance the centres of the first and the last
-/// pixel are at 0 and, if the other side is the shorter one, at the ratio of the sides, else at 1.
-/// @param pixel  Expression; 0 at the centre of the first pixel.
+/// Returns an expression of Radiance for a coordinate along a side of a picture of `size` pixels. In Radiance, the
+/// centre of the first pixel is at 0. The centre of the last pixel is at the ratio of the sides or, along the shorter
+/// side, at 1.
+/// @param pixel  Expression for the position in pixels; 0 at the centre of the first pixel.
 std::string picture_coordinate(const std::string& pixel, std::uint32_t size, std::uint32_t other_side) {
     const double last = std::max(1.0, static_cast<double>(size) / other_side);
     return fmt::format("{}*{:.9g}", pixel, last / (size - 1));
@@ -74,7 +76,8 @@ std::string place_in(const Tile& tile, const std::array<V3f, 3>& corners, const 
     return along(0, tile.width, tile.height) + " " + along(1, tile.height, tile.width);
 }
 
-/// The surface of a mesh. Radiance has no texture coordinates at vertices: each triangle has its own mapping.
+/// Describes the surface of a mesh. Radiance has no texture coordinates at vertices, so each textured triangle has its
+/// own mapping.
 class Surface {
   public:
     Surface(ForeignScene& scene, const ForeignMesh& mesh) : scene_(scene), mesh_(mesh) {
@@ -116,7 +119,7 @@ class Surface {
         return text + "\n";
     }
 
-    /// The backs of one-sided faces pass light; the backs of emitting faces are black.
+    /// Describes the material. The backs of one-sided faces transmit light; the backs of emitting faces are black.
     std::string material_text(const std::string& pattern, const std::string& name) const {
         if (scene_.emits(mesh_)) return fmt::format("{} light {}\n0\n0\n{}\n", pattern, name, numbers(colour_));
         const bool has_backs = mesh_.backs != Backs::pass;
@@ -156,7 +159,7 @@ class Surface {
 
     ForeignScene& scene_;
     const ForeignMesh& mesh_;
-    Rgb colour_;  // reflectance, or radiance of emitters
+    Rgb colour_;  // reflectance, or the radiance of emitters in Radiance's unit
     std::optional<Tile> pattern_, opacity_;
 };
 
@@ -190,7 +193,7 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire, cons
     return "";
 }
 
-/// SkyModel, from the cosines of the angles to the zenith and to the sun.
+/// SkyModel as functions of Radiance of the cosines of the angles to the zenith and to the sun.
 constexpr const char* sky_functions =
     R"({ Luminance of a CIE general sky (CIE S 011:2003), or of Perez's, over a uniform ground.
   A1, A2, A3: zenith    A4, A5, A6: towards the sun    arg(7) to arg(12): a, b, c, d, e, g    arg(13): ground }
@@ -201,13 +204,14 @@ sky_indicatrix = 1 + arg(9)*(Exp(arg(10)*acos(sky_sun)) - Exp(arg(10)*PI/2)) + a
 sky_luminance = if(sky_zenith, bound(0, sky_gradation, 1e10)*bound(0, sky_indicatrix, 1e10), arg(13));
 )";
 
-/// Latitudes and longitudes, with y in the middle of the right half.
+/// Returns the direction of a point of an image of latitudes and longitudes.
 V3f sky_direction(float x, float y) {
     const float azimuth = (0.5f - x) * 2 * pi, polar = pi * y;
     return {std::cos(azimuth) * std::sin(polar), std::sin(azimuth) * std::sin(polar), std::cos(polar)};
 }
 
-/// Radiance has one source in each direction: a single sky is a function, several ones and maps are an image.
+/// Describes the sky. Radiance has one source in each direction, so several skies or a map become an image. A single
+/// sky model becomes a function.
 std::string sky_text(ForeignScene& scene) {
     if (!scene.has_sky()) return "";
     std::vector<const Luminaire*> skies;
@@ -243,7 +247,7 @@ std::string sky_text(ForeignScene& scene) {
                               triple(radiance / efficacy));
 }
 
-/// -vh and -vv are full angles, or sizes of orthographic views.
+/// Describes a view. The options -vh and -vv are full angles, or sizes of orthographic views.
 std::string view_text(const ForeignScene& scene, const View& view) {
     const float aspect = static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
     const float half = std::tan(view.fov / 360 * pi);

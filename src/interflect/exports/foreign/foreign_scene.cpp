@@ -137,7 +137,7 @@ ForeignScene::ForeignScene(const Scene& exported, const std::filesystem::path& d
 }
 
 float ForeignScene::distance_of_backs() const {
-    constexpr float relative = 1e-5f;  // 100 times the rounding of a coordinate
+    constexpr float relative = 1e-5f;  // about 100 times the rounding error of a coordinate
     float largest = 0;
     for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(centre[k]) + size);
     return relative * largest;
@@ -179,7 +179,7 @@ std::string ForeignScene::add_opaque_reflectance_image(std::uint32_t m) {
 bool ForeignScene::has_sky() const { return std::any_of(scene.luminaires.begin(), scene.luminaires.end(), is_sky); }
 
 Texture ForeignScene::sky_image(int aspect, const std::function<V3f(float, float)>& direction) const {
-    // Maps keep their resolution up to 2048 rows; the means of finer texels keep the power of a sun in them.
+    // Maps keep their resolution up to 2048 rows. Larger maps are averaged, which preserves the power of a sun in them.
     constexpr std::uint32_t least_rows = 512, most_rows = 2048, samples_per_row_of_map = 2;
     std::uint32_t rows = least_rows, samples = 1;
     for (const Luminaire& luminaire : scene.luminaires)

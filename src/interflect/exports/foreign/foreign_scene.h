@@ -12,12 +12,14 @@
 
 namespace interflect::detail {
 
+/// What the backs of faces do with light.
 enum class Backs {
-    pass,  ///< Transmit light: one-sided faces.
-    reflect,
-    emit,  ///< Reflect and emit like the fronts.
+    pass,     ///< Transmit it, as one-sided faces do.
+    reflect,  ///< Reflect it.
+    emit,     ///< Reflect and emit like the fronts.
 };
 
+/// Faces with the same material and backs.
 struct ForeignMesh {
     std::string name;
     std::uint32_t material = 0;
@@ -27,11 +29,13 @@ struct ForeignMesh {
     std::vector<std::array<std::uint32_t, 4>> faces;  ///< Vertex indices; triangles end with `none`.
 
     std::vector<std::array<std::uint32_t, 3>> triangles() const;
-    /// Returns the reversed faces, each with its own vertices, shifted behind the fronts: emitters of other renderers
-    /// shine on one side. @param distance  [m]
+    /// Returns the reversed faces, shifted behind the fronts, each with its own vertices. They are needed because
+    /// emitters of other renderers emit on one side only.
+    /// @param distance  Distance of the shift [m].
     ForeignMesh shifted_backs(float distance) const;
 };
 
+/// A scene to be described for another renderer, with the files of the description.
 struct ForeignScene {
     const Scene& scene;
     std::filesystem::path path;
@@ -49,20 +53,20 @@ struct ForeignScene {
     ForeignScene(const Scene& exported, const std::filesystem::path& description, const SceneExportOptions& chosen,
                  std::string (*file_name_escape)(std::string_view));
 
-    /// Adds a file of path_beside(); returns its escaped name.
+    /// Adds a file named by path_beside(). Returns its escaped name.
     std::string add_file(const std::string& name, std::string bytes);
-    /// Add a linear image; return its escaped name. Radiance is M / pi.
+    /// Add a linear image and return its escaped name. Radiance is exitance / pi.
     std::string add_reflectance_image(std::uint32_t material);
     std::string add_radiance_image(std::uint32_t material);
     std::string add_transmittance_image(std::uint32_t material);
-    /// See opacity.h.
+    /// Add images of opacity and of the reflectance of opaque parts (see opacity.h), and return their escaped names.
     std::string add_opacity_image(std::uint32_t material);
     std::string add_opaque_reflectance_image(std::uint32_t material);
     bool has_sky() const;
     /// Returns the mean radiance of all skies in each texel. The width is `aspect` times the height.
     /// @param direction  Maps image coordinates in [0, 1], y downwards.
     Texture sky_image(int aspect, const std::function<V3f(float x, float y)>& direction) const;
-    /// Adds it; returns "" without skies.
+    /// Adds the image of the skies. Returns its escaped name, or "" without skies.
     std::string add_sky_image(int aspect, const std::function<V3f(float x, float y)>& direction);
 
     const Material& material(const ForeignMesh& mesh) const { return scene.materials[mesh.material]; }
@@ -71,11 +75,11 @@ struct ForeignScene {
     Rgb radiance(const ForeignMesh& mesh) const;
     void leave_out(const std::string& what) { warnings.add("left-out", "left out: " + what); }
 
-    /// Distance between the two sides of an emitting face [m].
+    /// Returns the distance between the two sides of an emitting face [m].
     float distance_of_backs() const;
 
     enum class Support { all, without_glass, without_glass_and_backs };
-    /// Warns about panes of glass, and one-sided faces, that the renderer makes opaque; and about mirrors.
+    /// Warns about mirrors, and about panes and one-sided faces that are opaque in the other renderer.
     void warn_of_materials(Support support);
 };
 
@@ -84,10 +88,10 @@ Rgb mean_texel(const Texture& texture);
 /// Encodes binary PLY with texture coordinates "u" and "v".
 std::string ply_of(const ForeignMesh& mesh);
 
-/// Formats "0.5 0.25 1".
+/// Formats three numbers, such as "0.5 0.25 1".
 std::string triple(const V3f& v, const char* between = " ");
 
-// Return the description and add its files.
+// These functions return the description of the scene and add the files to which it refers.
 std::string radiance_description(ForeignScene& scene);
 std::string mitsuba_description(ForeignScene& scene);
 std::string pbrt_description(ForeignScene& scene);

@@ -102,7 +102,7 @@ int GltfDocument::add_texture(const Image& image, const std::string& name, bool 
     const int view = add_buffer_view(codecs::encode_png(image, opacity));
     const int source = add("images", {{"name", escaped(name)}, {"mimeType", "image/png"}, {"bufferView", view}});
     const int wrap = repeats ? repeat : clamp_to_edge;
-    // Mipmaps would mix the texels of neighbouring charts.
+    // Lightmaps have no mipmaps, which would mix the texels of neighbouring charts.
     const int sampler = add("samplers", {{"magFilter", linear_filter},
                                          {"minFilter", repeats ? mipmapped_filter : linear_filter},
                                          {"wrapS", wrap},

@@ -12,29 +12,31 @@
 
 namespace interflect::detail {
 
+/// A glTF file in the making: its JSON and its binary buffer.
 class GltfDocument {
   public:
     GltfDocument();
 
-    /// Excludes the buffer.
+    /// The JSON without the description of the buffer.
     Json json;
 
-    /// Appends to an array such as "materials"; returns the index.
+    /// Appends an object to an array such as "materials". Returns its index.
     int add(const char* array, Json object);
     void use_extension(const char* name);
 
-    /// Return accessor indices.
-    int add_positions(std::span<const V3f> values);  ///< Adds bounds, which glTF requires.
+    /// These functions add data of vertices and return the index of the accessor.
+    int add_positions(std::span<const V3f> values);  ///< Also adds bounds, which glTF requires.
     int add_attribute(std::span<const Rgb> values);
     int add_attribute(std::span<const V2f> values);
     int add_indices(std::span<const std::uint32_t> values);
 
-    /// Adds a texture as 8-bit sRGB PNG, clamped to [0, 1]; returns its index.
+    /// Adds a texture as 8-bit sRGB PNG, clamped to [0, 1]. Returns its index.
     /// @param opacity  Alpha in [0, 1]; empty: no alpha channel.
-    /// @param repeats  With mipmaps; otherwise extends edge texels.
+    /// @param repeats  Whether the texture repeats, with mipmaps. Else the texels at the edge continue outside.
     int add_texture(const Image& image, const std::string& name, bool repeats, std::span<const float> opacity = {});
 
-    /// Return GLB, or JSON with embedded buffer. glb() throws InputError beyond 4 GiB.
+    /// Return the bytes of a GLB file, or JSON with an embedded buffer. glb() throws InputError if a file exceeds 4
+    /// GiB.
     std::string glb() const;
     std::string gltf() const;
 

@@ -29,7 +29,7 @@ struct MappedVertex {
 using MappedPrimitive = WeldedVertices<MappedVertex>;
 using MappedPrimitives = std::map<std::tuple<std::uint32_t, std::uint32_t, int>, MappedPrimitive>;
 
-/// A texel of 1 in the file represents `scale`, in the unit of `content`.
+/// Encoding of the images in a file. A linear texel of 1 represents `scale`, in the unit of `content`.
 struct Encoding {
     LightmapContent content;
     float exposure;
@@ -38,7 +38,8 @@ struct Encoding {
     float intensity() const { return scale * std::exp2(exposure); }
 };
 
-/// Covers all texels, up to eight times the irradiance displayed as white, to hide 8-bit steps in dark areas.
+/// Returns Encoding::scale. For irradiance, it is the largest texel, but at most eight times the irradiance displayed
+/// as white: a larger scale would make the steps of 8 bits visible in dark areas.
 float scale_of(const std::vector<Image>& images, LightmapContent content, float exposure) {
     if (content == LightmapContent::radiance) return std::exp2(-exposure);
     constexpr float headroom = 8;
@@ -49,13 +50,14 @@ float scale_of(const std::vector<Image>& images, LightmapContent content, float 
     return largest > 0 ? std::min(largest, most) : most;
 }
 
-/// Differs between a .glb and a .gltf of one stem.
+/// Returns the name of an image, which differs between a .glb and a .gltf with the same stem.
 std::string name_of_image(const std::filesystem::path& path, std::size_t page) {
     const bool is_text = lower_case_extension(path) == ".gltf";
     return fmt::format("{}.lightmap-{}", (is_text ? path.filename() : path.stem()).string(), page);
 }
 
-/// Uses numbers, since group names may be invalid in file names.
+/// Returns the name of an image of a light group. It contains the number of the group, because its name may be invalid
+/// in file names.
 std::string name_of_image(const std::filesystem::path& path, std::size_t page, std::size_t group) {
     return fmt::format("{}-group-{}", name_of_image(path, page), group);
 }
@@ -92,7 +94,7 @@ MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, Ele
     return primitives;
 }
 
-/// Radiance uses TEXCOORD_0, since its materials have no other texture.
+/// Writes a primitive. Lightmaps of radiance use TEXCOORD_0, because their materials have no other texture.
 Json write_primitive(GltfDocument& document, const MappedPrimitive& primitive, const std::vector<V3f>& points,
                      bool is_textured, LightmapContent content) {
     Json attributes;
@@ -103,7 +105,7 @@ Json write_primitive(GltfDocument& document, const MappedPrimitive& primitive, c
     const auto lightmap_coordinates = primitive.values([](const MappedVertex& v) { return v.lightmap_coordinate; });
     const bool has_both = content == LightmapContent::irradiance;
     add("TEXCOORD_0", has_both && is_textured ? coordinates : lightmap_coordinates);
-    if (has_both) add("TEXCOORD_1", lightmap_coordinates);  // requires TEXCOORD_0
+    if (has_both) add("TEXCOORD_1", lightmap_coordinates);  // glTF allows it only together with TEXCOORD_0
     return {{"attributes", attributes}, {"indices", document.add_indices(primitive.indices())}};
 }
 

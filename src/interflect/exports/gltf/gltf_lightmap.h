@@ -8,8 +8,8 @@
 
 namespace interflect::detail {
 
-/// Adds a scene with lightmaps: irradiance as MOZ_lightmap at TEXCOORD_1, or radiance of unlit materials. Returns
-/// unclamped images beside the glTF file.
+/// Adds a scene with lightmaps: irradiance by the extension MOZ_lightmap at TEXCOORD_1, or radiance by unlit materials.
+/// Returns the unclamped images, which are files beside the glTF file.
 std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesystem::path& path, const Scene& scene,
                                        const Solution& solution, const ExportOptions& options);
 

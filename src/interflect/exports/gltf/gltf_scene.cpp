@@ -26,7 +26,7 @@ double size_of(const Scene& scene) {
     return bounds.size().length();
 }
 
-/// Rotates from glTF's camera: view along -z, y up, x right.
+/// Returns the rotation of a camera of glTF, which looks along -z with y up and x to the right.
 Imath::Quatd rotation_of(const View& view) {
     const Imath::V3d back = (view.eye - view.look_at).normalized();
     const Imath::V3d right = Imath::V3d(view.up).cross(back).normalized(), up = back.cross(right);
@@ -36,7 +36,7 @@ Imath::Quatd rotation_of(const View& view) {
 
 Json camera_of(const View& view, double scene_size) {
     const double distance = (view.look_at - view.eye).length();
-    const double far = scene_size + distance, near = 1e-3 * far;  // limit of single-precision depth buffers
+    const double far = scene_size + distance, near = 1e-3 * far;  // depth buffers in single precision limit the ratio
     if (view.extent > 0) {
         const double half = view.extent / 2;
         return {{"name", escaped(view.name)},
@@ -92,7 +92,8 @@ Json GltfTextures::reference(std::uint32_t texture, const Rgb& peak) {
 Json GltfTextures::diffuse(const Material& material) {
     const Rgb& rho = material.reflectance;
     Json result{{"baseColorFactor", {rho.x, rho.y, rho.z, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
-    if (material.reflectance_texture != none && material.transmittance_texture == none)  // otherwise cut_out() adds it
+    // With a transmittance texture, cut_out() adds the texture of the reflectance.
+    if (material.reflectance_texture != none && material.transmittance_texture == none)
         result["baseColorTexture"] = reference(material.reflectance_texture);
     return result;
 }

@@ -12,7 +12,7 @@ namespace interflect::detail {
 
 using GltfPrimitives = std::map<std::uint32_t, std::vector<Json>>;
 
-/// Adds objects and views to a root node, which rotates `up` to +y and restores Scene::origin.
+/// Adds objects and views to a root node. The root rotates `up` to +y and translates by Scene::origin.
 void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives& primitives, const V3f& up);
 
 class GltfTextures {
@@ -20,7 +20,7 @@ class GltfTextures {
     GltfTextures(GltfDocument& document, const Scene& scene) : document_(document), scene_(scene) {}
 
     Json diffuse(const Material& material);
-    /// Adds reflectance and opacity of a material with a transmittance texture.
+    /// Adds the reflectance and opacity of a material with a transmittance texture.
     /// @param peak  Divisor of the reflectance.
     void cut_out(Json& json, const Material& material, const Rgb& peak = Rgb(1));
     Json reference(std::uint32_t texture, const Rgb& peak = Rgb(1));
@@ -28,10 +28,10 @@ class GltfTextures {
   private:
     GltfDocument& document_;
     const Scene& scene_;
-    std::map<std::pair<std::uint32_t, bool>, int> numbers_;  // keys: texture, whether divided
+    std::map<std::pair<std::uint32_t, bool>, int> numbers_;  // keys: texture, and whether it is divided by `peak`
 };
 
-/// glTF's origin is the upper left corner.
+/// Converts a texture coordinate to glTF, where the origin is the upper left corner of the image.
 inline V2f gltf_coordinate(const V2f& coordinate) { return {coordinate.x, 1 - coordinate.y}; }
 
 }  // namespace interflect::detail

@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Whether vertices store the texture's factor.
+/// Returns whether the file contains the reflectance texture, and vertices the factor by which it is multiplied.
 bool keeps_texture(const Material& material) {
     return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
 }
@@ -27,7 +27,7 @@ struct LitVertex {
     V2f coordinate;
 };
 
-/// Returns 1 for black channels.
+/// Returns the largest texel of the reflectance, channel by channel; 1 for black channels.
 Rgb peak_of(const Scene& scene, const Material& material) {
     Rgb peak = material.transmittance_texture == none
                    ? largest_texel(scene.textures[material.reflectance_texture])
@@ -89,7 +89,7 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Scene& sc
     return document.add("materials", std::move(json));
 }
 
-/// Keys: object and material.
+/// Primitives by object and material.
 using LitPrimitives = std::map<std::pair<std::uint32_t, std::uint32_t>, LitPrimitive>;
 
 LitPrimitives primitives_of(const Scene& scene, VertexLight& light, float exposure) {

@@ -7,10 +7,10 @@
 
 namespace interflect::detail {
 
-/// Exports binary glTF 2.0 (docs/files/export.md), y up.
+/// Make a binary glTF 2.0 file with y up (docs/files/export.md).
 std::vector<ExportedFile> make_glb(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
-/// Embeds the binary data in JSON.
+/// Makes a glTF file in JSON, with embedded binary data.
 std::vector<ExportedFile> make_gltf(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                     const ExportOptions& options);
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view signature = "interflect checksums\n";
 constexpr const char* structure = "structure";
-/// Eight hexadecimal digits and a line break.
+/// The checksum of the block itself, at its end, has eight hexadecimal digits and a line break.
 constexpr std::size_t own_checksum_length = 9, checked_length = checksum_block_size - own_checksum_length;
 
 std::string own_checksum(std::string_view block) {
@@ -49,7 +49,7 @@ std::string_view checked_name(std::string_view name) {
     return is_numbered ? name.substr(0, last) : name;
 }
 
-/// Joins numbered arrays, because the block has limited room.
+/// Joins the ranges of numbered arrays, because the block has limited room.
 std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges) {
     std::vector<FileRange> joined;
     for (const FileRange& range : ranges) {

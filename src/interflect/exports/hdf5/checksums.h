@@ -7,11 +7,11 @@
 
 namespace interflect::detail {
 
-/// [bytes]
+/// Size of the user block at the start of a file that contains the checksums [bytes].
 inline constexpr std::uint64_t checksum_block_size = 4096;
 
 struct FileRange {
-    std::string name;  ///< No white space.
+    std::string name;  ///< Must not contain white space.
     std::uint64_t begin = 0, length = 0;
 };
 
@@ -20,7 +20,7 @@ struct FileRange {
 /// @throws std::runtime_error if the file cannot be read or written.
 void write_checksums(const std::filesystem::path& path, std::vector<FileRange> ranges);
 
-/// Returns false also for an unreadable file.
+/// Returns whether the file begins with checksums; false if it is unreadable.
 bool has_checksums(const std::filesystem::path& path);
 
 /// Verifies every byte; misses a change with probability <= 2^-32.

@@ -13,19 +13,20 @@ namespace interflect::detail {
 
 namespace {
 
-/// [entries]
+/// Maximum number of entries of an array that is read.
 constexpr hsize_t largest_array = hsize_t{1} << 32;
 
 constexpr const char* no_properties = "cannot make properties";
 
-/// Must precede other HDF5 calls. Disables error output and the exit handler, which crashes after a failed write.
+/// Prepares HDF5; must precede other calls. Disables error output and the exit handler, which crashes after a failed
+/// write.
 void prepare_hdf5() {
     [[maybe_unused]] static const herr_t first_of_all = H5dont_atexit();
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     errno = 0;
 }
 
-/// Returns "" unless a disk is full or fails.
+/// Returns the text of the last system error if a disk is full or fails, else "".
 std::string reason_of_disk() {
     const bool is_of_disk = errno == ENOSPC || errno == EDQUOT || errno == EFBIG || errno == EIO;
     return is_of_disk ? std::string(": ") + std::strerror(errno) : std::string();
@@ -66,10 +67,10 @@ hid_t native_type<std::byte>() {
     return H5T_NATIVE_UCHAR;
 }
 
-/// Chunks of 1 MB limit the memory of compression.
+/// Enables compression, in chunks of about 1 MB to limit its memory.
 void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
     constexpr hsize_t max_rows = hsize_t{1} << 16;
-    constexpr unsigned deflate_level = 4;  // 9 takes seven times the time for 2% less
+    constexpr unsigned deflate_level = 4;  // level 9 takes seven times as long and saves 2%
     std::vector<hsize_t> chunk(size.begin(), size.end());
     chunk[0] = std::min(chunk[0], max_rows);
     require(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "cannot divide an array");
@@ -131,7 +132,7 @@ void write_attribute_of_type(hid_t file, const std::string& group, const char* n
 
 herr_t refuse_other_files(const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) { return -1; }
 
-/// External and virtual storage could refer to any file.
+/// Refuses external and virtual storage, which could refer to any file.
 void require_stored_here(hid_t set, const std::string& name) {
     const Hdf5Handle properties(H5Dget_create_plist(set), H5Pclose, "an array has no properties");
     if (H5Pget_external_count(properties) != 0 || H5Pget_layout(properties) == H5D_VIRTUAL)
@@ -168,7 +169,7 @@ std::vector<T> Hdf5Reader::read(const std::string& name, std::size_t columns) co
     const Hdf5Handle set(H5Dopen2(file_, name.c_str(), links_), H5Dclose, "an array is missing");
     require_stored_here(set, name);
     const Hdf5Handle space(H5Dget_space(set), H5Sclose, "an array has no size");
-    // HDF5 allocates the size that the file claims.
+    // Check type and size before reading, because the file could state any size to allocate.
     const Hdf5Handle type(H5Dget_type(set), H5Tclose, "an array has no type");
     if (H5Tget_size(type) != sizeof(T)) throw std::runtime_error("array '" + name + "' has the wrong type");
     std::array<hsize_t, 2> size{0, 1};

@@ -15,6 +15,7 @@
 
 namespace interflect::detail {
 
+/// Owns an identifier of HDF5.
 class Hdf5Handle {
   public:
     /// @throws std::runtime_error with text `what` for an invalid `id`.
@@ -29,7 +30,7 @@ class Hdf5Handle {
     herr_t (*close_)(hid_t);
 };
 
-/// Excludes other threads, because HDF5 may not be thread-safe.
+/// Excludes other threads while it exists, because HDF5 may not be thread-safe.
 class Hdf5Lock {
   public:
     Hdf5Lock() : lock_(mutex()) {}
@@ -39,8 +40,8 @@ class Hdf5Lock {
     std::unique_lock<std::recursive_mutex> lock_;
 };
 
-/// Reads arrays of float, double, std::uint32_t, char or std::byte, at most the size of the file; refuses data in other
-/// files. Throws std::runtime_error.
+/// Reads arrays of float, double, std::uint32_t, char or std::byte. Refuses arrays that are larger than the file, and
+/// data in other files. Throws std::runtime_error.
 class Hdf5Reader {
   public:
     explicit Hdf5Reader(const std::filesystem::path& path);
@@ -64,12 +65,12 @@ class Hdf5Reader {
 /// std::int64_t, std::uint32_t, std::uint8_t or, uncompressed, char.
 class Hdf5Writer {
   public:
-    /// @param user_block  Unused initial bytes.
+    /// @param user_block  Number of bytes to reserve at the start of the file.
     Hdf5Writer(const std::filesystem::path& path, std::uint64_t user_block);
-    /// Writes to memory, for image().
+    /// Writes a file in memory; image() returns it.
     Hdf5Writer();
 
-    /// @return  Position in the file.
+    /// Writes an array. @return  Its position in the file.
     template <class T>
     FileRange write(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
     template <class T>
@@ -77,7 +78,7 @@ class Hdf5Writer {
     void write_attribute(const std::string& group, const char* name, std::span<const std::int64_t> numbers);
     void write_attribute(const std::string& group, const char* name, std::string_view text);
     FileRange write_joined(const std::string& name, const std::vector<std::span<const std::byte>>& parts);
-    /// Must be the last call; so must image().
+    /// Completes the file. Either flush() or image() must be the last call.
     void flush();
     std::string image();
 

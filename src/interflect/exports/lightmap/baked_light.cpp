@@ -13,8 +13,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Least distance of ray starts from the border of a patch, over the spacing of points. At the foot of a wall, they
-/// would otherwise start in its plane.
+/// Minimum distance of ray starts from the border of a patch, relative to the spacing of points. Otherwise rays at the
+/// foot of a wall would start in its plane.
 constexpr float inset = 0.05f;
 
 SampledLight no_light(int width, int height) {
@@ -22,7 +22,7 @@ SampledLight no_light(int width, int height) {
     return {Image(width, height), Image(width, height), std::vector<float>(count), std::vector<float>(count)};
 }
 
-/// Removes noise of direct light in a grid.
+/// Filters the noise of direct light in a grid.
 void filter(const PointGrid& grid, std::span<const Gauge> gauges, std::span<const GaugeLight> light,
             std::span<Rgb> irradiance) {
     const int width = grid.width, height = static_cast<int>(grid.points.size()) / width;
@@ -133,7 +133,7 @@ std::vector<Rgb> BakedLight::gathered(std::span<const BakedPoint> points, float 
     measuring.reserve(points.size());
     for (const BakedPoint& point : points) {
         const PatchGeometry& geometry = solution_.forest->geometry(point.patch);
-        V3f x(0);  // middle of the gauge's part on the patch
+        V3f x(0);  // middle of the part of the gauge that is on the patch
         for (const float u : {0.25f, 0.75f})
             for (const float v : {0.25f, 0.75f}) x += places[measuring.size()].point_on(geometry, u, v) / 4;
         measuring.push_back({scene_.origin + Imath::V3d(x), places[measuring.size()].normal});

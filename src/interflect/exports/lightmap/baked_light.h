@@ -27,28 +27,28 @@ struct BakedPoint {
 struct DirectSampling {
     LightUse use;      ///< Selects the default number of samples.
     double max_noise;  ///< Estimated relative error below which a quarter of the samples suffices.
-    bool is_tested;    ///< BakedLight::direct() is called.
+    bool is_tested;    ///< Whether BakedLight::direct() will be called.
 };
 
-/// Neighbouring points on a surface: indices, row by row; none where there is no surface.
+/// Grid of neighbouring points on a surface: their indices, row by row; `none` outside the surface.
 struct PointGrid {
     int width;
     std::vector<std::uint32_t> points;
 };
 
-/// Irradiance of points by the chosen shading.
+/// Computes the irradiance of points by the chosen shading.
 class BakedLight {
   public:
-    /// Keeps references.
+    /// Refers to its arguments.
     BakedLight(const Scene& scene, const Solution& solution, const BakeOptions& options,
                const DirectSampling& sampling);
 
-    /// @param grids    In which noise of hybrid shading is filtered.
+    /// @param grids    Grids in which the noise of hybrid shading is filtered.
     /// @param spacing  Distance between the points; rays start a twentieth of it inside their patch [m].
-    /// @return         [as H], per point. @throws Stopped
+    /// @return         One value per point [as H]. @throws Stopped
     std::vector<Rgb> irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids, float spacing,
                                 const Monitor& monitor) const;
-    /// Direct light of hybrid shading, if DirectSampling::is_tested; not for Shading::smooth.
+    /// Returns the direct light of hybrid shading. Requires DirectSampling::is_tested and a shading other than smooth.
     std::vector<SampledIrradiance> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
                                           const Monitor& monitor) const;
     /// Returns the interpolated irradiance of the solution (SmoothField).
@@ -66,7 +66,7 @@ class BakedLight {
     ElementVertices vertices_;
     SmoothField smooth_;
     KnownIrradiance known_;
-    std::optional<RayCaster> ray_caster_;  // not for smooth shading
+    std::optional<RayCaster> ray_caster_;  // empty for smooth shading
     std::optional<TracedScene> traced_;
 };
 

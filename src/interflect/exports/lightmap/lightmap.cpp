@@ -34,11 +34,13 @@ constexpr DirectSampling texel_sampling{&DefaultSamples::texel, hybrid_target, /
 
 struct TexelPlace : BakedPoint {
     bool is_inside = false;
-    bool is_near = false;  ///< Less than a texel from the patch: bilinear interpolation may use it.
+    bool is_near =
+        false;  ///< Whether it is less than a texel from the patch, so that bilinear interpolation may use it.
 };
 
-/// Returns the two sides of a texel in the parameters of the patch, taken as the parallelogram of its edges at corner 0
-/// (Cramer's rule). @param spacing  Width and height of a texel [m].
+/// Returns the two sides of a texel in the parameters of the patch, by Cramer's rule. The patch is treated as the
+/// parallelogram of its edges at corner 0.
+/// @param spacing  Width and height of a texel [m].
 std::array<Parameters, 2> texel_sides(const FlatPatch& flat, const Imath::V2d& spacing) {
     const Imath::V2d u = flat.corners[1] - flat.corners[0],
                      v = flat.corners[static_cast<std::size_t>(flat.count) - 1] - flat.corners[0];
@@ -64,7 +66,9 @@ class NearestPatch {
         arrange_box_tree(tree_);
     }
 
-    /// @param at, texel_size  [m]
+    /// Returns the place on the patches that is nearest to a point of the chart.
+    /// @param at          Position in the chart [m].
+    /// @param texel_size  Larger side of a texel [m].
     TexelPlace find(const Imath::V2d& at, float texel_size) const {
         const V3f x(static_cast<float>(at.x), static_cast<float>(at.y), 0);
         TexelPlace nearest;
@@ -153,7 +157,8 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
     return places;
 }
 
-/// Returns, for each texel, the nearest with TexelPlace::is_near, whose light it copies (flood fill).
+/// Returns, for each texel, the texel near a patch whose light it copies, found by flood fill. Texels near a patch copy
+/// themselves.
 std::vector<std::size_t> copied_texels(std::span<const TexelPlace> places, std::size_t columns) {
     constexpr auto unknown = static_cast<std::size_t>(-1);
     std::vector<std::size_t> copied(places.size(), unknown), reached;
@@ -177,7 +182,7 @@ std::vector<std::size_t> copied_texels(std::span<const TexelPlace> places, std::
     return copied;
 }
 
-/// Texels of all charts. Those far from patches copy an evaluated one.
+/// Texels of all charts. Texels that are far from patches copy the light of an evaluated texel.
 class LightmapTexels {
   public:
     explicit LightmapTexels(const LightmapOptions& options) : options_(options) {}
@@ -220,7 +225,7 @@ class LightmapTexels {
 
     const LightmapOptions& options_;
     std::vector<BakedPoint> places_;
-    std::vector<PointGrid> grids_;  // of charts
+    std::vector<PointGrid> grids_;  // one for each chart
     std::vector<Target> targets_;
     std::int64_t texels_inside_ = 0;
 };
@@ -230,7 +235,7 @@ void add(const std::vector<Image>& images, std::vector<Image>& sum) {
         for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
 }
 
-/// Evaluates each group alone. Their sum, noise included, is the lightmap.
+/// Evaluates each light group alone. The lightmap is their sum, including the noise.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
                      const ExportOptions& options, Lightmap& lightmap) {
     Ranks* const ranks = options.monitor.ranks;
@@ -238,7 +243,7 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
     for (std::size_t g = 0; g < count; ++g) {
         const LightOfGroup group = light_of_group(scene, solution, g);
         const auto fraction = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(count); };
-        lightmap.groups.push_back(lightmap.images);  // still black
+        lightmap.groups.push_back(lightmap.images);  // these images are still black
         give_order(ranks, {.kind = LightOrder::Kind::group, .group = g});
         try {
             texels.evaluate(group.scene, BakedLight(group.scene, group.solution, options.bake, texel_sampling),
@@ -256,11 +261,13 @@ double texel_count(const LightmapChart& chart, int gutter) {
     return static_cast<double>(chart.columns + 2 * gutter) * (chart.rows + 2 * gutter);
 }
 
-/// @param image_texels  Of all images. @param chart_texels  With gutters.
+/// Requires that the lightmap fits into the limit of memory.
+/// @param image_texels  Number of texels of all images.
+/// @param chart_texels  Number of texels of all charts with gutters.
 void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, Shading shading,
                     std::size_t groups) {
-    constexpr double encoded_bytes = 16;  // of four single-precision channels at most
-    constexpr double target_bytes = 24;   // two indices, a column and a row
+    constexpr double encoded_bytes = 16;  // a texel has at most four channels in single precision
+    constexpr double target_bytes = 24;   // size of two indices, a column and a row
     // Each texel of an image is stored twice, the second time to be encoded, and once encoded.
     constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
     // A texel of a chart needs two copies of its place, its target and its light.
@@ -304,7 +311,7 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     const auto require_memory_of_images = [&](double texels) {
         require_memory(texels, chart_texels, lightmap_options, options.bake.shading, solution.groups.size());
     };
-    require_memory_of_images(chart_texels);  // a lower bound, before packing, which takes minutes for so many charts
+    require_memory_of_images(chart_texels);  // check a lower bound first, because packing many charts takes minutes
     const std::vector<Imath::V2i> sizes =
         pack_charts(lightmap.charts, lightmap_options.gutter, lightmap_options.max_size);
     for (const Imath::V2i& size : sizes) image_texels += static_cast<double>(size.x) * size.y;

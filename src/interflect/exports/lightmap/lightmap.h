@@ -10,14 +10,14 @@ namespace interflect::detail {
 
 struct Lightmap {
     std::vector<LightmapChart> charts;
-    std::vector<std::uint32_t> chart_of_patch;  ///< `none` if hidden.
+    std::vector<std::uint32_t> chart_of_patch;  ///< Chart of each patch; `none` if it is hidden.
     std::vector<std::uint32_t> index_in_chart;
-    std::vector<Image> images;               ///< H [lm/m^2] or L [cd/m^2]; 0 between charts.
-    std::vector<std::vector<Image>> groups;  ///< [group][image]
+    std::vector<Image> images;               ///< Irradiance [lm/m^2] or radiance [cd/m^2]; 0 between charts.
+    std::vector<std::vector<Image>> groups;  ///< Images of each light group, [group][image].
     double used = 0;                         ///< Share of texels in charts and gutters.
     double covered = 0;                      ///< Share of texels on patches.
 
-    /// Returns (0, 0) for the upper left corner.
+    /// Returns the coordinate of a point in its image; (0, 0) is the upper left corner.
     V2f coordinate(PatchIndex patch, Parameters at) const;
     int page(PatchIndex patch) const { return charts[chart_of_patch[patch]].page; }
 };

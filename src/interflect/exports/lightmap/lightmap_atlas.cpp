@@ -64,7 +64,8 @@ std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, 
     return rectangles;
 }
 
-/// Returns the smallest complete packing, or else a full image.
+/// Returns the smallest packing of all chosen charts. If they do not fit into an image, returns the fullest image
+/// found.
 Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen, int gutter,
                      int max_size) {
     constexpr std::size_t many_charts = 2000;

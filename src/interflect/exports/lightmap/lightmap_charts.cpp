@@ -18,17 +18,17 @@ namespace interflect::detail {
 
 namespace {
 
-/// [texels]
+/// Gaps narrower than this separate charts [texels].
 constexpr double narrow_gap = 2;
 
-/// Part of an edge without adjacent patch.
+/// Part of an edge that has no adjacent patch.
 struct BorderEdge {
     PatchIndex patch;
     V3f a, b;
-    V3f inwards;  // unit vector in the plane
+    V3f inwards;  // unit vector in the plane of the patch
 };
 
-/// Omits joints between objects.
+/// Returns the joints of smooth surfaces, except those between objects.
 Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     Joints joints = smooth.seams;
     std::vector<EdgeIndex> first(smooth.edges.count);
@@ -110,7 +110,7 @@ bool are_across_a_gap(const BorderEdge& e, const BorderEdge& f, float gap) {
     if (!(e.inwards.dot(f.inwards) < opposite_cosine)) return false;
     const V3f between_middles = (f.a + f.b) / 2 - (e.a + e.b) / 2;
     const float rounding = 1e-3f * gap;
-    // The gap is outside both patches.
+    // The gap must be outside both patches.
     if (e.inwards.dot(between_middles) > rounding || f.inwards.dot(between_middles) < -rounding) return false;
     // Edges that only touch at a corner enclose no gap.
     const V3f along = (e.b - e.a).normalized();
@@ -178,7 +178,7 @@ std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>
 
 using Points = std::vector<Imath::V2d>;
 
-/// Andrew's monotone chain (1979); counter-clockwise.
+/// Returns the convex hull, counter-clockwise, by Andrew's monotone chain (1979).
 Points convex_hull(Points points) {
     std::sort(points.begin(), points.end(),
               [](const auto& a, const auto& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
@@ -198,11 +198,11 @@ Points convex_hull(Points points) {
 }
 
 struct Rectangle {
-    Imath::V2d corner, across;  // unit vector along size.x
+    Imath::V2d corner, across;  // `across` is the unit vector along size.x
     Imath::V2d size;
 };
 
-/// The smallest rectangle shares a side with an edge (Freeman and Shapira 1975).
+/// Returns the smallest enclosing rectangle. One of its sides contains an edge of the hull (Freeman and Shapira 1975).
 Rectangle smallest_rectangle(const Points& hull) {
     Rectangle best;
     double least = std::numeric_limits<double>::max();
@@ -232,7 +232,7 @@ int texels_along(double length, double texels_per_metre, int most) {
     return static_cast<int>(std::clamp(count, 2.0, static_cast<double>(most)));
 }
 
-/// The smallest coordinates must be 0.
+/// Makes a chart. The smallest coordinates of the patches must be 0.
 LightmapChart chart_of(FlatPatches patches, const LightmapOptions& options) {
     LightmapChart chart{std::move(patches), {0, 0}};
     for (const FlatPatch& flat : chart.patches)

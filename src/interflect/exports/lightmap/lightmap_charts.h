@@ -9,18 +9,18 @@
 
 namespace interflect::detail {
 
-/// Patches in a plane. The border of their rectangle runs through the outermost texel centres.
+/// A chart: patches in a plane. The border of their rectangle passes through the centres of the outermost texels.
 struct LightmapChart {
     FlatPatches patches;  ///< Coordinates along columns and rows from texel (0, 0) [m].
-    Imath::V2d size;      ///< [m]
+    Imath::V2d size;      ///< Size of the rectangle [m].
     int columns = 2, rows = 2;
-    int page = 0, left = 0, top = 0;  ///< Place of texel (0, 0), set by pack_charts().
+    int page = 0, left = 0, top = 0;  ///< Image and position of texel (0, 0), set by pack_charts().
 
     Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
 };
 
-/// Makes charts of the `shown` patches: kept_layouts(), and other smooth surfaces, unfolded() and split at creases,
-/// contacts and gaps narrower than two texels.
+/// Makes charts of the `shown` patches. Objects with a layout of their own keep it (kept_layouts()). Other smooth
+/// surfaces are unfolded(), and split at creases, contacts and gaps narrower than two texels.
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings = nullptr);
 

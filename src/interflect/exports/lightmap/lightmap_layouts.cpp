@@ -13,10 +13,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Tolerance of coordinates in the unit square, above the rounding to 16 bits.
+/// Tolerance of coordinates in the unit square, which exceeds the rounding to 16 bits.
 constexpr double layout_rounding = 0x1p-15;
 
-/// v points downwards.
+/// Returns the patch in the layout of its object, with v pointing downwards.
 FlatPatch given_layout(const Scene& scene, PatchIndex p) {
     const Patch& patch = scene.patches[p];
     FlatPatch flat{p, patch.vertex_count()};
@@ -27,7 +27,7 @@ FlatPatch given_layout(const Scene& scene, PatchIndex p) {
     return flat;
 }
 
-/// Low for objects that share a map.
+/// Minimum share of its bounding box that a layout fills. It is small because several objects may share a map.
 constexpr double min_filled = 0.1;
 
 bool is_mostly_empty(const FlatPatches& layout) {

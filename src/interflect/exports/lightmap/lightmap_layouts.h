@@ -8,9 +8,9 @@
 
 namespace interflect::detail {
 
-/// Returns the objects' own layouts (Scene::lightmap_coordinates; docs/files/export.md), y downwards, scaled to the
-/// area of the patches [m]; of two shown sides, the first.
-/// @param warnings  Receives objects with ignored layouts; may be null.
+/// Returns the objects' own layouts (Scene::lightmap_coordinates; docs/files/export.md) with y pointing downwards,
+/// scaled to the area of the patches [m]. If both sides of a face are shown, the layout contains the first side.
+/// @param warnings  Receives a warning for each object whose layout is ignored; may be null.
 std::vector<FlatPatches> kept_layouts(const Scene& scene, const std::vector<bool>& shown, Warnings* warnings);
 
 }  // namespace interflect::detail

@@ -10,7 +10,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Each new piece is compared with all patches of its layout.
+/// Maximum number of patches in a layout. It is limited because each new piece is compared with all patches of its
+/// layout.
 constexpr std::size_t max_patches_unfolded = 4096;
 
 /// Maximum relative change of edge lengths.
@@ -18,6 +19,7 @@ constexpr double max_stretch = 0.1;
 /// Maximum relative change of areas at corners.
 constexpr double max_shear = 0.2;
 
+/// Relative tolerance for rounding errors.
 constexpr double flat_rounding = 1e-4;
 
 struct RigidMotion {
@@ -31,7 +33,7 @@ struct RigidMotion {
 
 using PointPair = std::pair<Imath::V2d, Imath::V2d>;
 
-/// Least-squares motion (Kabsch 1976); nullopt if all points coincide.
+/// Returns the motion with the smallest sum of squared distances (Kabsch 1976); nullopt if all points coincide.
 std::optional<RigidMotion> best_motion(std::span<const PointPair> pairs) {
     RigidMotion motion{{0, 0}, {0, 0}, {0, 0}};
     for (const auto& [from, to] : pairs) {
@@ -131,7 +133,7 @@ class Unfolding {
             }
         }
         for (std::size_t i = 0; i < placed.size(); ++i) {
-            // Partial edges have corners inside other edges and cannot deform.
+            // Pieces with seams must not deform, because their corners lie inside the edges of other patches.
             const bool fits = has_seams ? is_alike(pieces_[piece][i], placed[i], flat_rounding, flat_rounding)
                                         : is_alike(pieces_[piece][i], placed[i], max_stretch, max_shear);
             if (!fits || !has_room(placed[i])) return std::nullopt;
@@ -188,7 +190,8 @@ class Unfolding {
         return true;
     }
 
-    /// If the distance in space is larger, the straight line leaves the layout.
+    /// Returns whether two patches are farther apart in space than in the layout. The straight line between them then
+    /// leaves the layout.
     bool is_apart_in_space(const FlatPatch& a, const FlatPatch& b) const {
         const double in_space = (centre(a.patch) - centre(b.patch)).length(), flat = (a.centre() - b.centre()).length();
         return in_space > (1 + max_stretch) * flat;

@@ -10,15 +10,15 @@
 
 namespace interflect::detail {
 
-/// Patches that must be in other charts, per patch.
+/// For each patch, the patches that must be in other charts.
 using ChartConflicts = std::vector<std::vector<PatchIndex>>;
 
-/// Includes whole edges.
+/// Common parts of edges of two patches, including whole edges.
 using Joints = std::vector<SmoothSurfaces::Seam>;
 
-/// Unfolds smooth surfaces by joining flat pieces at common edges, deformed by up to max_stretch and max_shear. A piece
-/// starts another layout if it would deform more, overlap, or come closer than `gap` [m] to a piece further away in
-/// space.
+/// Unfolds smooth surfaces by joining flat pieces at common edges. Pieces deform by at most max_stretch and max_shear.
+/// A piece starts another layout if it would deform more, overlap, or come closer than `gap` [m] to a piece that is
+/// farther away in space.
 std::vector<FlatPatches> unfolded(const Scene& scene, const SmoothSurfaces::Groups& corners, const Joints& joints,
                                   const ChartConflicts& conflicts, std::vector<FlatPatches> pieces, double gap);
 

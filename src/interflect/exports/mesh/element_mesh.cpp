@@ -140,7 +140,7 @@ std::vector<MeshCorner> ElementMesh::outline(ElementIndex leaf) const {
     std::vector<MeshCorner> outline;
     for (std::size_t c = 0; c < count; ++c) {
         const MeshCorner& next = corners[(c + 1) % count];
-        if (corners[c].point == next.point) continue;  // zero-length edge
+        if (corners[c].point == next.point) continue;  // the edge has no length
         outline.push_back(corners[c]);
         add_points_on_edge(corners[c], next, outline);
     }

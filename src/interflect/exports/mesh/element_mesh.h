@@ -15,24 +15,25 @@ namespace interflect::detail {
 struct MeshCorner {
     std::uint32_t point;  ///< Index into points().
     Parameters at;
-    Rgb irradiance{0, 0, 0};  ///< Interpolated between vertices as by SmoothField.
+    Rgb irradiance{0, 0, 0};  ///< Interpolated between vertices, as in SmoothField.
 };
 using MeshTriangle = std::array<MeshCorner, 3>;
 
-/// Triangulation of the leaves without T-junctions; counter-clockwise seen from the lit side. Splits quadrilaterals
-/// along the diagonal with the smaller difference of irradiance (Baum et al. 1991); makes fans of larger polygons.
+/// Triangulation of the leaves without T-junctions, counter-clockwise as seen from the lit side. Splits quadrilaterals
+/// along the diagonal with the smaller difference of irradiance (Baum et al. 1991), and larger polygons into fans.
 class ElementMesh {
   public:
-    /// Keeps references.
-    /// @param irradiance  Per element; only leaves count.
+    /// Refers to its arguments.
+    /// @param irradiance  One value per element; only leaves are used.
     /// @throws InputError for a forest of another scene.
     ElementMesh(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
     /// @param irradiance  One value per vertex.
     ElementMesh(const Scene& scene, const ElementForest& forest, ElementVertices vertices, std::vector<Rgb> irradiance);
 
-    /// Relative to Scene::origin [m]; triangulate() appends the centres of fans.
+    /// Returns the points, relative to Scene::origin [m]. triangulate() appends the centres of fans.
     const std::vector<V3f>& points() const { return points_; }
-    /// Returns fewer than three vertices for a leaf without area.
+    /// Returns the corners of a leaf, with the points of other leaves on its edges. A leaf without area has fewer than
+    /// three.
     std::vector<MeshCorner> outline(ElementIndex leaf) const;
     void triangulate(ElementIndex leaf, std::vector<MeshTriangle>& triangles);
 

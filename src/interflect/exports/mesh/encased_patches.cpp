@@ -13,9 +13,9 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t rays_of_patch = 64;
-/// Rays that start within the ray offset of an edge can leave a closed solid.
+/// Number of rays that may leave a closed solid, because they start within the ray offset of an edge.
 constexpr std::size_t stray_rays = 2;
-/// Solids and gaps are narrower, rooms wider [m].
+/// Width that separates solids and gaps, which are narrower, from rooms, which are wider [m].
 constexpr float room_width = 0.5f;
 
 class Surroundings {
@@ -49,7 +49,8 @@ class Surroundings {
         return hit.patch == none || !is_dark_[hit.patch] ||
                scene_.materials[scene_.patches[hit.patch].material].transmittance != Rgb(0);
     }
-    /// Traces the reversed ray. Returns [m]; about 0 without obstacle.
+    /// Traces the reversed ray. Returns the distance between the patch and the point where this ray stops [m]; about 0
+    /// without an obstacle.
     float distance_from_patch(const Ray& ray, const Hit& hit, float distance) const {
         const float start = hit.patch == none ? distance : distance - ray_caster_.ray_offset(hit.patch);
         const Ray back{ray.origin + start * ray.direction, -ray.direction};
@@ -68,7 +69,7 @@ class Surroundings {
 
 std::vector<bool> encased_patches(const Scene& scene, const RayCaster& ray_caster, const std::vector<bool>& is_dark) {
     const Surroundings surroundings(scene, ray_caster, is_dark);
-    std::vector<char> encased(scene.patches.size(), 0);  // threads write to neighbouring entries
+    std::vector<char> encased(scene.patches.size(), 0);  // not bool, because threads write to neighbouring entries
     constexpr std::size_t patches_per_task = 1 << 8;
     parallel_for_ranges(encased.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p)

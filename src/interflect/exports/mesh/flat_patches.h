@@ -13,9 +13,10 @@
 
 namespace interflect::detail {
 
+/// A patch in the plane of a chart.
 struct FlatPatch {
     PatchIndex patch;
-    int count;                            ///< 3 or 4.
+    int count;                            ///< Number of corners, 3 or 4.
     std::array<Imath::V2d, 4> corners{};  ///< In the patch's vertex order.
 
     std::span<const Imath::V2d> outline() const { return {corners.data(), static_cast<std::size_t>(count)}; }
@@ -27,7 +28,7 @@ struct FlatPatch {
 
 using FlatPatches = std::vector<FlatPatch>;
 
-/// Projects coplanar patches to their plane [m], counter-clockwise seen from the lit side.
+/// Projects coplanar patches to their plane [m]; they are counter-clockwise as seen from the lit side.
 FlatPatches projected(const Scene& scene, std::span<const PatchIndex> patches);
 
 /// Returns a lower bound of the distance between convex outlines; negative if they overlap.

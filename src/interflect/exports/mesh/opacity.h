@@ -4,16 +4,17 @@
 
 namespace interflect::detail {
 
-// Other renderers describe holes by opacity and the opaque part's reflectance; a Scene stores their product.
+// Other renderers describe holes by an opacity and the reflectance of the opaque part. A Scene stores their product.
 
-/// Returns 1 - transmittance, averaged over the channels.
+/// Returns the opacity, which is 1 - transmittance, averaged over the channels.
 Texture opacity_of(const Scene& scene, const Material& material);
 
-/// Divides the reflectance texture by the opacity: white without texture. Texels that are transparent, to 8 bits,
-/// have the mean of the neighbours that are not, which are interpolated with them; else they are black.
+/// Returns the reflectance texture over the opacity; white without a texture. Texels that are transparent, to 8 bits,
+/// have the mean of their other neighbours, because renderers interpolate between them; without such neighbours they
+/// are black.
 Texture opaque_reflectance(const Scene& scene, const Material& material, const Texture& opacity);
 
-/// Whether texels are fully opaque or transparent, to 8 bits.
+/// Returns whether all texels are fully opaque or fully transparent, to 8 bits.
 bool is_mask(const Texture& opacity);
 
 }  // namespace interflect::detail

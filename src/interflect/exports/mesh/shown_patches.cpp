@@ -11,10 +11,12 @@ namespace interflect::detail {
 
 namespace {
 
-/// Black beside lit rooms, about the light of a moonless night.
+/// Maximum light of a dark patch, and its maximum relative to the mean. It looks black beside lit rooms; a moonless
+/// night has about this light.
 constexpr double max_dark = 1e-3;  // [lm/m^2]
 constexpr double max_dark_of_mean = 1e-4;
-/// Limit inside solids: invisible, but above stray rays at seams (2e-4 in a room with 5 million rays).
+/// Maximum light inside solids, relative to the mean. It is invisible, but exceeds the light of stray rays at seams
+/// (2e-4 in a room with 5 million rays).
 constexpr double max_stray_of_mean = 1e-3;
 
 double mean_of(const Scene& scene, const std::vector<float>& light) {
@@ -48,7 +50,8 @@ std::vector<bool> shown_patches(const Scene& scene, const Solution& solution) {
         if (other != none && dark[p]) shown[p] = dark[other] && p < other;
         if (ray_caster.uncovered_share(p) == 0) shown[p] = false;
     }
-    if (std::find(dark.begin(), dark.end(), false) == dark.end()) return shown;  // an unlit scene keeps its faces
+    if (std::find(dark.begin(), dark.end(), false) == dark.end())
+        return shown;  // a scene without light keeps all faces
     const std::vector<bool> encased = encased_patches(scene, ray_caster, at_most(light, max_stray_of_mean * mean));
     for (PatchIndex p{0}; p < shown.size(); ++p)
         if (encased[p]) shown[p] = false;

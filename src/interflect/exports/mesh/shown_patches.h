@@ -7,8 +7,9 @@
 
 namespace interflect::detail {
 
-/// Excludes patches covered by coincident faces, dark sides of faces and encased_patches() from export. A face dark on
-/// both sides keeps its first. Uses undimmed light: all states of a solution export the same patches.
+/// Returns which patches are exported: not those covered by coincident faces, dark sides of faces, and
+/// encased_patches(). If both sides of a face are dark, the first is exported. The light is undimmed, so that all
+/// states of dimming export the same patches.
 std::vector<bool> shown_patches(const Scene& scene, const Solution& solution);
 
 }  // namespace interflect::detail

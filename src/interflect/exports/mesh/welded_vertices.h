@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Triangles with unique vertices. @tparam Vertex  32-bit members only.
+/// Triangles whose equal vertices are stored once. @tparam Vertex  Must have 32-bit members only.
 template <class Vertex>
 class WeldedVertices {
   public:

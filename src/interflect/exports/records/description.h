@@ -7,11 +7,11 @@
 
 namespace interflect::detail {
 
-/// Returns a solution file's content except long arrays, as JSON.
+/// Returns the content of a solution file as JSON, except its long arrays.
 /// @throws std::runtime_error if a number is not finite.
 std::string describe(const Scene& scene, const Solution& solution, int format_version);
 
-/// Parses describe(); returns whether the file contains importance.
+/// Parses the text of describe(). Returns whether the file contains importance.
 /// @throws std::exception for missing or unknown values and other versions.
 bool read_description(std::string_view text, int oldest_format_version, int newest_format_version, SolvedScene& solved);
 

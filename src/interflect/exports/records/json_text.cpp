@@ -14,15 +14,15 @@ namespace interflect::detail {
 
 namespace {
 
-/// @param name  Innermost key.
+/// Calls change(name, value) for all numbers and texts. @param name  Key of `json`.
 template <class Change>
 void change_values(Json& json, const std::string& name, const Change& change) {
     if (!json.is_structured()) return change(name, json);
     for (const auto& [key, value] : json.items()) change_values(value, json.is_object() ? key : name, change);
 }
 
-/// Ends a reading at a structure that is too large for Json. A callback of Json::parse() could do the same, but visits
-/// all values before each object of an array.
+/// Stops parsing at a structure that is too large for Json. A callback of Json::parse() could do the same, but would
+/// visit all earlier values for each object of an array.
 class Limits : public JsonEvents<Json> {
   public:
     bool are_exceeded() const { return exceeded_; }
@@ -50,7 +50,7 @@ class Limits : public JsonEvents<Json> {
         return true;
     }
 
-    std::vector<std::size_t> members_;  // of each open object; 0 for arrays
+    std::vector<std::size_t> members_;  // number of members of each open object; 0 for arrays
     bool exceeded_ = false;
 };
 

@@ -8,15 +8,17 @@ namespace interflect::detail {
 
 using Json = nlohmann::ordered_json;
 
-/// Encodes strings by escaped(), since names are bytes of unknown encoding. @param indent  -1 for a single line.
+/// Returns JSON as text. Strings are encoded by escaped(), because names are bytes of unknown encoding.
+/// @param indent  Number of blanks per level; -1 for a single line.
 /// @throws std::runtime_error naming a number that is not finite.
 std::string json_text(Json json, int indent = -1);
 
-/// Refuses objects of many members, since an ordered object searches them one by one, and deep nesting.
+/// Parses JSON. Refuses deep nesting, and objects with many members, because an ordered object searches them one by
+/// one.
 /// @throws Json::exception, std::runtime_error
 Json parse_json(std::string_view text);
 
-/// Inverse of json_text(). @throws as parse_json()
+/// Inverse of json_text(). Throws as parse_json() does.
 Json parse_json_text(std::string_view text);
 
 /// Returns the double with the fewest digits that identify `value`.

@@ -47,7 +47,7 @@ Json list_of(const std::vector<float>& numbers) {
     return json;
 }
 
-/// Parameters in file order.
+/// Parameters of a sky model, in the order of the file.
 constexpr std::array<float SkyModel::*, 6> model_parameters = {&SkyModel::a, &SkyModel::b, &SkyModel::c,
                                                                &SkyModel::d, &SkyModel::e, &SkyModel::g};
 

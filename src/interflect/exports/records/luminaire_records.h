@@ -10,11 +10,11 @@
 
 namespace interflect::detail {
 
-/// Webs in order of first use.
+/// Photometric webs of a solution file, in the order of their first use.
 class WebTable {
   public:
     std::size_t index_of(const std::shared_ptr<const PhotometricWeb>& web);
-    Json json() const;  ///< `photometric_webs` of a solution file.
+    Json json() const;  ///< Value of `photometric_webs` in a solution file.
 
   private:
     std::vector<std::shared_ptr<const PhotometricWeb>> webs_;
@@ -23,10 +23,12 @@ class WebTable {
 /// Inverse of WebTable::json(). @throws Json::exception, std::runtime_error
 std::vector<std::shared_ptr<const PhotometricWeb>> webs_of(const Json& json);
 
-/// Images in the order of environment_maps().
+/// Images of environment maps, in the order of environment_maps().
 using MapImages = std::vector<std::shared_ptr<const Texture>>;
 
-/// @param webs  Receives the luminaire's web. @param maps  Contains its image.
+/// Returns the record of a luminaire.
+/// @param webs  Receives the luminaire's web.
+/// @param maps  Must contain the luminaire's image.
 Json json_of(const Luminaire& luminaire, WebTable& webs, const MapImages& maps = {});
 /// Inverse of json_of(). @throws Json::exception, std::runtime_error
 Luminaire luminaire_of(const Json& json, const std::vector<std::shared_ptr<const PhotometricWeb>>& webs,

@@ -46,7 +46,7 @@ struct Writer {
     }
 };
 
-/// All numbers of options and reports are finite and not negative.
+/// Reads a number. All numbers of options and reports must be finite, and non-negative unless `may_be_negative`.
 template <class Value>
 Value number_of(const Json& json, const char* name, bool may_be_negative = false) {
     const auto require = [&](bool holds) {
@@ -68,7 +68,7 @@ Value number_of(const Json& json, const char* name, bool may_be_negative = false
 
 struct Reader {
     const Json& json;
-    bool may_be_negative = false;  // real numbers of settings that are checked later
+    bool may_be_negative = false;  // whether the caller checks the sign of real numbers
 
     template <class Value>
     void field(const char* name, Value& value) const {
@@ -136,7 +136,7 @@ struct RowReader {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Ambiguous names begin with their group's.
+/// Calls `access` with the name and value of each option. Ambiguous names begin with the name of their group.
 template <class Options, class Access>
 void for_each_option(Options& options, const Access& access) {
     auto& limits = options.limits;
@@ -185,7 +185,7 @@ Json with_present_names(Json json) {
     return json;
 }
 
-/// Former and present names of numbers of an iteration.
+/// Former and present names of the numbers of an iteration.
 constexpr std::array<std::pair<const char*, const char*>, 2> renamed_numbers{
     {{"largest_quantum", "largest_payload"}, {"high_quantum", "high_payload"}}};
 

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Uses the names of the command line. Unset limits are null. Omits seed, method and max_elements.
+/// Returns the options, named as on the command line. Unset limits are null. Omits seed, method and max_elements.
 Json json_of(const SolveOptions& options);
 
 /// Inverse of json_of(). @throws Json::exception, std::runtime_error or InputError for missing or unknown values, and
@@ -17,16 +17,17 @@ Json json_of(const SolveOptions& options);
 /// @param may_be_negative  Whether the caller checks the sign of real numbers.
 void read_options(const Json& stored, SolveOptions& options, bool may_be_negative = false);
 
-/// Omits the duration, so equal input gives equal text. Unknown errors are null.
+/// Returns a report without its duration, so equal input gives equal text. Unknown errors are null.
 Json json_of(const IterationReport& report);
 
 /// Inverse of json_of(), also for former names of numbers. @throws Json::exception
 IterationReport report_of(const Json& stored);
 
-/// Return unknown errors as infinity.
+/// Returns the names of the columns of report_row().
 std::vector<std::string> report_columns();
 /// Replaces former names of columns.
 std::vector<std::string> with_present_columns(std::vector<std::string> columns);
+/// Returns the numbers of a report. Unknown errors are infinite.
 std::vector<double> report_row(const IterationReport& report);
 /// Inverse of report_row(). @throws std::runtime_error for impossible numbers.
 IterationReport report_of_row(std::span<const double> row);

@@ -8,20 +8,20 @@
 
 namespace interflect::detail {
 
-// Metadata of textures as JSON; texels and coordinates as arrays.
+// Solution files store the metadata of textures as JSON, and texels and coordinates as arrays.
 
 Json json_of(const Texture& texture);
 Json json_of(const std::vector<Texture>& textures);
-/// Omits texels. @throws Json::exception
+/// Returns textures without texels. @throws Json::exception
 std::vector<Texture> textures_of(const Json& json);
 
 void add_textures(const Material& material, Json& json);
-/// @throws Json::exception
+/// Reads the indices of a material's textures. @throws Json::exception
 void read_textures(const Json& json, Material& material);
 
-/// @return  Positions in the file.
+/// Writes texels and coordinates. @return  Positions of the arrays in the file.
 std::vector<FileRange> write_textures(Hdf5Writer& file, const Scene& scene);
-/// @param scene  Receives texels. @throws std::runtime_error
+/// Reads texels and coordinates into the scene. @throws std::runtime_error
 void read_textures(const Hdf5Reader& file, Scene& scene);
 
 }  // namespace interflect::detail

@@ -20,12 +20,12 @@ namespace interflect::detail {
 
 namespace {
 
-/// Middle of two corners, where interpolation is tested.
+/// Middle of two corners of an element, at which the interpolation between them is tested.
 struct Middle {
     std::size_t a, b;
     Parameters at;
 };
-/// Middles of edges and of both diagonals, since either may divide a square.
+/// Middles of the edges and of both diagonals, because either diagonal may divide a square.
 constexpr std::array<Middle, 6> square_middles{{{0, 1, {0.5f, 0}},
                                                 {1, 2, {1, 0.5f}},
                                                 {2, 3, {0.5f, 1}},
@@ -47,7 +47,7 @@ float longest_edge(const PatchGeometry& patch) {
     return longest;
 }
 
-/// Area-weighted mean over the shown leaves, of the mean of the channels [as H].
+/// Returns the mean irradiance of the shown leaves, weighted by area, mean of the channels [as H].
 double mean_irradiance(const Solution& solution, const std::vector<bool>& shown) {
     const ElementForest& forest = *solution.forest;
     double sum = 0, area = 0;
@@ -59,11 +59,11 @@ double mean_irradiance(const Solution& solution, const std::vector<bool>& shown)
     return area > 0 ? sum / area : 0;
 }
 
-/// Distance of the points for which light is averaged [m]. Long edges do not make it coarser.
+/// Returns the distance between points over which light is averaged [m]. It does not increase with longer edges.
 float spacing_of(const VertexOptions& options) { return std::min(options.min_edge, VertexOptions().min_edge); }
 
-/// Sides of the area over which a vertex averages direct light, in the patch's parameters: two of the finest elements,
-/// which hides steps along shadow borders.
+/// Returns the sides of the area over which a vertex averages direct light, in the patch's parameters. They have the
+/// size of two of the finest elements, which hides steps along the borders of shadows.
 std::array<Parameters, 2> sides_of(const PatchGeometry& patch, float spacing) {
     const auto side = [&](const V3f& edge) { return std::min(1.0f, 2 * spacing / edge.length()); };
     return {{{side(patch.shape().edge_u), 0}, {0, side(patch.shape().edge_v)}}};
@@ -81,7 +81,7 @@ double count_triangles(const Scene& scene, const ElementForest& forest, const st
     return triangles;
 }
 
-/// Divides elements, coarse ones first, until direct light is interpolated well.
+/// Divides elements, from coarse to fine, until the interpolation of direct light is accurate.
 class Division {
   public:
     Division(const Scene& scene, const BakedLight& light, const std::vector<bool>& shown, double mean,
@@ -125,7 +125,7 @@ class Division {
 
     /// Returns the first child, or `none` at the limit of triangles or elements.
     ElementIndex divide(ElementIndex e, double max_triangles) {
-        // Includes fans of neighbours; measured in furnished rooms.
+        // Number of additional triangles, with those of fans in neighbours; measured in furnished rooms.
         const double added = is_triangle(e) ? 6 : 9.5;
         if (triangles_ + added > max_triangles) return no_element;
         const ElementIndex child = forest_->subdivide(e);
@@ -133,7 +133,7 @@ class Division {
         return child;
     }
 
-    /// Divides the longest edges first. Returns the leaves of shown patches.
+    /// Divides elements with long edges, the longest first. Returns the leaves of shown patches.
     std::vector<ElementIndex> divide_long_edges() {
         const double half_of_all = options_.max_triangles / 2.0;
         std::priority_queue<std::pair<float, ElementIndex>> longest;
@@ -153,7 +153,7 @@ class Division {
         return leaves;
     }
 
-    /// Returns the children.
+    /// Divides the leaves that are interpolated badly. Returns their children.
     std::vector<ElementIndex> divide_badly_interpolated(const std::vector<ElementIndex>& leaves,
                                                         const Monitor& monitor) {
         std::vector<ElementIndex> tested;
@@ -198,7 +198,7 @@ class Division {
         direct_ = light_.direct(points, spacing_of(options_), max_samples, monitor);
     }
 
-    /// Emission of textures counts as direct light.
+    /// Returns direct light at a point of an element; the emission of textures counts as direct light.
     SampledIrradiance direct_at(ElementIndex e, Parameters local) const {
         const PatchIndex patch = forest_->patch(e);
         const Parameters at = forest_->cell(e).at(local.u, local.v);
@@ -207,8 +207,8 @@ class Division {
         return light;
     }
 
-    /// Largest error of interpolation beyond the given number of standard deviations, relative to the irradiance there
-    /// or the mean.
+    /// Returns the largest error of interpolation, reduced by the given number of standard deviations, relative to the
+    /// irradiance there or, if it is larger, the mean irradiance.
     double error_of(ElementIndex e, double deviations) const {
         double largest = 0;
         const std::span<const Parameters> corners = corners_of(is_triangle(e));
@@ -232,13 +232,13 @@ class Division {
     const double mean_;
     const VertexOptions& options_;
     std::shared_ptr<ElementForest> forest_;
-    std::vector<float> edges_;                             // longest of each patch [m]
-    double triangles_ = 0;                                 // about
-    std::unordered_map<Key, std::size_t, KeyHash> known_;  // in direct_
+    std::vector<float> edges_;                             // longest edge of each patch [m]
+    double triangles_ = 0;                                 // approximate number of triangles
+    std::unordered_map<Key, std::size_t, KeyHash> known_;  // index of each point in direct_
     std::vector<SampledIrradiance> direct_;
 };
 
-/// One point per vertex, on its first shown patch.
+/// Points for which light is computed: one per vertex, on its first shown patch.
 class VertexPoints {
   public:
     VertexPoints(const ElementForest& forest, const ElementVertices& vertices, const std::vector<bool>& shown,
@@ -260,7 +260,7 @@ class VertexPoints {
     }
 
     const std::vector<BakedPoint>& points() const { return points_; }
-    /// Returns `none` for hidden patches.
+    /// Returns the index of a vertex's point; `none` if all its patches are hidden.
     std::uint32_t number(std::uint32_t vertex) const { return numbers_[vertex]; }
 
   private:
@@ -276,7 +276,7 @@ VertexLight make_vertex_light(const Scene& scene, const Solution& solution, cons
         return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance), std::move(shown)};
     constexpr DirectSampling vertex_sampling{&DefaultSamples::vertex, 1e-3, /*is_tested=*/true};
     const BakedLight light(scene, solution, options.bake, vertex_sampling);
-    constexpr double share_of_division = 0.4;  // of the time; roughly
+    constexpr double share_of_division = 0.4;  // rough share of the time, for progress reports
     Division division(scene, light, shown, mean_irradiance(solution, shown), options.vertices);
     const auto forest = division.run(monitor_section(options.monitor, 0, share_of_division));
     ElementVertices vertices(scene, *forest);

@@ -9,14 +9,15 @@
 
 namespace interflect::detail {
 
+/// Elements with light at their vertices.
 struct VertexLight {
     std::shared_ptr<const ElementForest> forest;
     ElementMesh mesh;         ///< Triangulates `forest`.
     std::vector<bool> shown;  ///< See shown_patches().
 };
 
-/// Light at the vertices of elements: the solution's for Shading::smooth; otherwise elements of its own, divided by
-/// VertexOptions.
+/// Computes light at the vertices of elements. With Shading::smooth they are the elements of the solution, else new
+/// elements that are divided by VertexOptions.
 /// @throws Stopped
 VertexLight make_vertex_light(const Scene& scene, const Solution& solution, const ExportOptions& options);
 

@@ -39,7 +39,7 @@ V3d colour_matching_at(double wavelength) {
     return row(colour_matching[i]) * (1 - t) + row(colour_matching[i + 1]) * t;
 }
 
-/// Minimum of |Y| and |X + Y + Z|, relative to |X| + |Y| + |Z|.
+/// Minimum of |Y| and |X + Y + Z|, relative to |X| + |Y| + |Z|. Colours with less have no chromaticity.
 constexpr double min_share = 1e-6;
 
 Chromaticity chromaticity_of(const V3d& xyz, const char* fault) {
@@ -61,14 +61,14 @@ Chromaticity integrate(const Spectrum& spectrum) {
 
 V3d xyz_of(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
 
-/// Imath multiplies row vectors.
+/// Returns m v. Imath multiplies row vectors, so the matrix is transposed.
 V3d multiply(const M33d& m, const V3d& v) { return v * m.transposed(); }
 
 M33d diagonal(const V3d& d) { return {d.x, 0, 0, 0, d.y, 0, 0, 0, d.z}; }
 
 M33d columns(const V3d& a, const V3d& b, const V3d& c) { return {a.x, b.x, c.x, a.y, b.y, c.y, a.z, b.z, c.z}; }
 
-/// See to_rec709().
+/// Returns the matrix that to_rec709() describes.
 M33d make_rec709_from_xyz() {
     const V3d white = xyz_of(0.3127, 0.3290);
     const M33d bradford(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296);
@@ -83,7 +83,7 @@ const M33d& rec709_from_xyz() {
     return matrix;
 }
 
-/// Relative excess ignored as rounding.
+/// Relative excess over the limit that is ignored as rounding.
 constexpr double rounding = 1e-9;
 
 /// Returns the largest saturation (0: neutral) that keeps a channel in [0, limit] at luminance 1.
@@ -137,13 +137,13 @@ Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double larg
         luminance = largest;
     }
     V3d rgb = multiply(rec709_from_xyz(), xyz_of(colour.x, colour.y));
-    constexpr double min_channel = 1e-15;  // relative to white
+    constexpr double min_channel = 1e-15;  // relative to white; smaller ones count as 0
     // Adaptation changes Y, so the luminance is set later.
     const double in_gamut = smallest_saturation(rgb, std::numeric_limits<double>::infinity());
     result.out_of_gamut = in_gamut < 1;
     rgb = with_saturation(rgb, in_gamut);
     for (int c = 0; c < 3; ++c)
-        if (rgb[c] < min_channel) rgb[c] = 0;  // on the gamut's border
+        if (rgb[c] < min_channel) rgb[c] = 0;  // the colour is on the border of the gamut
     rgb /= interflect::luminance(RgbD(rgb));
     if (luminance > 0) {
         const double under_bound = smallest_saturation(rgb, largest / luminance);

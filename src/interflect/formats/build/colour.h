@@ -28,12 +28,12 @@ struct MixedColour {
 /// @throws std::invalid_argument unless the sum of weights is positive.
 Chromaticity mix(std::span<const MixedColour> parts);
 
-/// Below 1, where interreflection would not end.
+/// Largest reflectance. It is below 1, where interreflection would not end.
 inline constexpr double largest_reflectance = 0.99;
 
 struct Rec709Colour {
     Rgb rgb{0, 0, 0};
-    bool out_of_gamut = false;  ///< Desaturated.
+    bool out_of_gamut = false;  ///< Whether the colour was outside the gamut, and is desaturated.
     bool too_bright = false;    ///< Desaturated or darkened to `largest`.
 };
 

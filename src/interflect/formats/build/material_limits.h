@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// @param roughness  RMS microfacet slope.
+/// Whether a reflection counts as a mirror's. @param roughness  Root mean square of the microfacets' slopes.
 inline bool is_mirror(double specular_reflectance, double roughness) {
     constexpr double roughest = 0.02;
     return specular_reflectance > 0 && roughness <= roughest;
@@ -20,14 +20,14 @@ inline Material default_material() {
     return grey;
 }
 
-/// Whether it changed.
+/// Limits a reflectance. Returns whether it changed.
 inline bool limit_reflectance(Rgb& reflectance) {
     const Rgb given = reflectance;
     for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], static_cast<float>(largest_reflectance));
     return reflectance != given;
 }
 
-/// Scales transmittance and specular reflectance to conserve energy.
+/// Scales transmittance and specular reflectance to conserve energy. Returns whether they changed.
 inline bool limit_sum(Material& material) {
     const float straight = largest_channel(Rgb(material.transmittance + material.specular_reflectance));
     const float rest = 1 - largest_channel(material.reflectance);

@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 /// Faces of one material in local coordinates.
 struct Mesh {
-    std::string name;  ///< For messages.
+    std::string name;  ///< Name for messages.
     std::vector<Imath::V3d> positions;
     std::vector<V2f> texture_coordinates;   ///< Per vertex, as in Scene; or empty.
     std::vector<V2f> lightmap_coordinates;  ///< Per vertex, in [0, 1]; or empty.
@@ -32,7 +32,7 @@ struct MeshInstance {
 };
 
 struct PlacedLight {
-    Luminaire luminaire;           ///< Placed at (0, 0, 0).
+    Luminaire luminaire;           ///< Luminaire, placed at (0, 0, 0).
     Imath::V3d position{0, 0, 0};  ///< World position [m].
 };
 
@@ -45,7 +45,7 @@ struct Model {
     std::vector<PlacedLight> lights;
     std::vector<std::string> objects{""};  ///< As in Scene::objects.
     std::vector<View> views;               ///< In the world [m].
-    std::vector<std::string> files;        ///< The model's own first.
+    std::vector<std::string> files;        ///< Files that were read; the model's own comes first.
     Warnings warnings;
 };
 

@@ -69,7 +69,7 @@ void require_valid(const Model& model, const ReadOptions& options) {
             throw InputError(model.file, 0, "an instance shows a mesh or an object that does not exist");
         faces += static_cast<double>(face_count(model.meshes[instance.mesh]));
     }
-    // Two triangles may merge into one two-sided face.
+    // Two triangles may merge into one face, whose two sides are two patches.
     if (faces > static_cast<double>(options.max_patches))
         throw Location{&model.file}.error(
             fmt::format("{:.0f} faces, its instances counted each, would give more than {} patches "
@@ -98,7 +98,7 @@ class InstanceAdder {
     InstanceAdder(const Model& model, const std::vector<bool>& has_layout, Scene& scene, const ReadOptions& options)
         : model_(model), has_layout_(has_layout), scene_(scene), faces_(scene, options), weld_(scene) {}
 
-    /// Places faces without adding them.
+    /// Returns an origin for the scene. Places the faces without adding them.
     V3d suitable_origin() {
         for (const MeshInstance& instance : model_.instances) {
             const Mesh& mesh = model_.meshes[instance.mesh];
@@ -126,7 +126,7 @@ class InstanceAdder {
         return result;
     }
 
-    /// Multiplies by cofactors, up to length and sign.
+    /// Multiplies by the cofactors of the matrix, which transform a normal up to its length and sign.
     static V3f to_world_normal(const V3d& n, const MeshInstance& instance) {
         const Imath::M44d& m = instance.to_world;
         const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
@@ -182,7 +182,7 @@ class InstanceAdder {
         faces_.add({&face_, 1}, mesh.material, instance.object, true, where);
     }
 
-    /// Removes the emission of backs from patch `first` on.
+    /// Removes the emission of the backs from patch `first` to the last one.
     void darken_backs(std::size_t first) {
         if (first == scene_.patches.size()) return;
         const Material& material = scene_.materials[scene_.patches[first].material];

@@ -10,10 +10,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum doubled area / size^2 of faces that affect the origin.
+/// Faces affect the origin if their doubled area / size^2 is at least this number.
 constexpr double min_shape = 1e-6;
 
-/// Relative to the scene's reach. Narrower slivers are common.
+/// Width that rounding may remove, relative to the scene's reach, because narrower slivers are common.
 constexpr double largest_lost_width = 0x1p-16;
 
 }  // namespace
@@ -49,7 +49,7 @@ void SceneFaces::add(std::span<const std::vector<std::uint32_t>> loops, std::uin
     require_room(two_sided ? 2 : 1);
     const std::size_t before = scene_.patches.size();
     const PolygonResult result = add_polygon(scene_, loops, material, object, two_sided);
-    require_room(0);  // a face may become several patches
+    require_room(0);  // counts again, because a face may become several patches
     if (result == PolygonResult::self_crossing)
         leave_out(
             fmt::format("face whose outline crosses itself or runs back along itself, so that its areas cancel, or "
@@ -80,7 +80,7 @@ void SceneFaces::require_precision() const {
                     lost_.width, x.x, x.y, x.z, (x - middle).length(), middle.x, middle.y, middle.z));
 }
 
-/// Uses the unrounded faces if rounding removed all.
+/// Compares with the unrounded faces if rounding removed all faces.
 void SceneFaces::require_width() const {
     double width = scene_width(scene_);
     if (scene_.patches.empty()) {

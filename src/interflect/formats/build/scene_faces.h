@@ -16,10 +16,10 @@ namespace interflect::detail {
 /// Adds faces relative to the scene's origin. Throws std::invalid_argument for invalid requests.
 class SceneFaces {
   public:
-    /// @param scene  With name and origin.
+    /// @param scene  It must have its name and origin.
     SceneFaces(Scene& scene, const ReadOptions& options) : scene_(scene), max_patches_(options.max_patches) {}
 
-    /// Counts omitted faces too. @throws ReadFault
+    /// Counts omitted faces, too. @throws ReadFault if the scene has no room for `patches` more patches.
     void require_room(double patches) const;
     /// @return  Relative to the scene's origin [m].
     V3f position(const Imath::V3d& world) const;
@@ -52,7 +52,7 @@ class SceneFaces {
     std::uint64_t max_patches_;
     FaceSample sample_;
     LostFace placed_;  // next face
-    LostFace lost_;    // widest one lost to rounding
+    LostFace lost_;    // widest face that rounding removed
     LeftOut first_left_out_;
     std::uint64_t left_out_ = 0;
 };

@@ -15,10 +15,10 @@ Texture read_texture(const std::filesystem::path& path, std::uint64_t most = max
 /// Reads radiances from .exr or .hdr. @throws InputError
 std::shared_ptr<const Texture> read_environment(const std::filesystem::path& path);
 
-/// Lossless: ".png" for 8-bit sRGB values, else ".exr".
+/// Returns the extension of a lossless format: ".png" for 8-bit sRGB values, else ".exr".
 std::string texture_extension(const Texture& texture);
 
-/// @throws InputError, std::runtime_error as write_image().
+/// @throws InputError and std::runtime_error, as write_image() does.
 void write_texture(const std::filesystem::path& path, const Texture& texture);
 
 }  // namespace interflect::detail

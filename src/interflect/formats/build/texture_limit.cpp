@@ -9,7 +9,7 @@ namespace {
 
 std::uint32_t half(std::uint32_t size) { return (size + 1) / 2; }
 
-/// Box filter. @param step  Distance of texels in both arrays.
+/// Reduces a row or column by a box filter. @param step  Distance between consecutive texels in both arrays.
 void average(const Rgb* from, std::uint32_t count, Rgb* to, std::uint32_t target, std::size_t step) {
     const double width = static_cast<double>(count) / target;
     for (std::uint32_t i = 0; i < target; ++i) {

@@ -7,7 +7,8 @@
 
 namespace interflect::detail {
 
-/// Halves the largest textures by area means, to at most `most` texels in total. Equal sizes stay equal.
+/// Halves the largest textures, by means over areas, until they have at most `most` texels in total. Textures of equal
+/// size keep equal sizes.
 bool reduce_textures(std::vector<Texture>& textures, std::uint64_t most = max_texels);
 
 std::uint64_t texel_count(const std::vector<Texture>& textures);

@@ -48,7 +48,7 @@ constexpr std::string_view known_extensions[] = {
     "MSFT_texture_dds",
 };
 
-/// A file that requires these has the same surfaces, base colours and lights without them.
+/// Extensions without which a file that requires them has the same surfaces, base colours and lights.
 constexpr std::string_view ignorable_extensions[] = {
     "AGI_articulations",      "CESIUM_primitive_outline",
     "EXT_feature_metadata",   "EXT_instance_features",
@@ -170,7 +170,7 @@ class SceneReader {
         return places;
     }
 
-    /// Returns mesh-to-world matrices.
+    /// Returns the matrices of a skin's joints, which map from the mesh to the world.
     const std::vector<M44d>& joints_of(std::uint32_t index) {
         const auto [entry, is_new] = joints_.try_emplace(index);
         std::vector<M44d>& result = entry->second;

@@ -41,7 +41,7 @@ class Vs3Words {
         is_started_ = true;
         return position_ < text_.size();
     }
-    /// Returns the next word of this line; empty at its end.
+    /// Returns the next word of this line, or an empty one at its end.
     std::string_view word() {
         while (position_ < text_.size() && is_separator(text_[position_])) ++position_;
         std::size_t end = position_;
@@ -50,7 +50,7 @@ class Vs3Words {
         position_ = end;
         return result;
     }
-    /// Returns the next word of this or a later line; empty at the end of the file.
+    /// Returns the next word of this or a later line, or an empty one at the end of the file.
     std::string_view word_of_any_line() {
         std::string_view result = word();
         while (result.empty() && next_line()) result = word();
@@ -71,7 +71,7 @@ struct Vs3Surface {
     char type = 'S';  // S, M, N or O
     std::int64_t line = 0;
     std::vector<V3d> corners;
-    int combined_with = 0;  // number of the surface; 0: not combined
+    int combined_with = 0;  // number of the surface with which this one is combined, or 0
     double emittance = 1;
     std::string name;
 };
@@ -197,7 +197,7 @@ class Vs3Reader {
         }
     }
 
-    /// Base, combination, emittance and name.
+    /// Reads base, combination, emittance and name.
     void read_properties(Vs3Surface& surface) {
         const auto own = static_cast<int>(surfaces_.size()) + 1;
         const int base = integer();
@@ -228,7 +228,8 @@ class Vs3Reader {
                 own, other));
     }
 
-    /// Outline in a plane: origin, azimuth (clockwise from y) and tilt (0: faces up, 90: vertical) [degrees].
+    /// Reads an outline in a plane, which is given by its origin, its azimuth (clockwise from y) and its tilt (0 faces
+    /// up, 90 is vertical) [degrees].
     void read_shape(char shape, Vs3Surface& surface) {
         if (shape != 'R' && shape != 'Q' && shape != 'T')
             fail("the shape is not R (rectangle), Q (quadrilateral) or T (triangle)");
@@ -310,13 +311,14 @@ class Vs3Reader {
             Mesh& mesh = model.meshes.emplace_back();
             mesh.name = fmt::format("surface {} of line {}", i + 1, surface.line);
             mesh.positions = surface.corners;
-            if (surface.type == 'N')  // faces its base, which its other side covers
+            if (surface.type == 'N')  // a null surface faces its base, which its other side covers
                 std::reverse(mesh.positions.begin(), mesh.positions.end());
             if (surface.type == 'M') {
                 const V3d normal = (surface.corners[1] - surface.corners[0])
                                        .cross(surface.corners[2] - surface.corners[0])
                                        .normalized();
-                for (V3d& x : mesh.positions) x -= distance * normal;  // away from the base, which it faces
+                for (V3d& x : mesh.positions)
+                    x -= distance * normal;  // moves the surface away from its base, which it faces
             }
             for (std::uint32_t corner = 0; corner < mesh.positions.size(); ++corner) mesh.indices.push_back(corner);
             mesh.face_sizes = {static_cast<std::uint32_t>(mesh.positions.size())};
@@ -331,7 +333,7 @@ class Vs3Reader {
     Vs3Words words_;
     const fs::path& path_;
     const ReadOptions& options_;
-    bool has_shapes_ = false;  // format 3a
+    bool has_shapes_ = false;  // whether the file has shapes, as in format 3a
     std::vector<V3d> vertices_;
     std::vector<Vs3Surface> surfaces_;
     std::map<double, std::uint32_t> material_of_emittance_;

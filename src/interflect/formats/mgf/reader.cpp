@@ -65,7 +65,7 @@ void MgfReader::read(const std::filesystem::path& path, std::string text) {
 }
 
 Scene MgfReader::finish() {
-    // Deferred errors are more specific.
+    // Deferred errors are more specific than the error of a scene without faces.
     if (scene_.patch_count() == 0) faults_.refuse_first();
     return scene_.finish();
 }

@@ -25,7 +25,7 @@
 
 namespace interflect::detail {
 
-/// Cannot close outer transforms or objects.
+/// File that is being read. It cannot close transforms or objects of the files that include it.
 struct OpenMgfFile {
     const SourceFile& source;
     LineReader lines;
@@ -33,14 +33,14 @@ struct OpenMgfFile {
     const OpenMgfFile* includer;
 };
 
-/// Open `xf` or include, with its array copy.
+/// Transform of an open `xf` or include, with the current array copy.
 struct OpenMgfTransform {
     TransformSequence sequence;
     Imath::M44d total;  // to the world
     Location opened;
-    std::vector<int> copy;  // empty: no array
+    std::vector<int> copy;  // number of the copy in each array; empty without arrays
     LineReader::Position body;
-    double copies_together = 1;  // including outer arrays
+    double copies_together = 1;  // product of the copies of this and outer arrays
     std::uint64_t first_patch = 0;
     bool repeating = false;
 };
@@ -59,7 +59,7 @@ class MgfReader {
     enum class Defines { colour, material, other };
     struct Entity {
         Handler handle;
-        std::size_t fewest, most;  // argument counts
+        std::size_t fewest, most;  // limits of the number of arguments
         const char* usage;
         Defines defines = Defines::other;
     };
@@ -142,7 +142,7 @@ class MgfReader {
     ContextTable<MgfVertex> vertices_;
     std::vector<OpenMgfTransform> transforms_;
     std::vector<std::vector<std::uint32_t>> loops_;
-    std::vector<Imath::V3d> outline_;  // latest loop, in the world
+    std::vector<Imath::V3d> outline_;  // latest loop, in world coordinates
     std::string unknown_entity_, unused_fault_;
     std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;
     std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;

@@ -40,7 +40,7 @@ void MgfReader::open_transform(MgfWords words, const LineReader::Position& body)
     place_copy(transforms_.back());
 }
 
-/// Whether another copy follows.
+/// Closes a transform, or begins its next array copy. Returns whether another copy follows.
 bool MgfReader::close_transform() {
     OpenMgfTransform& transform = transforms_.back();
     if (transform.sequence.is_array()) {

@@ -33,7 +33,7 @@ std::string printable(std::string_view name) {
     return text;
 }
 
-/// '-' separates loops of a face; '=' defines names.
+/// Returns a name that MGF accepts: '-' separates the loops of a face, and '=' defines names.
 std::string material_name(const Material& material) {
     std::string name = printable(material.name);
     if (name.starts_with('-') || name == "=") name[0] = '_';
@@ -52,29 +52,29 @@ std::vector<std::string> object_path(const std::string& dotted_name) {
     }
 }
 
-/// About x, then y, then z [degrees].
+/// Angles of rotations about x, then y, then z [degrees].
 struct Turns {
     double x, y, z;
 };
 
-/// Right-handed and orthonormal.
+/// Axes of a right-handed orthonormal frame.
 struct Frame {
     Imath::V3d x, y, z;
 };
 
-/// x in the C0 plane, nadir -z.
+/// Returns the frame with x in the C0 plane and -z at the nadir.
 Frame frame_of(const MeasuredLight& light) {
     const Imath::V3d z(-light.direction.normalized()), c0(light.c0), x = (c0 - z * z.dot(c0)).normalized();
     return {x, z.cross(x), z};
 }
 
-/// x east, y north.
+/// Returns the frame with x to the east and y to the north.
 Frame frame_of(const SkyFrame& sky) { return {Imath::V3d(sky.east), Imath::V3d(sky.north), Imath::V3d(sky.zenith)}; }
 
-/// Rotates the axes into the frame.
+/// Returns the rotations that turn the axes into the frame.
 Turns turns_of(const Frame& frame) {
     const auto& [x, y, z] = frame;
-    constexpr double no_turn = 1e-9;  // cosine at gimbal lock
+    constexpr double no_turn = 1e-9;  // cosine below which x and z turn about the same axis (gimbal lock)
     const double cosine = std::hypot(x.x, x.y);
     if (cosine < no_turn) return {degrees(std::atan2(-z.y, y.y)), degrees(std::atan2(-x.z, cosine)), 0};
     return {degrees(std::atan2(y.z, z.z)), degrees(std::atan2(-x.z, cosine)), degrees(std::atan2(x.y, x.x))};
@@ -142,7 +142,8 @@ class MgfWriter {
         for (; open_objects_.size() > depth; open_objects_.pop_back()) put("o\n");
     }
 
-    /// Defines a material again if its name was reused, or if it is unnamed and was left.
+    /// Enters a material. Defines it again if its name was reused, or if it has no name and another one was entered
+    /// since.
     void enter_material(std::uint32_t material, int sides) {
         const std::string& name = names_[material];
         Definition& definition = definitions_[name];

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr int first_year = 1986, last_year_of_factor = 1995, year_of_reserved = 2002;
 
-/// Luminous opening [m], length along C0; negative if round.
+/// Sizes of the luminous opening [m]. The length is along C0; sizes across a round section are negative.
 struct Dimensions {
     double width, length, height;
 };
@@ -86,7 +86,7 @@ class IesReader {
     PhotometricWeb read();
 
   private:
-    enum Type { type_c = 1, type_b = 2, type_a = 3 };  // numbers of LM-63
+    enum Type { type_c = 1, type_b = 2, type_a = 3 };  // the numbers are those in LM-63 files
 
     void read_labels();
     void read_version(std::string_view first_line);
@@ -179,7 +179,7 @@ void IesReader::read_tilt(std::string_view tilt) {
     }
 }
 
-/// Interpolates at tilt 0, the measurement position.
+/// Returns the factor at tilt 0, the position of the measurement.
 double IesReader::tilt_factor(PhotometricText& text) {
     text.count("the lamp's geometry in TILT data", 1, 3);
     const std::size_t count = text.count("the number of TILT angles", 1, options_.max_photometric_values);
@@ -272,7 +272,7 @@ void IesReader::warn_of_unit(const Dimensions& d, double metres) {
                         d.width, d.length));
 }
 
-/// Snaps to multiples of 90 degrees, for exact symmetry tests.
+/// Reads angles. Moves them to multiples of 90 degrees that are close, for exact tests of symmetry.
 std::vector<float> IesReader::angles(std::size_t count, const char* kind, float low, float high) {
     constexpr float tolerance = 0.01f;  // [degrees]
     std::vector<float> result;
@@ -299,7 +299,7 @@ PhotometricPlanes IesReader::planes(std::vector<float> horizontal, std::size_t h
     return {std::move(horizontal), std::move(intensities)};
 }
 
-/// Mirrors ranges of 90 and 180 degrees.
+/// Reads intensities of type C. Mirrors ranges of 90 and 180 degrees.
 void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> horizontal) {
     constexpr auto half = static_cast<float>(half_turn), turn = static_cast<float>(full_turn);
     const bool is_complete = (vertical.front() == 0 || vertical.front() == right_angle) &&
@@ -325,7 +325,8 @@ void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> hori
     web_.intensities = all.intensities();
 }
 
-/// Mirrors ranges from 0. Type A has its pole at the nadir and clockwise angles, type B its pole at y.
+/// Reads intensities of type A or B. Mirrors ranges that begin at 0. Type A has clockwise angles and its pole at the
+/// nadir, type B has its pole at y.
 void IesReader::read_type_a_or_b(std::vector<float> vertical, std::vector<float> horizontal, Type type) {
     if (horizontal.size() < 2) text_.refuse("a single horizontal angle; expected at least two of types A and B");
     if (std::abs(vertical.back()) < right_angle || std::abs(horizontal.back()) < right_angle)

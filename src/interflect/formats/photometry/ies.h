@@ -17,7 +17,7 @@ PhotometricWeb read_ies(const std::filesystem::path& path, const ReadOptions& op
 PhotometricWeb read_ies_text(std::string_view text, const std::filesystem::path& path, const ReadOptions& options,
                              Warnings& warnings);
 
-/// @param folder  Of the TILT file.
+/// @param folder  Folder of the TILT file.
 PhotometricWeb read_enclosed_ies(std::string_view text, const std::filesystem::path& name,
                                  const std::filesystem::path& folder, const ReadOptions& options, Warnings& warnings);
 

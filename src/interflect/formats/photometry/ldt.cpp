@@ -35,7 +35,7 @@ class LdtReader {
     std::string_view line(const char* what);
     double number_line(const char* what);
     double number_in(std::string_view text, const char* what);
-    /// Reads an empty line as `empty`.
+    /// Reads a number, or returns `empty` for an empty line.
     double optional_line(const char* what, double empty);
     double next_number(const std::string& what);
     void skip_ratios();
@@ -159,7 +159,8 @@ void LdtReader::skip_lines(int count) {
     for (int i = 0; i < count; ++i) line("the luminous intensities");
 }
 
-/// Lengths are along C90, widths along C0; width 0 means round.
+/// Reads the luminous opening, whose length is along C90 and whose width is along C0. A width of 0 means a round
+/// opening.
 void LdtReader::read_opening() {
     constexpr double metres = 1e-3;  // per millimetre
     const double length = optional_line("the length of the luminous area", 0),

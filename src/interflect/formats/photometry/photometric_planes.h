@@ -9,7 +9,7 @@ namespace interflect::detail {
 class PhotometricPlanes {
   public:
     /// @param angles  Azimuths [degrees], ascending.
-    /// @param intensities  Plane by plane, one per polar angle.
+    /// @param intensities  Intensities of each plane in turn, one per polar angle.
     PhotometricPlanes(std::vector<float> angles, std::vector<float> intensities);
 
     std::size_t count() const { return angles_.size(); }

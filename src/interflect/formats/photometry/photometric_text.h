@@ -11,17 +11,18 @@
 
 namespace interflect::detail {
 
-/// Removes byte order mark and end mark of MS-DOS. @throws InputError, also beyond max_photometric_bytes.
+/// Reads a file without its byte order mark and the end mark of MS-DOS.
+/// @throws InputError, also for a file of more than max_photometric_bytes.
 std::string read_photometric_text(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads lines (ended by LF, CR or both) or words. Errors are InputErrors.
 class PhotometricText {
   public:
-    /// @param separators  Besides white space.
+    /// @param separators  Characters that separate words, besides white space.
     PhotometricText(std::string_view text, const std::filesystem::path& path, std::string_view separators)
         : text_(text), path_(path), separators_(separators) {}
 
-    /// Returns the next line, trimmed; nullopt at the end.
+    /// Returns the next line without outer white space, or nullopt at the end.
     std::optional<std::string_view> line();
     std::optional<std::string_view> word();
 
@@ -34,7 +35,7 @@ class PhotometricText {
     /// Accepts a decimal comma, unless commas are separators.
     double number_of(std::string_view word, const std::string& what);
 
-    std::int64_t line_number() const { return line_; }  ///< Line of the latest word.
+    std::int64_t line_number() const { return line_; }  ///< Returns the line of the latest word.
     std::string where() const;                          ///< As "file:line".
     [[noreturn]] void refuse(const std::string& message, const std::string& setting = {}) const;
 

@@ -26,7 +26,7 @@ GeneratedSurface polygon(const std::string& name, const Points& points) {
 /// Box from the origin to `size`. Bits 0 to 2 of a corner's number select the far end along x, y and z.
 struct Box {
     V3d size;
-    double inset = 0;  // of the plane faces, for bevelled and rounded edges
+    double inset = 0;  // width of the bevel or rounding that the plane faces leave along their edges
 
     static bool is_far(int corner, int axis) { return (corner >> axis & 1) != 0; }
     /// Returns the corner, moved inwards along all axes but `axis`; along all axes for -1.
@@ -133,8 +133,8 @@ std::optional<GeneratedSurfaces> genprism(RadArguments arguments) {
     result.modifier = arguments.next("a material");
     const std::string name = arguments.next("a name");
     const auto count = parse_integer(arguments.next("the number of vertices"));
-    if (!count) return std::nullopt;  // a file, or standard input
-    constexpr int most = 1024;        // corners of a face
+    if (!count) return std::nullopt;  // the outline is in a file or in the standard input
+    constexpr int most = 1024;        // limit of the corners of a face
     if (*count < 3 || *count > most)
         throw std::invalid_argument(fmt::format("genprism needs 3 to {} vertices, not {}", most, *count));
     Points low;

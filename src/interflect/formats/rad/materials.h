@@ -82,7 +82,7 @@ class RadMaterials {
     void unknown(const Modifier& modifier, Material& result);
     void reflect(const Modifier& modifier, const Rgb& specular, double roughness, Material& result);
     void warn_of_pattern(const Modifier& modifier, bool is_of_light);
-    /// Takes each modifier once per kind of chain.
+    /// Warns of patterns that are ignored. Visits each modifier once per kind of chain.
     void warn_of_patterns(std::uint32_t begin, std::uint32_t end, Chain chain);
     void warn(const std::string& kind, const std::string& message, const Modifier& modifier);
 
@@ -90,7 +90,7 @@ class RadMaterials {
     bool may_miss_ = false;
     std::deque<std::string> missing_names_;  // string_views refer to these
     std::vector<Modifier> modifiers_;
-    std::unordered_map<std::string_view, std::uint32_t> index_;  // latest of each name
+    std::unordered_map<std::string_view, std::uint32_t> index_;  // index of the latest modifier of each name
 };
 
 }  // namespace interflect::detail

@@ -319,7 +319,7 @@ void RadReader::add_light(const RadMaterials::PatternedLight& light, std::uint32
     if (file.is_inverted)
         for (auto& face : mesh.faces) std::reverse(face.begin(), face.end());
     const std::vector<double>& sizes = light.pattern.arguments;
-    const auto fits = [&] {
+    const auto belongs_to_open_light = [&] {
         if (!open_light_ || open_light_->modifier != modifier || sizes.size() < 3) return false;
         Imath::Box3d box = open_light_->emitter.bounds();
         for (const V3d& point : mesh.points) box.extendBy(point);
@@ -328,7 +328,7 @@ void RadReader::add_light(const RadMaterials::PatternedLight& light, std::uint32
                   most(sizes[1], sizes.size() > 3 ? sizes[2] : sizes[1], sizes.back());
         return size.x <= most.x * tolerance && size.y <= most.y * tolerance && size.z <= most.z * tolerance;
     };
-    if (!fits()) {
+    if (!belongs_to_open_light()) {
         finish_light();
         open_light_ = OpenLight{light, modifier, {}, file.copies, std::string(primitive.name)};
     }

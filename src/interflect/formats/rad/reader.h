@@ -33,7 +33,7 @@ class RadReader {
   private:
     struct Copy {
         Imath::M44d to_world;
-        std::string prefix;  // of surface names
+        std::string prefix;  // prefix of surface names
     };
     struct OpenFile {
         const SourceFile& source;
@@ -53,8 +53,8 @@ class RadReader {
     };
     using Reader = PolygonMesh (RadReader::*)(const std::vector<double>&, const Tessellation&) const;
     struct Surface {
-        std::size_t numbers;  // 0: any
-        Reader read;          // nullptr: ignored
+        std::size_t numbers;  // required count of numbers, or 0 for any count
+        Reader read;          // nullptr for a type that is ignored
     };
     static const std::unordered_map<std::string_view, Surface>& surfaces();
 
@@ -99,7 +99,7 @@ class RadReader {
     Model model_;
     RadMaterials materials_;
     RepeatedWork repeated_;
-    double patches_ = 0;  // requested so far
+    double patches_ = 0;  // number of patches requested so far
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };
 

@@ -46,7 +46,7 @@ struct SolarTime {
     double almanac_declination(double& solar_hour) const;
 };
 
-/// IES Lighting Handbook.
+/// Computes the declination [rad] by the formulas of the IES Lighting Handbook.
 double SolarTime::declination(double& solar_hour) const {
     const double n = day_of_year();
     solar_hour = hour + 0.170 * std::sin(4 * pi / 373 * (n - 80)) - 0.129 * std::sin(2 * pi / 355 * (n - 8)) +
@@ -54,7 +54,7 @@ double SolarTime::declination(double& solar_hour) const {
     return 0.4093 * std::sin(2 * pi / 365 * (n - 81));
 }
 
-/// Michalsky 1988.
+/// Computes the declination [rad] by the formulas of Michalsky (1988).
 double SolarTime::almanac_declination(double& solar_hour) const {
     const int leap_days = (year - 1949) / 4 + (month > 2 && year % 4 == 0 ? 1 : 0);
     const double days = day_of_year() + (year - 1949) * 365 + leap_days + (hour + west_meridian * 12 / pi) / 24 +
@@ -125,7 +125,8 @@ Daylight::Sun daylight_sun(const SunPlace& place) {
     return {degrees(place.azimuth) + half_turn, degrees(place.altitude)};
 }
 
-/// Horizontal irradiance over pi and zenith radiance, clear or intermediate.
+/// Returns the ratio of the horizontal irradiance, divided by pi, to the zenith radiance of a clear or intermediate
+/// sky.
 double normalised(double altitude, bool is_intermediate) {
     constexpr double coefficients[2][5] = {{2.766521, 0.547665, -0.369832, 0.009237, 0.059229},
                                            {3.5556, -2.7152, -1.3081, 1.0660, 0.60227}};

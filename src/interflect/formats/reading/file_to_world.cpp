@@ -6,12 +6,12 @@ namespace {
 
 using Imath::V3d;
 
-/// Images of the axes.
+/// The directions into which a rotation turns the axes.
 struct Turn {
     V3d x, y, z;
 };
 
-/// Rotates `up` to z.
+/// Returns the rotation that turns `up` to z.
 Turn turn(Axis up) {
     const V3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     switch (up) {

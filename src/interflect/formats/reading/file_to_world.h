@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Scales to metres; rotates options.up_axis to z.
+/// Returns the matrix that scales to metres and rotates options.up_axis to z.
 Imath::M44d file_to_world(const ReadOptions& options);
 
 }  // namespace interflect::detail

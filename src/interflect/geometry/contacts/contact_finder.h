@@ -16,13 +16,14 @@ namespace interflect::detail {
 
 struct FoundSegment {
     PlanarSegment segment;  ///< `a` is the lexicographically lower end.
-    int outline = 0;        ///< Side of a coplanar face: 1 left, -1 right; 0 otherwise.
+    int outline =
+        0;  ///< Side on which the coplanar face of an outline lies: 1 is left, -1 right. It is 0 for other segments.
 };
 
 class ContactFinder {
   public:
-    /// @param rank  rank_by_flat_surface().
-    /// @param gap   Maximum distance of facets that count as touching although they do not [m], for large ones.
+    /// @param rank  Result of rank_by_flat_surface().
+    /// @param gap   Maximum distance at which separate large facets count as touching [m].
     ContactFinder(const Scene& scene, const Facet& facet, std::span<const std::uint32_t> rank, double touch_distance,
                   double gap);
 
@@ -33,13 +34,14 @@ class ContactFinder {
     float reach() const;
     bool plane_meets(const Imath::Box3f& box) const;
     void add_contacts_with(const Facet& other);
-    /// Returns the connected components at least `min_extent` [m] wide.
+    /// Returns the segments of those connected components that are at least `min_extent` [m] wide.
     std::vector<PlanarSegment> segments(double min_extent);
 
   private:
-    /// Removes duplicates and shared borders of coplanar faces.
+    /// Returns each segment once, without the borders that two coplanar faces share.
     std::vector<PlanarSegment> distinct_segments();
-    /// Returns the lowest index of each segment's component. Common ends connect segments.
+    /// Returns, for each segment, the lowest index in its connected component. Segments with a common end are
+    /// connected.
     std::vector<std::uint32_t> connected(const std::vector<PlanarSegment>& segments) const;
 
     bool is_two_sided(const Facet& f) const { return scene_.patches[f.face].other_side != none; }

@@ -25,16 +25,16 @@ using namespace detail;
 
 namespace {
 
-/// Relative to the face's diameter. Narrower strips are not divided across.
+/// Strips that are narrower than this share of the face's diameter are not divided across.
 constexpr double narrow = 2e-3;
 
-/// The side of the smallest elements: the light in narrower gaps is not resolved.
+/// The smallest elements have half the minimum extent as their side, so they cannot resolve the light in narrower gaps.
 constexpr double gap_over_min_extent = 0.5;
 
 constexpr std::size_t facets_per_task = 256;
 
-/// Maximum length of a sliver, relative to the width of its flat surface. Reduces the error of pixel blocks in
-/// `slivers` (experiments/run audit) from 8.8% to 1.3%.
+/// Maximum length of a sliver, relative to the width of its flat surface. This limit reduces the error of pixel blocks
+/// in `slivers` (experiments/run audit) from 8.8% to 1.3%.
 constexpr double longest_sliver_share = 1.0 / 16;
 
 struct CutFacet {
@@ -43,7 +43,7 @@ struct CutFacet {
     bool reached_limit = false;
 };
 
-/// Returns the maximum length of a sliver [m]. Quartering preserves aspect ratios.
+/// Returns the maximum length of a sliver [m]. Slivers are cut here because later quartering preserves aspect ratios.
 double longest_sliver(const Facet& facet, double surface_area) {
     const double width = surface_area / facet.diameter;
     const bool is_small_part = surface_area > 4 * facet.area();
@@ -66,7 +66,7 @@ CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_are
     return result;
 }
 
-/// Returns areas by facet [m^2].
+/// Returns, for each facet, the area of its flat surface [m^2].
 std::vector<double> areas_of_surfaces(const Scene& scene, const std::vector<Facet>& facets) {
     const std::vector<std::uint32_t> surfaces = flat_surfaces(scene);
     std::vector<double> area(scene.patches.size(), 0.0), result;
@@ -140,10 +140,10 @@ class PieceWriter {
     VertexWeld weld_;
 };
 
-/// Facets first ... last - 1 of one face.
+/// The facets of one face, from `first` to `last` - 1.
 struct FacetRange {
     std::size_t first, last;
-    std::uint64_t patches = 0;  ///< On both sides; 0: the face stays whole.
+    std::uint64_t patches = 0;  ///< Number of patches on both sides; 0 if the face stays whole.
 };
 
 std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<Facet>& facets,

@@ -15,7 +15,7 @@ using Imath::V2d;
 
 constexpr std::size_t candidates_per_cut = 24;
 
-/// height() is positive on the left.
+/// Directed line; height() is positive on its left.
 struct Line {
     V2d origin, direction;
 
@@ -31,7 +31,7 @@ struct Piece {
     std::vector<PlanarSegment> segments;
 };
 
-/// Makes choices independent of memory order.
+/// Sorts segments by position, so choices do not depend on their order in memory.
 auto geometric_order(const PlanarSegment& s) {
     return std::make_tuple(std::min(s.a.x, s.b.x), std::min(s.a.y, s.b.y), s.a.x + s.b.x, s.a.y + s.b.y);
 }
@@ -92,7 +92,7 @@ Line best_cut(const Piece& piece, double tolerance) {
 struct Halves {
     PlanarPolygon left, right;
     PlanarSegment chord;
-    bool proper = false;  // both have an area
+    bool proper = false;  // whether both parts have an area
 };
 
 Halves halves_of(const PlanarPolygon& polygon, const Line& line, double tolerance) {
@@ -248,7 +248,7 @@ CutPolygon cut_polygon(PlanarPolygon polygon, std::vector<PlanarSegment> segment
         }
         const Line line = best_cut(piece, tolerance);
         Halves halves = halves_of(piece.polygon, line, tolerance);
-        if (!halves.proper) {  // the line runs along the border
+        if (!halves.proper) {  // because the line runs along the border
             std::erase_if(piece.segments, [&](const PlanarSegment& s) {
                 return side_of(line.height(s.a), tolerance) == 0 && side_of(line.height(s.b), tolerance) == 0;
             });

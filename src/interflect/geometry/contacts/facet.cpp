@@ -13,10 +13,10 @@ namespace {
 
 using Imath::V3d;
 
-/// Relative to a face's diameter: 40 um at 10 m.
+/// Smallest feature relative to a face's diameter: 40 um on a face of 10 m.
 constexpr double min_detail = 4e-6;
 
-/// Four float roundings of the largest coordinate.
+/// Rounding error relative to the largest coordinate: four roundings in single precision.
 constexpr double relative_rounding = 0x1p-22;
 
 }  // namespace
@@ -53,7 +53,7 @@ std::vector<Facet> facets_of(const Scene& scene) {
         const Facet whole(scene, i, std::span(v).first(static_cast<std::size_t>(patch.vertex_count())));
         if (patch.is_triangle() || is_planar(scene, v)) {
             facets.push_back(whole);
-        } else {  // split as in Embree
+        } else {  // Embree splits along the same diagonal
             facets.emplace_back(scene, i, std::array{v[0], v[1], v[3]});
             facets.emplace_back(scene, i, std::array{v[2], v[3], v[1]});
         }

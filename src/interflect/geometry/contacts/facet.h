@@ -12,7 +12,7 @@
 
 namespace interflect::detail {
 
-/// Face, or half of a warped quadrilateral.
+/// Plane face, or one of the two triangles of a warped quadrilateral.
 struct Facet {
     std::uint32_t face = none;  ///< Front patch.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
@@ -22,7 +22,7 @@ struct Facet {
     double diameter = 0;                ///< [m]
     double rounding = 0;                ///< Rounding error of corners [m].
 
-    /// @param corner_vertices  Three or four.
+    /// @param corner_vertices  Indices of three or four vertices.
     Facet(const Scene& scene, std::uint32_t face_index, std::span<const std::uint32_t> corner_vertices);
 
     double area() const { return area_; }  ///< [m^2]
@@ -32,7 +32,7 @@ struct Facet {
     /// Length below which features are ignored [m].
     double detail() const;
 
-    Imath::Box3f box(float margin) const;  ///< Enlarged by `margin` [m].
+    Imath::Box3f box(float margin) const;  ///< Returns the bounding box, enlarged by `margin` [m].
 
   private:
     double area_ = 0;
@@ -40,7 +40,7 @@ struct Facet {
 
 std::vector<Facet> facets_of(const Scene& scene);
 
-/// Right-handed; x is along the facet's longest edge.
+/// Right-handed frame of a facet's plane, whose x axis is along the facet's longest edge.
 class PlaneFrame {
   public:
     explicit PlaneFrame(const Facet& facet);

@@ -18,7 +18,7 @@ namespace {
 using Imath::V2d;
 using Imath::V3d;
 
-/// Relative area of rounding errors.
+/// Share of a patch's area that counts as rounding error.
 constexpr double negligible_share = 1e-12;
 constexpr std::size_t cut_at_once = 4;
 constexpr int max_halvings = 24;
@@ -44,15 +44,15 @@ PlanarPolygon intersection(PlanarPolygon polygon, const PlanarPolygon& other) {
     return polygon;
 }
 
-/// Intersections for `count` disjoint faces, which halving separates, and for some more.
+/// Returns a number of intersections that suffices to separate `count` disjoint faces by halving, with some reserve.
 std::size_t enough_intersections(std::size_t count) {
     constexpr std::size_t per_level = 4, more_levels = 8, at_least = 1024;
     return at_least + per_level * count * (static_cast<std::size_t>(std::bit_width(count)) + more_levels);
 }
 
-/// Returns the covered area [m^2]; areas up to `negligible` [m^2] count as 0.
-/// @param intersections  To be computed at most. Afterwards, only the face with the largest share of a part counts: the
-///     outlines of a thousand faces that lie in each other divide them into a million parts.
+/// Returns the area of the polygon outside the others [m^2]. Areas up to `negligible` [m^2] count as 0.
+/// @param intersections  Number of intersections that may still be computed. Afterwards, only the face that covers most
+///     of a part counts, because the outlines of a thousand nested faces divide each other into a million parts.
 double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygon*> others, double negligible,
                     int halvings, std::size_t& intersections) {
     const double area = area_of(polygon);

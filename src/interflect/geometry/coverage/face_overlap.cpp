@@ -19,12 +19,13 @@ namespace {
 
 using V3d = Imath::V3d;
 
-/// Minimum cosine: rejects low upright faces, tolerates noisy normals of small faces.
+/// Minimum cosine between the normals of overlapping faces. It rejects low upright faces, but tolerates the noisy
+/// normals of small faces.
 constexpr double min_facing = 0.7;
 
 constexpr std::size_t search_grain = 1024;
 
-/// Clipping adds up to four corners.
+/// A face of up to four corners, to which clipping by another one adds up to four.
 struct ClippedFace {
     std::array<V3d, 8> corners;
     std::size_t count = 0;
@@ -40,7 +41,7 @@ ClippedFace polygon_of(const Scene& scene, const Patch& patch) {
     return polygon;
 }
 
-/// {x: normal . x >= offset}, with a unit normal.
+/// Half space of the points x with normal . x >= offset; the normal has unit length.
 struct HalfSpace {
     V3d normal;
     double offset = 0;

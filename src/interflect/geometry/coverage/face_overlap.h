@@ -10,9 +10,9 @@
 
 namespace interflect::detail {
 
-/// Faces, identified by their first patches.
+/// Two faces, each identified by its first patch.
 struct FacePair {
-    std::uint32_t larger, smaller;  ///< By area; at equal areas the later face is larger.
+    std::uint32_t larger, smaller;  ///< The larger one has the larger area, or comes later if the areas are equal.
 };
 
 /// Returns the distance within which two faces coincide [m]. The larger one's plane is rounded by an eighth of its
@@ -21,7 +21,8 @@ inline float pair_tolerance(std::span<const float> tolerance, const FacePair& pa
     return std::max(tolerance[pair.smaller], tolerance[pair.larger] / 8);
 }
 
-/// Sound scenes have far fewer pairs: faces that lie on a large one are pairs with it alone.
+/// Limits of the number of pairs. Sound scenes have far fewer, for a face that lies on a large one makes a pair with
+/// that one only.
 inline constexpr std::size_t free_overlaps = 1'000'000, max_overlaps_per_patch = 50;
 
 /// Finds pairs whose smaller face reaches more than pair_tolerance() into the larger, within that distance of its

@@ -11,7 +11,7 @@ inline std::uint32_t back_material(const Scene& scene, const Patch& patch) {
     return patch.other_side == no_patch ? none : scene.patches[patch.other_side].material;
 }
 
-/// Adds the front of a face and, with a `back_material`, its reversed back.
+/// Adds the front of a face and, unless `back_material` is none, its back with reversed vertices.
 inline void add_face(Scene& scene, Patch patch, std::uint32_t back_material) {
     const PatchIndex index(scene.patches.size());
     patch.other_side = back_material == none ? no_patch : index + 1;

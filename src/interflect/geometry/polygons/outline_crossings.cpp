@@ -19,7 +19,7 @@ struct FlatEdge {
     double high_y() const { return std::max(begin.y, end.y); }
 };
 
-/// Projects along the largest component of the normal.
+/// Returns the edges, projected along the largest component of the normal.
 std::vector<FlatEdge> edges_of(const Scene& scene, std::span<const std::vector<std::uint32_t>> loops,
                                const V3f& normal) {
     int largest = 0;

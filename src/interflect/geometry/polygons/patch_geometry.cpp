@@ -7,7 +7,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Relative twist.
+/// Twist relative to the edges, up to which a quadrilateral counts as a parallelogram.
 constexpr float parallelogram_tolerance = 1e-5f;
 
 /// Inverts the cumulative distribution of the density (a + b x) / (a + b / 2) on [0, 1]; a, a + b >= 0.

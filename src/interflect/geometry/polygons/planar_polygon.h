@@ -12,10 +12,10 @@ namespace interflect::detail {
 
 struct PlanarCorner {
     Imath::V2d position;          ///< In the plane's frame [m].
-    std::uint32_t vertex = none;  ///< In the scene, unless new.
+    std::uint32_t vertex = none;  ///< Index in the scene; `none` for a new corner.
 };
 
-/// Convex, counter-clockwise.
+/// Convex polygon, counter-clockwise.
 using PlanarPolygon = std::vector<PlanarCorner>;
 
 struct PlanarSegment {
@@ -23,7 +23,7 @@ struct PlanarSegment {
     double length() const { return (b - a).length(); }
 };
 
-/// [m^2]
+/// Returns twice the area [m^2].
 inline double doubled_area(const PlanarPolygon& polygon) {
     double sum = 0;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)

@@ -22,7 +22,7 @@ namespace {
 using Imath::V3d;
 using Loop = std::vector<std::uint32_t>;
 
-/// Noise of heights in float epsilons: roundings of three vertices and their differences.
+/// Noise of heights above a plane, in float epsilons: the roundings of three vertices and of their differences.
 constexpr double height_noise = 4;
 
 V3d position(const Scene& scene, std::uint32_t vertex) { return V3d(scene.vertices[vertex]); }
@@ -35,7 +35,7 @@ Loop without_repeats(const Scene& scene, const Loop& loop) {
     return kept;
 }
 
-/// Relative to the first vertex against cancellation.
+/// Returns the normal times twice the area [m^2]. Vertices are taken relative to the first one, to avoid cancellation.
 V3d doubled_area(const Scene& scene, const Loop& loop) {
     const V3d origin = position(scene, loop[0]);
     V3d sum(0);
@@ -45,11 +45,11 @@ V3d doubled_area(const Scene& scene, const Loop& loop) {
 }
 
 struct OutlinePlane {
-    V3d normal{0};        ///< Unit length; zero without area.
+    V3d normal{0};        ///< Unit length; zero for a loop without area.
     double size = 0;      ///< Diagonal of the bounding box [m].
     double rounding = 0;  ///< Noise of heights [m].
     bool degenerate = true;
-    bool self_crossing = false;  ///< Degenerate only because opposite areas cancel.
+    bool self_crossing = false;  ///< Whether the loop is degenerate only because opposite areas cancel.
 
     OutlinePlane(const Scene& scene, const Loop& outline) {
         if (outline.size() < 3) return;
@@ -109,7 +109,7 @@ class PatchAdder {
     void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d = none) {
         Patch front = front_;
         front.vertices = {a, b, c, d};
-        // Single precision, as in all later computations.
+        // The area is computed in single precision, as in all later computations.
         if (!(patch_area(scene_, front) >= smallest_face_area)) return;
         add_face(scene_, front, two_sided_ ? front.material : none);
         added_ = true;
@@ -128,11 +128,11 @@ class Triangulation {
     Triangulation(Scene& scene, const OutlinePlane& plane, std::uint32_t origin)
         : scene_(scene), plane_(plane), origin_(position(scene, origin)) {}
 
-    /// Returns three corners per triangle; empty if the tessellator failed.
+    /// Returns three corners per triangle, or an empty vector if the tessellator failed.
     std::vector<std::uint32_t> operator()(std::span<const Loop> loops);
 
   private:
-    // Tessellator coordinates: unit size, relative to the first vertex.
+    // Returns coordinates for the tessellator, which are relative to the first vertex and to the size.
     V3d local(const V3d& x) const { return (x - origin_) / plane_.size; }
     V3d global(const V3d& x) const { return origin_ + x * plane_.size; }
 
@@ -153,7 +153,7 @@ class Triangulation {
     Scene& scene_;
     const OutlinePlane& plane_;
     V3d origin_;
-    std::deque<std::uint32_t> handles_;  // for GLU's pointers; addresses stay valid
+    std::deque<std::uint32_t> handles_;  // a deque, because GLU keeps pointers to its members
     std::vector<std::uint32_t> corners_;
     bool failed_ = false;
 };
@@ -180,7 +180,7 @@ std::vector<std::uint32_t> Triangulation::operator()(std::span<const Loop> loops
     gluTessCallback(t, GLU_TESS_VERTEX_DATA, callback(&emit));
     gluTessCallback(t, GLU_TESS_COMBINE_DATA, callback(&combine));
     gluTessCallback(t, GLU_TESS_ERROR_DATA, callback(&fail));
-    // Makes GLU emit separate triangles.
+    // A callback for edge flags makes GLU emit separate triangles.
     gluTessCallback(t, GLU_TESS_EDGE_FLAG_DATA, callback(&ignore_edge_flag));
 
     gluTessBeginPolygon(t, this);

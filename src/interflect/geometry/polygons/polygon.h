@@ -9,13 +9,13 @@
 
 namespace interflect::detail {
 
-/// Each crossing becomes a vertex. A star of 1,023 corners can have 520,000 crossings.
+/// Limit of the crossings of an outline, each of which becomes a vertex: a star of 1,023 corners can have 520,000.
 inline constexpr std::size_t max_crossings_per_corner = 4;
 
 enum class PolygonResult {
     added,
-    degenerate,     ///< Narrower than its vertices' rounding; not added.
-    self_crossing,  ///< Opposite areas cancel, or edges cross too often (max_crossings_per_corner); not added.
+    degenerate,     ///< Not added, because it is narrower than the rounding of its vertices.
+    self_crossing,  ///< Not added, because opposite areas cancel or edges cross too often (max_crossings_per_corner).
 };
 
 /// Adds triangles and convex planar quadrilaterals (planarity.h) as one patch; triangulates others. Keeps the

@@ -15,7 +15,7 @@ namespace {
 
 using Imath::V3d;
 
-/// Minimum sine of the turn at a corner.
+/// Minimum sine of the angle by which a quadrilateral's outline turns at a corner.
 constexpr double min_turn = 0.1;
 constexpr double coordinate_tolerance = 1e-4;
 
@@ -47,7 +47,8 @@ class PairFinder {
         return length >= squared_length(triangle, k + 1) && length >= squared_length(triangle, k + 2);
     }
 
-    /// Exporters write halves in sequence: most pairs need no search.
+    /// Pairs each triangle with the next one. Exporters write the two triangles of a face in sequence, so most pairs
+    /// are found without a search.
     void pair_neighbours_in_order() {
         for (std::uint32_t t = 0; t + 1 < faces_.size(); ++t)
             for (std::uint32_t i = 0; i < 3 && is_single(t); ++i)
@@ -85,7 +86,7 @@ class PairFinder {
         faces_[std::max(t, u)] = {none, none, none, none};
     }
 
-    /// @param face  The shared edge joins [0] and [2].
+    /// @param face  Quadrilateral whose vertices [0] and [2] are joined by the shared edge.
     bool is_planar_and_convex(const FaceVertices& face) const {
         const V3d a = position(face[0]), b = position(face[1]), c = position(face[2]), d = position(face[3]);
         const V3d normal = (c - a).cross(d - a).normalized();
@@ -111,7 +112,7 @@ class PairFinder {
 
     const Scene& scene_;
     std::span<const std::uint32_t> triangles_;
-    std::vector<FaceVertices> faces_;  // invalid after a merge into another
+    std::vector<FaceVertices> faces_;  // by triangle; the first vertex is `none` after a merge into another triangle
 };
 
 }  // namespace

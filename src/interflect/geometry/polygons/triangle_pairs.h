@@ -11,21 +11,22 @@
 
 namespace interflect::detail {
 
-/// Counter-clockwise; the fourth is none for a triangle.
+/// Vertices of a face, counter-clockwise. The fourth is `none` for a triangle.
 using FaceVertices = std::array<std::uint32_t, 4>;
 
-/// Edge of a triangle, from this corner to the next.
+/// Edge of a triangle from `corner` to the next one.
 struct TriangleEdge {
-    std::uint64_t vertices = 0;  ///< Equal for edges between the same vertices.
+    std::uint64_t vertices = 0;  ///< Both vertex indices in one number, the lower one in the upper bits.
     std::uint32_t triangle = 0;
     std::uint32_t corner = 0;
 };
 
-/// More triangles meet only at edges of meshes that are no surfaces.
+/// Number of triangles considered at one edge. More meet only in meshes that are not surfaces.
 inline constexpr std::size_t max_triangles_at_edge = 8;
 
-/// Calls use(a, b) for edges between the same vertices, in order; `b` is at most max_triangles_at_edge - 1 after `a`.
-/// @param edges  Sorted by vertices.
+/// Calls use(a, b), in order, for each pair of edges between the same vertices, of which b follows a within
+/// max_triangles_at_edge - 1 places.
+/// @param edges  The edges, sorted by `vertices`.
 template <class Use>
 void for_pairs_at_edges(std::span<const TriangleEdge> edges, const Use& use) {
     for (std::size_t a = 0; a < edges.size(); ++a)
@@ -36,8 +37,8 @@ void for_pairs_at_edges(std::span<const TriangleEdge> edges, const Use& use) {
 }
 
 /// Merges triangles into planar, convex quadrilaterals with linear texture and lightmap coordinates. Prefers pairs
-/// along the longest edge of both. Keeps the order of first triangles. Cost: O(triangles log(triangles)).
-/// @param scene      With welded vertices.
+/// along the longest edge of both. Faces keep the order of their first triangles. Cost: O(triangles log(triangles)).
+/// @param scene      Its vertices must be welded.
 /// @param triangles  Three vertex indices each.
 std::vector<FaceVertices> merge_triangle_pairs(const Scene& scene, std::span<const std::uint32_t> triangles);
 

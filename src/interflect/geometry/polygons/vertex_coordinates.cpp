@@ -48,7 +48,7 @@ VertexCoordinates interpolated(const Scene& scene, std::span<const std::uint32_t
 }
 
 V3f welded_normal(const Imath::V3d& normal) {
-    constexpr double steps = 256;  // 0.2 degrees, far below a visible crease
+    constexpr double steps = 256;  // a step turns the normal by 0.2 degrees, far less than a visible crease
     const Imath::V3d n = normal.normalized() * steps;
     if (!std::isfinite(n.x + n.y + n.z) || n == Imath::V3d(0)) return V3f(0);
     return V3f(Imath::V3d(std::round(n.x), std::round(n.y), std::round(n.z)).normalized());

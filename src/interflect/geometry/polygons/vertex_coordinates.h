@@ -21,15 +21,16 @@ struct VertexCoordinates {
 
 VertexCoordinates coordinates_of(const Scene& scene, std::uint32_t vertex);
 
-/// Leaves lightmap coordinate and normal missing if any vertex lacks them.
-/// @param weights  One per vertex; sum 1.
+/// Interpolates between vertices. The lightmap coordinate or the normal is missing if any vertex lacks it.
+/// @param weights  Weight of each vertex; their sum is 1.
 VertexCoordinates interpolated(const Scene& scene, std::span<const std::uint32_t> vertices,
                                std::span<const float> weights);
 
-/// Normalises and rounds, to weld nearly equal normals. Returns zero for zero and non-finite vectors.
+/// Normalises and rounds a normal, which makes nearly equal normals equal. Returns zero for zero and non-finite
+/// vectors.
 V3f welded_normal(const Imath::V3d& normal);
 
-/// Returns the index. Once a vertex has an attribute, all vertices store it.
+/// Returns the index of the new vertex. Once a vertex has an attribute, all vertices store it.
 std::uint32_t add_vertex(Scene& scene, const V3f& position, const VertexCoordinates& coordinates);
 
 }  // namespace interflect::detail

@@ -22,7 +22,7 @@ inline Imath::Box3f bounds_of(const Scene& scene, const Patch& patch) {
     return box;
 }
 
-/// Whether a box is within `distance` [m] of a plane.
+/// Whether a part of a box is within `distance` [m] of a plane.
 /// @param height  Signed distance from the plane (V3d -> [m]).
 template <class Height>
 bool meets_plane(const Imath::Box3f& box, const Imath::V3d& normal, const Height& height, double distance) {

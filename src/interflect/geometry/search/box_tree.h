@@ -12,14 +12,14 @@
 namespace interflect::detail {
 
 struct Boxed {
-    Imath::Box3f box;  ///< After arrangement: of the subtree.
+    Imath::Box3f box;  ///< Bounds of the element; after arrange_box_tree(), of its subtree.
     std::uint32_t index = 0;
 };
 
 /// Arranges a bounding volume hierarchy in place: the root is in the middle, between its subtrees.
 inline void arrange_box_tree(std::span<Boxed> elements) {
     if (elements.empty()) return;
-    Imath::Box3f all, centres;  // centres are doubled
+    Imath::Box3f all, centres;  // doubled centres
     for (const Boxed& e : elements) {
         all.extendBy(e.box);
         centres.extendBy(e.box.min + e.box.max);
@@ -42,7 +42,8 @@ inline void arrange_box_tree(std::span<Boxed> elements) {
     elements[middle].box = all;
 }
 
-/// Calls visit(index) for each element whose subtree boxes all satisfy reaches(box); its own box may not.
+/// Calls visit(index) for each element if reaches(box) is true for the boxes of all subtrees that contain it. These
+/// boxes may be larger than the element's own.
 template <class Reaches, class Visit>
 void visit_box_tree(std::span<const Boxed> tree, const Reaches& reaches, const Visit& visit) {
     if (tree.empty()) return;

@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// Union-find. The lowest member represents its set.
+/// Disjoint sets of indices (union-find). The lowest member represents its set.
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }

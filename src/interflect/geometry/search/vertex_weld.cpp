@@ -9,7 +9,7 @@ namespace interflect::detail {
 namespace {
 
 std::uint64_t bits(float f) {
-    return std::bit_cast<std::uint32_t>(f + 0.0f);  // -0 + 0 = 0
+    return std::bit_cast<std::uint32_t>(f + 0.0f);  // adding 0 turns -0 into 0
 }
 
 std::uint64_t bits(const V2f& v) { return bits(v.x) | bits(v.y) << 32; }

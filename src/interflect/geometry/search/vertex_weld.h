@@ -8,13 +8,13 @@
 
 namespace interflect::detail {
 
-/// Merges vertices with equal position and attributes (-0 equals 0).
+/// Merges vertices with equal positions and attributes (-0 equals 0).
 class VertexWeld {
   public:
     /// @param scene  Receives new vertices. Vertices added elsewhere are not found.
     explicit VertexWeld(Scene& scene) : scene_(scene), slots_(16, none) {}
 
-    /// Requires finite numbers.
+    /// Returns the index of a new or an existing vertex. Requires finite numbers.
     std::uint32_t vertex(const V3f& position, const VertexCoordinates& coordinates = {});
 
   private:
@@ -22,7 +22,7 @@ class VertexWeld {
     void grow();
 
     Scene& scene_;
-    std::vector<std::uint32_t> slots_;  // a power of two; at most half full
+    std::vector<std::uint32_t> slots_;  // hash table of a power of two slots, at most half full
     std::size_t used_ = 0;
 };
 

@@ -14,9 +14,9 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr float flat_deviation = 0.0087f;  // of a unit vector turned by the angle of cosine_of_flat
+constexpr float flat_deviation = 0.0087f;  // length by which a unit vector changes at the angle of cosine_of_flat
 
-/// Smooth edges, each as two patches.
+/// Returns the pairs of patches that are joined by smooth edges.
 std::vector<std::array<PatchIndex, 2>> smooth_neighbours(const SmoothSurfaces& surfaces) {
     std::vector<std::array<PatchIndex, 2>> pairs;
     std::vector<PatchIndex> first(surfaces.edges.count);
@@ -34,7 +34,7 @@ std::vector<std::array<PatchIndex, 2>> smooth_neighbours(const SmoothSurfaces& s
     return pairs;
 }
 
-/// Steps of the normal from each flat part of a surface to its smooth neighbours.
+/// Differences between the normal of each flat part of a surface and the normals of its smooth neighbours.
 class Bends {
   public:
     Bends(const Scene& scene, std::span<const V3f> own, const SmoothSurfaces& surfaces) : parts_(own.size()) {
@@ -55,7 +55,7 @@ class Bends {
             bends_.end());
     }
 
-    /// Returns the largest component of a bend of the patch along `direction`, times its length; at least 0.
+    /// Returns the largest scalar product of `direction` and a bend of the patch; at least 0.
     float largest_along(PatchIndex patch, const V3f& direction) {
         const auto [first, last] = std::equal_range(bends_.begin(), bends_.end(), Bend{parts_.find(patch), 0, V3f(0)},
                                                     [](const Bend& a, const Bend& b) { return a.part < b.part; });
@@ -70,7 +70,7 @@ class Bends {
         V3f turn;
     };
 
-    /// Contacts separate the pieces of a face.
+    /// Unites the pieces of a face, between which contacts are borders.
     void unite_pieces(const Scene& scene) {
         std::map<std::pair<std::uint32_t, bool>, std::uint32_t> first;
         for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
@@ -120,7 +120,7 @@ CornerNormals::CornerNormals(const Scene& scene, const SmoothSurfaces& surfaces)
     for (V3f& n : authored) n.normalize();
 
     Bends bends(scene, own, surfaces);
-    // Whether each group's normal of the file counts.
+    // Whether the normal in the file counts, by group.
     std::vector<bool> counts(mean.size(), false);
     for_each_corner([&](CornerIndex corner, std::uint32_t group) {
         if (counts[group]) return;

@@ -8,7 +8,8 @@
 
 namespace interflect::detail {
 
-/// 0.5 degrees: above the rounding of normals in readers (0.2 degrees).
+/// Minimum cosine between the normals of faces that count as flat: 0.5 degrees, because readers round normals by up to
+/// 0.2 degrees.
 inline constexpr float cosine_of_flat = 0.99996f;
 
 /// Normals with which the corners of patches are shaded. Scene::normals count where the surface bends as they do: they
@@ -17,14 +18,14 @@ inline constexpr float cosine_of_flat = 0.99996f;
 /// has its own normal (docs/method/method.md, Curved surfaces).
 class CornerNormals {
   public:
-    /// @param surfaces  Of this scene. Cost: O(n log n) for n patches.
+    /// Costs O(n log n) for n patches. @param surfaces  Smooth surfaces of this scene.
     CornerNormals(const Scene& scene, const SmoothSurfaces& surfaces);
 
-    /// Returns the unit normal towards the lit side; zero if the file has none there.
+    /// Returns the unit normal towards the lit side, or zero if the file has no normal there.
     const V3f& at(CornerIndex corner) const { return normals_[corner]; }
 
-    /// Patches with a corner where the normal of the file is replaced, and deviates from the patch's by more than
-    /// `degrees`; fronts only.
+    /// Returns the front patches with a corner where the normal of the file is replaced and deviates from the patch's
+    /// by more than `degrees`.
     std::vector<PatchIndex> contradicted_patches(const Scene& scene, float degrees) const;
 
   private:

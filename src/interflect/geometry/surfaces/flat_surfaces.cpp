@@ -16,14 +16,14 @@ namespace interflect::detail {
 
 namespace {
 
-/// 0.8 degrees: tolerates rounded normals of small patches, keeps modelled creases.
+/// Cosine of 0.8 degrees, which tolerates the rounded normals of small patches but keeps modelled creases.
 constexpr float same_plane_cosine = 0.9999f;
 
 constexpr std::size_t patches_per_task = 4096;
 
 constexpr std::size_t max_faces_at_edge = 8;
 
-/// Relative difference after division and rounding.
+/// Relative difference up to which areas count as equal, because division into patches and rounding change them.
 constexpr double equal_areas = 1e-4;
 
 struct Edge {
@@ -63,7 +63,7 @@ std::vector<Edge> sorted_edges(const Scene& scene) {
     return edges;
 }
 
-/// Indexed by representative, like `area`.
+/// Returns the place of each surface in the order of areas. The result and `area` are indexed by representative.
 std::vector<std::uint32_t> order_of_surfaces(const Scene& scene, const std::vector<std::uint32_t>& surface,
                                              const std::vector<double>& area) {
     std::vector<std::uint32_t> order;
@@ -109,7 +109,7 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
         for (std::size_t j = i; j-- > 0 && i - j < max_faces_at_edge && edges[j].vertices == edges[i].vertices;)
             if (continues(edges[i].patch, edges[j].patch)) surfaces.unite(edges[i].patch, edges[j].patch);
 
-    std::unordered_map<std::uint32_t, std::uint32_t> first_patch;  // per numbered surface
+    std::unordered_map<std::uint32_t, std::uint32_t> first_patch;  // by Patch::surface
     for (PatchIndex i{0}; i < count; ++i)
         if (!is_back(scene, i) && scene.patches[i].surface != none)
             surfaces.unite(first_patch.try_emplace(scene.patches[i].surface, i).first->second, i);
@@ -123,7 +123,7 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     const std::vector<std::uint32_t> surface = flat_surfaces(scene);
-    std::vector<double> area(count, 0.0);  // per representative
+    std::vector<double> area(count, 0.0);  // by representative
     for (PatchIndex i{0}; i < count; ++i)
         if (!is_back(scene, i)) area[surface[i]] += static_cast<double>(patch_area(scene, scene.patches[i]));
 

@@ -11,8 +11,8 @@ namespace interflect::detail {
 /// whole edges, or have equal Patch::surface.
 std::vector<std::uint32_t> flat_surfaces(const Scene& scene);
 
-/// Returns a unique rank per patch: by area of the flat surface, counted once for both sides; at nearly equal areas,
-/// emitters first; then by index, fronts directly before backs.
+/// Returns a unique rank per patch. Patches are ordered by the area of their flat surface, which is counted once for
+/// both sides; at nearly equal areas, emitters come first. Patches of one surface are ordered by index.
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene);
 
 }  // namespace interflect::detail

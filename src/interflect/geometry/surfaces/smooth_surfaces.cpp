@@ -25,10 +25,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// Edges with more patches count as creases.
+/// Edges at which more patches meet count as creases.
 constexpr std::size_t max_patches_at_an_edge = 64;
 
-/// Relative; eight float steps, above the rounding of a point on an edge.
+/// Distance of vertices that are welded, relative to the largest coordinate: eight float steps, which is more than the
+/// rounding of a point on an edge.
 constexpr float weld_share = 0x1p-20f;
 
 float weld_tolerance(const Scene& scene) {
@@ -39,7 +40,7 @@ float weld_tolerance(const Scene& scene) {
     return weld_share * largest;
 }
 
-/// Cells are four tolerances wide: most searches visit one.
+/// Grid that finds vertices close to each other. Its cells are four tolerances wide, so most searches visit only one.
 class VertexGrid {
   public:
     explicit VertexGrid(const Scene& scene)
@@ -66,7 +67,7 @@ class VertexGrid {
 
     GridCell cell_of(const V3f& p) const {
         const double size = 4 * std::max(static_cast<double>(tolerance_), std::numeric_limits<double>::min());
-        constexpr double last = 0x1p62;  // for points far from the scene
+        constexpr double last = 0x1p62;  // limits the index of a point far from the scene
         const auto index = [&](float v) {
             return static_cast<std::int64_t>(std::clamp(std::floor(v / size), -last, last));
         };
@@ -94,7 +95,7 @@ std::vector<std::uint32_t> weld(const Scene& scene) {
 }
 
 struct PatchEdge {
-    std::uint32_t low, high;  // welded, low < high
+    std::uint32_t low, high;  // welded vertices, low < high
     CornerIndex start, end;
     bool upwards;
 
@@ -131,7 +132,7 @@ class CreaseTest {
     bool is_smooth(PatchIndex p, PatchIndex q) const {
         return has_one_material(p, q) && normals_[p].dot(normals_[q]) >= min_cosine_;
     }
-    /// Scene::normals decide if all corners of the edge have them.
+    /// Compares Scene::normals if all corners of the edge have them, else the patches' normals.
     bool is_smooth(const PatchEdge& a, const PatchEdge& b) const {
         const Comparison start = compare_normals(a.start, b.end), end = compare_normals(a.end, b.start);
         if (start == Comparison::unknown || end == Comparison::unknown) return is_smooth(a.patch(), b.patch());
@@ -146,7 +147,7 @@ class CreaseTest {
     bool has_one_material(PatchIndex p, PatchIndex q) const {
         return scene_.patches[p].material == scene_.patches[q].material;
     }
-    /// Towards the lit side; zero if missing.
+    /// Returns the normal towards the lit side; zero if it is missing.
     V3f normal_at(CornerIndex corner) const {
         if (scene_.normals.empty()) return V3f(0);
         const V3f n = scene_.normals[scene_.patches[corner.patch()].vertices[corner.corner()]];
@@ -161,9 +162,10 @@ class CreaseTest {
     const Scene& scene_;
     const std::vector<V3f> normals_;
     const float min_cosine_;
-    // Readers round normals by 0.2 degrees.
+    // Normals within 1 degree count as equal, because readers round them by 0.2 degrees.
     const float cosine_of_equal_ = cosine_of(1);
-    // Some programs average normals across room corners.
+    // An edge of more than 60 degrees is a crease, because some programs average normals even across the corners of
+    // rooms.
     const float min_cosine_of_smooth_ = cosine_of(60);
 };
 
@@ -178,7 +180,7 @@ SmoothSurfaces::Groups number_groups(const Scene& scene, DisjointSets& sets) {
     return groups;
 }
 
-/// Distances along a line [m].
+/// Interval of distances along a line [m].
 struct LineInterval {
     double from, to;
 };
@@ -210,7 +212,7 @@ class StraightEdge {
     bool is_collinear(const V3f& a, const V3f& b, double tolerance) const {
         return distance(a) <= tolerance && distance(b) <= tolerance;
     }
-    /// a and b must be collinear with the edge.
+    /// Returns the part of the edge between a and b, which must be collinear with it.
     LineInterval part_between(const V3f& a, const V3f& b) const {
         const auto [low, high] = std::minmax({along(a), along(b)});
         return {std::max(0.0, low), std::min(length_, high)};
@@ -272,7 +274,7 @@ class ContactTree {
     SegmentTree tree_;
 };
 
-/// Relative; ignores gaps between consecutive walls.
+/// Minimum length of a seam, relative to the shorter edge. Shorter seams are gaps between consecutive walls.
 constexpr double min_seam_share = 1e-3;
 constexpr std::size_t edges_per_task = 256;
 
@@ -302,7 +304,7 @@ class SeamFinder {
         if (!is_piece(edges_[i])) return;
         std::vector<std::uint32_t> others;
         tree_.visit(box_around(start(edges_[i]), end(edges_[i]), tolerance_), [&](std::uint32_t j) {
-            if (is_piece(edges_[j]) && j <= i) return;  // found from the other side
+            if (is_piece(edges_[j]) && j <= i) return;  // because the pair was found from the other side
             if (edges_[i].patch() != edges_[j].patch() && smooth(edges_[i].patch(), edges_[j].patch()))
                 others.push_back(j);
         });
@@ -332,7 +334,7 @@ class SeamFinder {
             found.push_back({{a.start, b.start}, {on_a(part.from), on_b(part.to)}, {on_a(part.to), on_b(part.from)}});
         }
     }
-    /// Exactly 0 or 1 near the ends.
+    /// Returns the parameter, or exactly 0 or 1 if it is close to an end.
     float snapped(double parameter, double length) const {
         const double margin = tolerance_ / length;
         return static_cast<float>(parameter <= margin ? 0 : parameter >= 1 - margin ? 1 : parameter);

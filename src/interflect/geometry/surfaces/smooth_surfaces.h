@@ -12,15 +12,16 @@ namespace interflect::detail {
 
 struct SmoothSurfaces {
     struct Groups {
-        /// Group in [0, count) of a corner or an edge, by CornerIndex; none for the fourth of a triangle.
+        /// Group, from 0 to count - 1, of each corner, or of the edge that starts there; none for the fourth corner of
+        /// a triangle.
         std::vector<std::uint32_t> group;
         std::uint32_t count = 0;
     };
-    /// Common part of two edges across which their patches continue. Parameters in [0, 1] follow each patch's vertex
-    /// order; from[0] and to[1] coincide.
+    /// Common part of two edges across which their patches continue. The parameters, from 0 to 1, follow each patch's
+    /// vertex order, so from[0] and to[1] coincide.
     struct Seam {
         std::array<EdgeIndex, 2> edge;
-        std::array<float, 2> from, to;  ///< from < to.
+        std::array<float, 2> from, to;  ///< Parameters along each edge, from < to.
     };
     Groups corners, edges;
     std::vector<Seam> seams;

@@ -19,13 +19,13 @@ using namespace detail;
 
 namespace {
 
-/// Along the first and last edge; equal for a triangle.
+/// Numbers of pieces along the first and the last edge, which are equal for a triangle.
 struct Pieces {
     std::uint64_t u = 1, v = 1;
 };
 
 std::uint64_t pieces_of_edge(const V3f& a, const V3f& b, float largest_edge) {
-    constexpr float most = 1e9f;  // above any limit
+    constexpr float most = 1e9f;  // more than any limit of patches
     return static_cast<std::uint64_t>(std::clamp(std::ceil((b - a).length() / largest_edge), 1.0f, most));
 }
 

@@ -10,10 +10,10 @@ namespace {
 
 constexpr std::int64_t texels_per_sum = 8;
 
-/// Texel lines crossed by a border; takes 0.1 s.
+/// Limit of the texel lines that a border crosses; so many take 0.1 s.
 constexpr double max_crossings = 1 << 20;
 
-/// Minimum height of a triangle [texels]; avoids division by zero.
+/// Minimum height of a triangle [texels], which avoids a division by zero.
 constexpr double min_height = 1e-3;
 
 std::int64_t floor_of(double x) { return static_cast<std::int64_t>(std::floor(x)); }
@@ -53,13 +53,13 @@ TextureIntegral::TextureIntegral(const Texture& texture)
     }
 }
 
-// Below, x counts columns and y rows downwards; texel centres are at integers.
+// In the functions below, x counts columns and y rows downwards, with texel centres at integers.
 
 inline std::size_t TextureIntegral::wrapped_row(std::int64_t row) const {
     return static_cast<std::size_t>(wrapped(row, texture_.height));
 }
 
-/// Integrates from texel 0 to `column`.
+/// Integrates along a row from the centre of texel 0 to the centre of `column`.
 RgbD TextureIntegral::row_integral(std::int64_t column, std::size_t row) const {
     const std::int64_t width = texture_.width, within = wrapped(column, width);
     const RgbD* sums = &sums_[row * sums_per_row_];
@@ -82,7 +82,7 @@ RgbD TextureIntegral::value_at(const V2d& x) const {
 }
 
 /// Integrates F dy within a cell of texel centres.
-/// @param origin  Column at which F is 0.
+/// @param origin  Column where F is 0.
 RgbD TextureIntegral::integral_within_cell(const V2d& a, const V2d& b, std::int64_t origin) const {
     const V2d middle = (a + b) * 0.5;
     const std::int64_t column = floor_of(middle.x), row = floor_of(middle.y);
@@ -147,12 +147,12 @@ Rgb TextureIntegral::mean(const std::array<V2f, 3>& corners) const {
     bool in_one_cell = true;
     for (int axis = 0; axis < 2; ++axis)
         for (std::size_t i = 1; i < 3; ++i) in_one_cell &= floor_of(x[i][axis]) == floor_of(x[0][axis]);
-    // Exact within a cell, where the texture is quadratic.
+    // The mean of the three midpoints is exact within a cell, where the texture is quadratic.
     const RgbD mean =
         in_one_cell
             ? RgbD((value_at((x[0] + x[1]) / 2) + value_at((x[1] + x[2]) / 2) + value_at((x[2] + x[0]) / 2)) / 3)
             : mean_of_wide(x);
-    Rgb clamped;  // against rounding
+    Rgb clamped;  // because rounding may leave the range of the texels
     for (int c = 0; c < 3; ++c) clamped[c] = std::clamp(static_cast<float>(mean[c]), 0.0f, largest_[c]);
     return clamped;
 }

@@ -11,15 +11,16 @@
 
 namespace interflect::detail {
 
-/// Exact means over triangles of a texture as filtered by texel_at(). Integrates F dy along the border, with dF/dx = f
-/// (Green's theorem). F is cubic between texel lines, so Simpson's rule is exact.
+/// Exact means, over triangles, of a texture f that texel_at() filters. By Green's theorem, the integral over a
+/// triangle is the integral of F dy along its border, with dF/dx = f. F is cubic between texel lines, so Simpson's rule
+/// is exact.
 class TextureIntegral {
   public:
-    /// @param texture  Without faults; must outlive this.
+    /// @param texture  It must have no faults and must outlive this object.
     explicit TextureIntegral(const Texture& texture);
 
-    /// Returns the mean over a triangle or line in texture coordinates. O(texels along the border); above a million,
-    /// the mean of the whole texture.
+    /// Returns the mean over a triangle or line in texture coordinates. The cost is proportional to the texels along
+    /// the border; above a million texels, returns the mean of the whole texture.
     Rgb mean(const std::array<V2f, 3>& corners) const;
 
   private:
@@ -34,7 +35,7 @@ class TextureIntegral {
 
     const Texture& texture_;
     std::size_t sums_per_row_;
-    std::vector<RgbD> sums_;  // per row: before every eighth texel, then of the whole row
+    std::vector<RgbD> sums_;  // per row: sums of the texels before every eighth one, then the sum of the whole row
     Rgb largest_;
     RgbD mean_{0, 0, 0};
 };

@@ -6,12 +6,12 @@
 
 namespace interflect::detail {
 
-/// Requires texture coordinates.
+/// Interpolates the scene's texture coordinates, which must exist.
 V2f texture_coordinate(const Scene& scene, const Patch& patch, Parameters p);
 
 VertexCoordinates coordinates_at(const Scene& scene, const Patch& patch, Parameters p);
 
-/// Material's value times the texel; exitance in [lm/m^2 or W/m^2].
+/// These return the material's value times the texel. Exitances are in lm/m^2 or W/m^2.
 Rgb reflectance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb exitance_at(const Scene& scene, const Patch& patch, Parameters p);
 Rgb transmittance_at(const Scene& scene, const Patch& patch, Parameters p);

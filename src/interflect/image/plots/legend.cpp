@@ -15,11 +15,11 @@ using namespace detail;
 
 namespace {
 
-/// Offsets from the legend's top [dots].
+/// Offsets from the top of the legend [dots]; a dot is a square of pixels that is the unit of the lettering.
 constexpr int margin = 6, title_top = 5, strip_top = 17, strip_bottom = 27, tick_bottom = 30, numbers_top = 32,
               legend_bottom = 43;
 constexpr int min_values = 3;
-/// [dots]
+/// Room for a number, and minimum gap between numbers [dots].
 constexpr int number_width = 64, number_gap = 8;
 
 void require_valid(const ColourScale& scale) {
@@ -41,7 +41,7 @@ double round_below(double x) {
     return power;
 }
 
-constexpr double rounding = 1e-5;  // relative
+constexpr double rounding = 1e-5;  // relative tolerance
 
 std::vector<float> multiples(const ColourScale& scale, double step) {
     std::vector<float> values;
@@ -61,7 +61,7 @@ std::vector<float> multiples_of_powers(const ColourScale& scale, const std::vect
     return values;
 }
 
-/// [pixels]
+/// Returns the length of the coloured strip [pixels].
 int strip_length(const Image& image, int dot) { return std::max(1, image.width - 2 * margin * dot); }
 
 void draw_strip(Image& image, int top, int dot) {
@@ -91,15 +91,15 @@ void draw_numbers(Image& image, int top, int dot, const ColourScale& scale) {
 std::vector<float> round_values(const ColourScale& scale, int most) {
     require_valid(scale);
     if (most < min_values) throw InputError(fmt::format("{} round values: expected 3 or more", most));
-    const auto fits = [&](const std::vector<float>& values) { return static_cast<int>(values.size()) <= most; };
+    const auto are_few = [&](const std::vector<float>& values) { return static_cast<int>(values.size()) <= most; };
     if (scale.spacing == Spacing::logarithmic && scale.high >= 10 * scale.low) {
         std::vector<float> values = multiples_of_powers(scale, {1, 2, 5}, 1);
-        for (int stride = 1; !fits(values); ++stride) values = multiples_of_powers(scale, {1}, stride);
+        for (int stride = 1; !are_few(values); ++stride) values = multiples_of_powers(scale, {1}, stride);
         return values;
     }
-    constexpr double finer = 0.6;  // steps from 5 to 2, 2 to 1, and 1 to 0.5
+    constexpr double finer = 0.6;  // factor after which round_below() gives the next step: 5 to 2, 2 to 1, 1 to 0.5
     double step = round_below(scale.high - scale.low);
-    while (fits(multiples(scale, round_below(finer * step)))) step = round_below(finer * step);
+    while (are_few(multiples(scale, round_below(finer * step)))) step = round_below(finer * step);
     return multiples(scale, step);
 }
 

@@ -18,9 +18,9 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t gauges_per_tile = 256;
-constexpr std::size_t tiles_per_report = 256;  // of each rank
-/// Part of the samples that every gauge gets.
-constexpr std::uint32_t first_share = 4;
+constexpr std::size_t tiles_per_report = 256;  // tiles that each rank traces between two reports
+/// Every gauge receives this fraction of its samples, 1 / 4, before its neighbours decide on the rest.
+constexpr std::uint32_t first_divisor = 4;
 
 /// Gauges of one tile.
 class GaugeTile {
@@ -31,7 +31,7 @@ class GaugeTile {
     /// Returns the number of rays.
     std::int64_t trace() {
         const auto samples = static_cast<std::uint32_t>(plan_.options.samples);
-        const std::uint32_t all = std::max(1u, samples / 2), some = std::max(1u, all / first_share);
+        const std::uint32_t all = std::max(1u, samples / 2), some = std::max(1u, all / first_divisor);
         trace_more(std::vector<std::uint32_t>(pixels_.size(), some));
         std::vector<std::uint32_t> wanted(pixels_.size(), some);
         for (std::size_t i = 0; i < pixels_.size(); ++i)
@@ -43,18 +43,18 @@ class GaugeTile {
         const PixelStatistics& p = pixels_[i];
         const auto error = static_cast<float>(mean_channel(p.direct_squared_error()));
         GaugeLight light{{Rgb(p.light().direct), error}, {}, Rgb(p.light().indirect)};
-        for (std::size_t h = 0; h < 2; ++h) light.halves[h] = {Rgb(p.half(h).direct), 2 * error};
+        for (std::size_t h = 0; h < 2; ++h) light.halves[h] = {Rgb(p.half_mean(h).direct), 2 * error};
         return light;
     }
 
   private:
-    /// @param wanted  Samples of each half, in all.
+    /// Traces until each half of gauge i has wanted[i] samples.
     void trace_more(const std::vector<std::uint32_t>& wanted) {
         std::vector<SampleBatch> batches;
         for (std::size_t i = 0; i < pixels_.size(); ++i)
             if (const std::uint32_t present = pixels_[i].samples_of_half(); wanted[i] > present)
                 batches.push_back({.pixel = static_cast<std::uint32_t>(first_ + i),
-                                   .first_point = present,
+                                   .first_index = present,
                                    .size = wanted[i] - present});
         PathIntegrator integrator(plan_);
         integrator.trace(batches);
@@ -62,7 +62,8 @@ class GaugeTile {
         for (const SampleBatch& b : batches) pixels_[b.pixel - first_].add(b, ErrorSource::halves);
     }
 
-    /// Neighbours in the list are usually neighbours in space. Gauge i itself would bias its own result.
+    /// Tests the gauges next to gauge i in the list, which are usually near it in space. Excludes gauge i itself: a
+    /// number of samples that depends on them would bias its mean.
     bool are_neighbours_noisy(std::size_t i) const {
         constexpr std::size_t reach = 4;
         const double target = plan_.options.until > 0 ? plan_.options.until : hybrid_target;
@@ -126,7 +127,7 @@ std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, const KnownI
                                           const Monitor& monitor) {
     const PathStart start = start_at(gauges);
     const PathPlan plan{.scene = scene, .start = start, .options = options};
-    constexpr double share_of_records = 0.6;  // of the time; roughly
+    constexpr double share_of_records = 0.6;  // rough share of the time, for progress reports
     const PreparedLight prepared(plan, &known, monitor_section(monitor, 0, share_of_records));
     const PathPlan hybrid = prepared.plan();
     return trace_all_gauges(hybrid, monitor_section(monitor, share_of_records, 1, prepared.rays()));

@@ -24,12 +24,13 @@ inline constexpr std::array source_kinds{SourceKind::patches, SourceKind::lamps,
 
 /// One sample of a light source, seen from a point x on a surface with normal n.
 struct SourceSample {
-    std::uint32_t index = none;  ///< Patch or luminaire.
+    std::uint32_t index = none;  ///< Index of the patch or luminaire; none: no source.
     V3f direction{0, 0, 1};
-    PatchIndex patch{};       ///< Target of the shadow ray; none: a free ray up to `distance`.
-    float distance = 0;       ///< [m]
-    Rgb irradiance{0, 0, 0};  ///< Unoccluded, over the density; the mean is the irradiance of all sources [as H].
-    float density = 0;        ///< Density of the direction [1/sr]; 0 if directions never find the source.
+    PatchIndex patch{};  ///< Patch that the shadow ray must hit; none: it must be free up to `distance`.
+    float distance = 0;  ///< [m]
+    Rgb irradiance{0, 0,
+                   0};  ///< Unoccluded irradiance over the sampling density; its mean is that of all sources [as H].
+    float density = 0;  ///< Density of the direction [1/sr]; 0 if directions never find the source.
 };
 
 /// Samples light sources by estimated unoccluded irradiance. Constant methods are thread-safe.
@@ -38,12 +39,13 @@ class LightSources {
     /// Arguments must outlive this.
     LightSources(const Scene& scene, std::span<const PatchGeometry> geometry);
 
-    /// As LightTree::weigh(), for patches or lamps. @param weights  By SourceSample::index, above 0.
+    /// Calls LightTree::weigh() for patches or lamps. @param weights  By SourceSample::index, above 0.
     void weigh(SourceKind kind, std::span<const float> weights);
 
-    /// Number of shadow rays that differ from each other, at most `most`; 0 without such sources.
+    /// Returns the number of useful shadow rays, at most `most`: 0 without sources of this kind, and at most one per
+    /// source if all rays to a source are equal.
     std::uint32_t useful_rays(SourceKind kind, std::uint32_t most) const;
-    /// Skies excluded. The irradiance is 0 if no source can light x.
+    /// Samples a source of this kind. The irradiance is 0 if no source can light x.
     SourceSample sample(SourceKind kind, const V3f& x, const V3f& n, const LightSample& numbers) const;
     /// Density of sample() towards an emitting patch that was hit [1/sr]. @param distance2  [m^2]
     float density(PatchIndex patch, const V3f& x, const V3f& n, const V3f& direction, float distance2) const;

@@ -29,7 +29,7 @@ void LightTree::Box::extend(const Box& other) {
 
 LightTree::Cone LightTree::bounding_cone(const Cone& a, const Cone& b) {
     constexpr float pi = std::numbers::pi_v<float>;
-    constexpr float parallel = 1e-4f;  // [rad]; closer axes define no plane
+    constexpr float parallel = 1e-4f;  // [rad]; rounding dominates the plane of axes that are closer
     const auto angle = [](float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); };
     const float of_a = angle(a.cosine), of_b = angle(b.cosine), between = angle(a.axis.dot(b.axis));
     if (std::min(between + of_b, pi) <= of_a + parallel) return {a.axis, std::cos(std::min(pi, of_a + parallel))};
@@ -43,7 +43,7 @@ LightTree::Cone LightTree::bounding_cone(const Cone& a, const Cone& b) {
 
 namespace {
 
-/// Sum of channels [lm/m^2 or W/m^2].
+/// Exitance that determines the sampling probability of a patch: sum of channels [lm/m^2 or W/m^2].
 class SampledExitance {
   public:
     explicit SampledExitance(const Scene& scene) : scene_(scene), largest_(largest_texels(scene)) {
@@ -98,7 +98,7 @@ struct LightTree::BinaryNode {
     Box box;
     Cone cone;
     float power;          // [W or lm]
-    std::uint32_t light;  // none: an inner node
+    std::uint32_t light;  // none in inner nodes
     std::uint32_t children[2];
 
     float radius() const { return 0.5f * (box.high - box.low).length(); }
@@ -115,7 +115,7 @@ LightTree::LightTree(std::vector<Light> lights, std::size_t index_count)
 struct LightTree::Split {
     int axis = 0;
     float low = 0, scale = 0;
-    std::size_t first_above = 0;  // 0: coincident centres
+    std::size_t first_above = 0;  // first bin above the split; 0 if all centres coincide
     float cost = std::numeric_limits<float>::infinity();
 
     std::size_t bin_of(const V3f& centre) const {
@@ -126,7 +126,7 @@ struct LightTree::Split {
 struct LightTree::Bin {
     float power = 0;
     Box box;
-    V3f normals{0, 0, 0};  // weighted by power
+    V3f normals{0, 0, 0};  // sum of the normals, weighted by power
 
     void add(const Bin& other) {
         if (other.power <= 0) return;
@@ -137,7 +137,8 @@ struct LightTree::Bin {
         power += other.power;
         normals += other.normals;
     }
-    /// Approximates the surface area orientation heuristic: power x area x solid angle.
+    /// Approximates the surface area orientation heuristic, power x area x solid angle: the squared diagonal represents
+    /// the area, and normals that cancel each other represent a large solid angle.
     float cost() const {
         if (power <= 0) return 0;
         return (box.high - box.low).length2() * (4 * power - 3 * normals.length());
@@ -216,7 +217,7 @@ void LightTree::add_node(const std::vector<BinaryNode>& binary, std::uint32_t ro
         const std::uint32_t place = index * static_cast<std::uint32_t>(width) + i;
         Node& node = nodes_[index];
         node.centre.set(i, 0.5f * (child.box.low + child.box.high));
-        node.half.set(i, 0.5f * (child.box.high - child.box.low));
+        node.half_size.set(i, 0.5f * (child.box.high - child.box.low));
         node.radius[i] = std::max(child.radius(), std::numeric_limits<float>::min());
         node.axis.set(i, child.cone.axis);
         node.cone_cosine[i] = child.cone.cosine;
@@ -231,16 +232,18 @@ void LightTree::add_node(const std::vector<BinaryNode>& binary, std::uint32_t ro
     }
 }
 
-// Cosines use the box's nearest point, which favours wide nodes around x.
+/// Computes the importance of each child: power x bounds of both cosines / squared distance. The cosines use the
+/// nearest point of the box, so wide nodes around x are sampled more often than their distance suggests.
 LightTree::Choices LightTree::importance_of_children(const Node& node, const Floats& power, const V3f& x,
                                                      const V3f& n) {
     constexpr float least = std::numeric_limits<float>::min();
     Choices choices;
     for (std::size_t i = 0; i < width; ++i) {
         const float dx = node.centre.x[i] - x.x, dy = node.centre.y[i] - x.y, dz = node.centre.z[i] - x.z;
-        const float hx = node.half.x[i], hy = node.half.y[i], hz = node.half.z[i];
+        const float hx = node.half_size.x[i], hy = node.half_size.y[i], hz = node.half_size.z[i];
         const float ax = node.axis.x[i], ay = node.axis.y[i], az = node.axis.z[i];
-        // Height of the box above the surface; distance of x ahead of its rearmost point.
+        // `height` is the greatest height of the box above the surface, and `ahead` the distance of x in front of the
+        // rearmost point of the box, along its axis.
         const float height =
             n.x * dx + n.y * dy + n.z * dz + std::abs(n.x) * hx + std::abs(n.y) * hy + std::abs(n.z) * hz;
         const float ahead = std::abs(ax) * hx + std::abs(ay) * hy + std::abs(az) * hz - (ax * dx + ay * dy + az * dz);
@@ -249,7 +252,7 @@ LightTree::Choices LightTree::importance_of_children(const Node& node, const Flo
         const float nearest2 = gap_x * gap_x + gap_y * gap_y + gap_z * gap_z, centre2 = dx * dx + dy * dy + dz * dz;
         const float per_distance = 1 / std::sqrt(std::max(nearest2, least)), radius = node.radius[i];
         const float receiving = std::clamp(height * per_distance, 0.0f, 1.0f);
-        // Behind the whole box, the farthest patch has the smallest angle.
+        // If x is behind the whole box, the bound is the cosine at the farthest possible distance.
         const float cosine = ahead < 0 ? ahead / (std::sqrt(centre2) + radius) : std::min(1.0f, ahead * per_distance);
         const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
         const float outside_cone = cosine * node.cone_cosine[i] + sine * node.cone_sine[i];
@@ -294,7 +297,7 @@ LightTree::Choice LightTree::choose_by(bool is_weighted, const V3f& x, const V3f
             rest -= static_cast<double>(importance[i]);
             if (importance[i] > 0) last = i;
         }
-        if (i == width) {  // by rounding
+        if (i == width) {  // rounding made the sum of the importances too small
             i = last;
             rest = static_cast<double>(importance[i]);
         }

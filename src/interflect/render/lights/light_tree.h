@@ -18,7 +18,7 @@ class LightTree {
   public:
     struct Cone {
         V3f axis{0, 0, 1};
-        float cosine = 1;  // of the half angle; -1: all directions
+        float cosine = 1;  // cosine of the half angle; -1: all directions
     };
     struct Box {
         V3f low, high;
@@ -40,8 +40,9 @@ class LightTree {
     /// @param index_count  Greater than every index.
     LightTree(std::vector<Light> lights, std::size_t index_count);
 
-    /// Half of the choices use these weights times the power from now on. The others keep the probability of a light
-    /// with a wrong weight above half of the former one. @param weights  By index, above 0.
+    /// From now on, half of the choices are in proportion to weight times power; the other half still use the power
+    /// alone. So no light loses more than half of its probability, even if its weight is wrong.
+    /// @param weights  By index, above 0.
     void weigh(std::span<const float> weights);
     bool is_weighted() const { return is_weighted_; }
 
@@ -66,14 +67,15 @@ class LightTree {
     };
     /// Up to eight lights or nodes; others have no power.
     struct alignas(64) Node {
-        Vectors centre, half, axis;  // of bounding boxes [m] and cones
+        Vectors centre, half_size;  // bounding boxes [m]
+        Vectors axis;               // axes of the cones
         Floats cone_cosine{}, cone_sine{};
         Floats power{};           // [W or lm]
-        Floats weighted_power{};  // by weigh()
-        Floats radius{};          // of the box [m]; positive
+        Floats weighted_power{};  // power times the weights of weigh()
+        Floats radius{};          // half diagonal of the box [m]; positive
         std::array<std::uint32_t, width> child{};
         std::array<bool, width> is_light{};
-        std::uint32_t place_in_parent = none;  // node times `width` plus its number there
+        std::uint32_t place_in_parent = none;  // index of the parent times `width`, plus the number of this child
     };
     struct Choices {
         Floats importance;
@@ -88,11 +90,11 @@ class LightTree {
     static std::uint32_t build(std::span<Light> lights, std::vector<BinaryNode>& nodes);
     void add_node(const std::vector<BinaryNode>& binary, std::uint32_t root, std::uint32_t place_in_parent);
     static Choices importance_of_children(const Node& node, const Floats& power, const V3f& x, const V3f& n);
-    /// @param is_weighted  Chooses by the weighted power. The stated probability includes both ways.
+    /// @param is_weighted  Whether to choose by the weighted power. The returned probability is the mean of both ways.
     Choice choose_by(bool is_weighted, const V3f& x, const V3f& n, double uniform) const;
 
     std::vector<Node> nodes_;
-    std::vector<std::uint32_t> place_;  // of each light, as Node::place_in_parent
+    std::vector<std::uint32_t> place_;  // place of each light, encoded like Node::place_in_parent
     std::size_t light_count_;
     bool is_weighted_ = false;
 };

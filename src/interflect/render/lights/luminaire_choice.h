@@ -20,17 +20,17 @@ class LuminaireChoice {
 
     struct Group {
         std::uint32_t count = 0;
-        bool has_extent = false;  ///< Otherwise two rays to the same luminaire are equal.
+        bool has_extent = false;  ///< Whether a luminaire of the group has an extent. Two rays to a point are equal.
     };
     const Group& lamps() const { return lamps_; }
     const Group& suns() const { return suns_; }
 
-    /// LightTree::weigh() for luminaires with a position. @param weights  By index in the scene.
+    /// Calls LightTree::weigh() for luminaires with a position. @param weights  By index in the scene.
     void weigh_lamps(std::span<const float> weights) { tree_.weigh(weights); }
 
     struct Chosen {
         std::uint32_t luminaire = none;
-        Illumination light;  ///< Divided by the probability, multiplied by the cosine.
+        Illumination light;  ///< Illumination times the cosine, over the probability of the choice.
     };
     /// Chooses a luminaire with a position; a LightTree proposes candidates.
     Chosen choose_lamp(const V3f& x, const V3f& n, const LightSample& sample) const;

@@ -10,7 +10,7 @@ namespace {
 
 using Imath::V3d;
 
-/// In double precision: the angles of small triangles sum to almost 180 degrees.
+/// Uses double precision, because the angles of small triangles sum to almost 180 degrees.
 struct SphericalTriangle {
     V3d a, b, c;      // unit vectors
     double area = 0;  // solid angle [sr]
@@ -41,14 +41,15 @@ struct SphericalTriangle {
 /// A patch seen from x.
 struct SeenPatch {
     std::array<SphericalTriangle, 2> parts;
-    int count = 0;  // 0: far, sampled by area
+    int count = 0;  // number of triangles; 0: the patch is far and sampled by area
     double solid_angle() const { return parts[0].area + parts[1].area; }
 
     SeenPatch(const PatchGeometry& patch, const V3f& x) {
-        constexpr float near = 2;       // radii; beyond, squared distances differ by less than a factor of (3 / 1)^2
-        constexpr double least = 1e-5;  // [sr]; rounding of float vertices
+        constexpr float near = 2;       // [radii]; farther away, squared distances vary by less than (3 / 1)^2
+        constexpr double least = 1e-5;  // [sr]; rounding of float vertices dominates smaller angles
         const PatchGeometry::Shape& shape = patch.shape();
-        const float radius2 = (shape.edge_u.length2() + shape.edge_v.length2()) / 2;  // of a sphere around it, at most
+        // Squared radius of a sphere that contains the patch.
+        const float radius2 = (shape.edge_u.length2() + shape.edge_v.length2()) / 2;
         if ((patch.centre() - x).length2() >= near * near * radius2) return;
         const auto corners = corners_of(patch.is_triangle());
         std::array<V3d, 4> v;

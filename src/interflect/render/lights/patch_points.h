@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Point of an emitting patch, as a direction from x.
+/// Sampled point of an emitting patch, as seen from a point x.
 struct PatchPoint {
     Parameters at;
     V3f direction;
@@ -15,13 +15,14 @@ struct PatchPoint {
     float density = 0;    ///< Density of the direction [1/sr].
 };
 
-/// Samples the lit side of a patch: uniformly in the solid angle seen from x if the patch is near, else uniformly in
-/// its area. Near lamps, the integrand over the area grows without bound.
+/// Samples the emitting side of a patch: uniformly in the solid angle seen from x if the patch is near, else uniformly
+/// in its area. Sampling by area fails near the patch, because the integrand 1 / distance^2 grows without bound.
 /// @param u, v  In (0, 1).
 /// @return      nullopt if x is behind the patch or the point coincides with x.
 std::optional<PatchPoint> sample_patch(const PatchGeometry& patch, const V3f& x, float u, float v);
 
-/// Density of sample_patch() [1/sr] for a direction that meets the lit side. @param distance2  [m^2]
+/// Returns the density of sample_patch() [1/sr] for a direction that meets the emitting side.
+/// @param distance2  Squared distance of the point [m^2].
 float patch_density(const PatchGeometry& patch, const V3f& x, const V3f& direction, float distance2);
 
 }  // namespace interflect::detail

@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Later vertices do not benefit from Sobol' points.
+/// Number of path vertices that use Sobol' points. Later vertices do not benefit from them.
 constexpr std::uint32_t stratified_vertices = 4;
 
 }  // namespace
@@ -31,14 +31,14 @@ VertexSample vertex_sample(std::uint64_t key, std::uint32_t vertex, std::uint32_
 }
 
 LightSample light_sample(std::uint64_t key, std::uint32_t vertex, LightStream stream, std::uint32_t index) {
-    constexpr std::uint64_t first_stream = 16;  // after the keys of vertex_sample()
+    constexpr std::uint64_t first_stream = 16;  // vertex_sample() uses smaller numbers for its keys
     const std::uint64_t of_stream = mix(mix(key, vertex), first_stream + static_cast<std::uint64_t>(stream));
     const auto words = random_words(of_stream, index);
     if (vertex > stratified_vertices)
         return {(words[0] + 0.5) * 0x1p-32, unit_float(words[1]), unit_float(words[2]), unit_float(words[3])};
     // The first two dimensions are stratified best: they choose the point or direction.
     const auto point = shuffled_point(of_stream, index);
-    // Points have 23 bits, too few for millions of lamps: jitter.
+    // The 23 bits of a coordinate are too few to choose among millions of lamps, so random bits are appended.
     const double within_cell = (words[0] + 0.5) * 0x1p-32 - 0.5;
     return {point[2] + within_cell * 0x1p-23, point[0], point[1], point[3]};
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Beyond this number, the sum would take longer than the shadow rays.
+/// With more sources, the sum over them would take longer than tracing the shadow rays.
 constexpr std::size_t max_sources = 64;
 
 /// Returns acos(x) / sqrt(1 - x^2) for x in [0, 1], within 2e-8 of acos (Abramowitz and Stegun 1964, 4.4.46). Unlike
@@ -27,7 +27,8 @@ float angle_over_sine(float x) {
     return p / std::sqrt(1 + x);
 }
 
-/// Angle between unit vectors, times the component along n of their plane's unit normal.
+/// Returns one edge's term of Lambert's formula: the angle between the unit vectors a and b, times the component along
+/// n of the unit normal of their plane.
 float edge_integral(const V3f& a, const V3f& b, const V3f& n) {
     const V3f normal = a.cross(b);
     const float cosine = a.dot(b);
@@ -36,7 +37,7 @@ float edge_integral(const V3f& a, const V3f& b, const V3f& n) {
     return sine > 0 ? std::atan2(sine, cosine) * (n.dot(normal) / sine) : 0;
 }
 
-/// Points per axis; 1: the middle is exact.
+/// Returns the number of sampled points per axis of a luminaire; 1 if its centre gives the exact irradiance.
 int strata(const Luminaire& luminaire, const V3f& n) {
     constexpr int of_extended = 4;
     if (const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind))
@@ -49,7 +50,7 @@ int strata(const Luminaire& luminaire, const V3f& n) {
 
 Rgb by_luminaire(const Luminaire& luminaire, const V3f& x, const V3f& n, float u, float v) {
     const int across = strata(luminaire, n);
-    // A disc above the horizon is equal to its centre, which u and v do not sample.
+    // The irradiance of a disc that is completely above the horizon is that of its centre.
     const auto* sun = std::get_if<DirectionalLight>(&luminaire.kind);
     if (sun && across == 1) return sun->irradiance * std::max(0.0f, -n.dot(sun->direction.normalized()));
     Rgb irradiance(0);
@@ -92,9 +93,9 @@ void UnoccludedLight::PatchGroup::add(const Scene& scene, PatchIndex patch) {
     patches[count++] = patch;
 }
 
-/// Lambert's formula, as polygon_irradiance().
+/// Evaluates Lambert's formula as polygon_irradiance() does, for eight patches at once and without clipping.
 UnoccludedLight::PatchGroup::Irradiance UnoccludedLight::PatchGroup::at(const V3f& p, const V3f& n) const {
-    constexpr float least_cosine = -0.9f;     // between corners; below, rounding shows
+    constexpr float least_cosine = -0.9f;     // between corners; rounding dominates beyond this angle
     std::array<Numbers, 4> to_x, to_y, to_z;  // unit vectors to the corners
     Irradiance found;
     found.is_exact.fill(1);

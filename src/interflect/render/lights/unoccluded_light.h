@@ -13,14 +13,14 @@
 
 namespace interflect::detail {
 
-/// Irradiance without occluders: the mean of LightSources::sample(). Immutable, thread-safe. Cost: linear in the
-/// sources, hence only for few.
+/// Irradiance without occluders, which is the mean of LightSources::sample(). Immutable, thread-safe. The cost is
+/// linear in the number of sources, so it is available for few sources only.
 class UnoccludedLight {
   public:
     /// Arguments must outlive this.
     UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry);
 
-    /// Whether the sources of a kind are few. Emitting patches must be without texture.
+    /// Whether at() is available for a kind: its sources are few, and emitting patches have no texture.
     bool has(SourceKind kind) const;
     /// Whether at() uses u and v.
     bool samples_sources() const { return !lamps_.empty() || !suns_.empty(); }
@@ -34,19 +34,20 @@ class UnoccludedLight {
     Rgb at(SourceKind kind, const V3f& x, const V3f& n, float u, float v) const;
 
   private:
-    /// Emitting patches side by side: loops over them become vector code.
+    /// Eight emitting patches in separate arrays of coordinates, so that compilers generate vector code.
     struct PatchGroup {
         static constexpr std::size_t size = 8;
         using Numbers = std::array<float, size>;
 
-        std::array<Numbers, 4> x{}, y{}, z{};  // corners; triangles repeat the last
+        std::array<Numbers, 4> x{}, y{}, z{};  // coordinates of the corners; triangles repeat the last corner
         std::array<PatchIndex, size> patches;
         std::size_t count = 0;
 
         void add(const Scene& scene, PatchIndex patch);
         struct Irradiance {
             Numbers of_unit_radiance;
-            std::array<std::int32_t, size> is_exact;  // not below the horizon in part, nor near a long edge
+            std::array<std::int32_t, size>
+                is_exact;  // 0 if part of a patch is below the horizon, or an edge spans a large angle
         };
         Irradiance at(const V3f& p, const V3f& n) const;
     };
@@ -62,8 +63,8 @@ class UnoccludedLight {
     bool has_texture_ = false;
 };
 
-/// Returns the irradiance at x on a surface with normal n by the part above it of a convex polygon of unit radiance, in
-/// either vertex order.
+/// Returns the irradiance at x, on a surface with normal n, from a convex polygon of unit radiance. The part of the
+/// polygon below the horizon does not count. The vertices may have either order.
 float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f& n);
 
 }  // namespace interflect::detail

@@ -13,19 +13,19 @@ namespace interflect::detail {
 
 namespace {
 
-/// Contributions of shadow rays.
+/// Sums of the contributions of shadow rays.
 struct ShadowRaySums {
     Rgb sampled{0, 0, 0}, visible{0, 0, 0};
     int points = 0;
 };
 
-/// Visible share of the light at similar points of the other half, or else at all its points. 0 without any: a surface
-/// in the dark is black. Less if these points have far less unoccluded light than this one: a hidden bright source may
-/// be below their horizons.
-/// @param unoccluded  Of this point, without noise, which would bias the product with it; or 0.
+/// Returns the coefficient c of the control variate: the visible share of the light at similar points of the other half
+/// or, if these have no light, at all points of the other half. Without light, c is 0. The coefficient is reduced if
+/// the points have far less unoccluded light than this one, because a hidden bright source may be below their horizons.
+/// @param unoccluded  Exact unoccluded irradiance of this point; 0 if it has noise, which would bias the estimate.
 Rgb coefficient(const ShadowRaySums& similar, const ShadowRaySums& all, const Rgb& unoccluded) {
-    constexpr float least_share = 0.125f;  // below, the control variate adds more noise of hidden light than it removes
-    constexpr float most_over_mean = 32;   // of unoccluded light and the noise of its samples
+    constexpr float least_share = 0.125f;  // for smaller shares, the control variate adds more noise than it removes
+    constexpr float most_over_mean = 32;   // a larger ratio of unoccluded light to the mean sample reduces c
     Rgb c(0);
     for (int k = 0; k < 3; ++k) {
         const ShadowRaySums& sums = similar.sampled[k] > 0 ? similar : all;
@@ -41,7 +41,7 @@ Rgb coefficient(const ShadowRaySums& similar, const ShadowRaySums& all, const Rg
 
 const FirstPoints::Group& FirstPoints::group_of(const Path& path) {
     constexpr float same_cosine = 0.999f;
-    const std::uint32_t batch = path.half / 2;
+    const std::uint32_t batch = path.half_batch / 2;
     for (std::size_t i = groups_.size(); i > 0 && groups_[i - 1].batch == batch; --i)
         if (groups_[i - 1].patch == path.patch && groups_[i - 1].normal.dot(path.normal) >= same_cosine &&
             (groups_[i - 1].position - path.lookup).length() <= groups_[i - 1].radius)
@@ -74,7 +74,7 @@ FirstPoints::Lookup FirstPoints::add_indirect(const Path& path, PathLight& light
 }
 
 std::uint32_t FirstPoints::add(const Path& path, const LightSample& numbers) {
-    Point& point = points_.emplace_back(Point{path.half, path.normal, path.throughput});
+    Point& point = points_.emplace_back(Point{path.half_batch, path.normal, path.throughput});
     for (const SourceKind kind : source_kinds)
         if (plan_.scene.sources.useful_rays(kind, 1) > 0 && plan_.scene.unoccluded.has(kind))
             point.sources[static_cast<std::size_t>(kind)].unoccluded =
@@ -85,15 +85,15 @@ std::uint32_t FirstPoints::add(const Path& path, const LightSample& numbers) {
 void FirstPoints::add_direct(std::span<PathLight> halves) const {
     constexpr float similar_cosine = 0.9f;
     for (std::size_t first = 0, last = 0; first < points_.size(); first = last) {
-        const std::uint32_t batch = points_[first].half / 2;
-        while (last < points_.size() && points_[last].half / 2 == batch) ++last;
+        const std::uint32_t batch = points_[first].half_batch / 2;
+        while (last < points_.size() && points_[last].half_batch / 2 == batch) ++last;
         const auto points = std::span(points_).subspan(first, last - first);
         for (const Point& point : points)
             for (std::size_t k = 0; k < point.sources.size(); ++k) {
                 const Source& source = point.sources[k];
                 ShadowRaySums similar, all;
                 for (const Point& p : points) {
-                    if (p.half == point.half) continue;
+                    if (p.half_batch == point.half_batch) continue;
                     const Source& other = p.sources[k];
                     all.sampled += other.sampled;
                     all.visible += other.visible;
@@ -106,7 +106,7 @@ void FirstPoints::add_direct(std::span<PathLight> halves) const {
                 const bool is_exact = plan_.scene.unoccluded.is_exact(source_kinds[k]);
                 const Rgb c = coefficient(similar, all, is_exact ? source.unoccluded : Rgb(0));
                 const Rgb irradiance = c * source.unoccluded + (source.visible - c * source.sampled);
-                halves[point.half].direct += RgbD(point.throughput / std::numbers::pi_v<float> * irradiance);
+                halves[point.half_batch].direct += RgbD(point.throughput / std::numbers::pi_v<float> * irradiance);
             }
     }
 }

@@ -15,8 +15,8 @@ namespace interflect::detail {
 
 /// Light of the first points of paths in hybrid shading.
 ///
-/// Direct light of each kind of source: with the unoccluded irradiance U, contributions f / p of shadow rays and their
-/// visibility V, the estimate of a point is
+/// Direct light of each kind of source: let U be the unoccluded irradiance of a point, f / p the unoccluded
+/// contribution of a shadow ray (irradiance over density) and V its visibility. The estimate of the point is
 ///
 ///     E = c U + (sum of V f / p - c sum of f / p) / rays
 ///
@@ -25,23 +25,24 @@ namespace interflect::detail {
 /// points with similar normals (cross-fitting). Unbiased for any number of samples. If all or none are visible, c = V
 /// and only U has noise.
 ///
-/// Indirect light: a lookup of IndirectField for each group of points on a patch. Biased by the interpolation;
-/// PathLight::record_error contains noise and bias.
+/// Indirect light: each group of near points on a patch shares a lookup of IndirectField. It is biased by the
+/// interpolation. PathLight::record_error contains noise and bias.
 class FirstPoints {
   public:
     explicit FirstPoints(const PathPlan& plan) : plan_(plan) {}
 
-    /// Recorded indirect light of a group of points, if any.
+    /// Result of looking up the recorded indirect light of a group of points.
     struct Lookup {
         bool is_found = false;
-        std::uint32_t guide = none;  ///< Record whose guide sees the sky.
+        std::uint32_t guide = none;  ///< Record whose SkyGuide samples the visible sky; none: no sky is visible.
     };
     /// Adds the indirect light of the path's vertex to `light`. Near points of a batch with the same patch and normal
     /// share the lookup at the first of them, which may belong to the other half.
     Lookup add_indirect(const Path& path, PathLight& light);
 
-    /// Adds the path's vertex with the unoccluded light of the kinds that have it. Returns its index.
-    /// @param numbers  Place the strata of UnoccludedLight.
+    /// Adds the path's vertex and computes its unoccluded light, for the kinds of sources that have it. Returns the
+    /// index of the point.
+    /// @param numbers  Random numbers that place the strata of UnoccludedLight.
     std::uint32_t add(const Path& path, const LightSample& numbers);
     /// Adds the contribution of a shadow ray, f / (p rays), and later its visible part.
     void add_sampled(std::uint32_t point, SourceKind kind, const Rgb& irradiance) {
@@ -59,7 +60,7 @@ class FirstPoints {
         Rgb unoccluded{0, 0, 0}, sampled{0, 0, 0}, visible{0, 0, 0};  // irradiance
     };
     struct Point {
-        std::uint32_t half;
+        std::uint32_t half_batch;
         V3f normal;
         Rgb throughput;
         std::array<Source, source_kinds.size()> sources{};
@@ -67,7 +68,7 @@ class FirstPoints {
     struct Group {
         std::uint32_t batch = none, patch = none;
         V3f normal{0, 0, 0}, position{0, 0, 0};
-        float radius = 0;  // of the points that share the lookup [m]; records reach four pixels or more
+        float radius = 0;  // points within this distance share the lookup [m]; records reach at least four pixels
         Lookup lookup{};
         Rgb irradiance{0, 0, 0};
         float error = 0;  // standard error, mean channel

@@ -8,7 +8,7 @@ namespace interflect::detail {
 
 inline double mean_channel(const RgbD& c) { return channel_sum(c) / 3; }
 
-/// Mean over groups of paths.
+/// Running mean over groups of paths.
 struct GroupMean {
     RgbD mean{0, 0, 0};
     std::uint32_t groups = 0;

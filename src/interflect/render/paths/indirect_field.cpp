@@ -19,33 +19,36 @@ namespace interflect::detail {
 
 namespace {
 
-/// The difference between the halves of a group estimates the error of a record. 128 to 1,024 paths.
+/// A record gathers min_groups to max_groups groups of paths, which are 128 to 1,024 paths. The difference between the
+/// two halves of a group estimates the error of the record.
 constexpr std::size_t paths_per_group = 16, min_groups = 8, max_groups = 64;
 /// Paths of a record for each ray to a bright place. Two take 0.89 to 0.97 of the time of one in five scenes, with
 /// equal errors; four up to 1.05 times the error in blocks of 9 pixels.
 constexpr std::uint32_t record_paths_per_place = 2;
-/// Groups of a record: groups_per_deviation x sigma / E x reach / spacing, with the standard deviation sigma of a group
-/// and all irradiance E at the record, but at least min_share_of_mean of the mean E. This minimises the squared error
-/// of the picture per ray (Neyman allocation): a record affects all pixels in its reach. Bakes are seen from anywhere:
-/// there the geometric mean keeps a sunlit ground from hiding the noise of rooms, and no error exceeds max_baked_error.
+/// Number of groups of a record = groups_per_deviation x (sigma / E) x (reach / spacing). Here sigma is the standard
+/// deviation of a group and E the irradiance at the record, at least min_share_of_mean times the mean E. This number
+/// minimises the squared error of the picture per ray (Neyman allocation), because a record affects all pixels in its
+/// reach. Bakes use the geometric mean of E, so that a sunlit ground does not hide the noise of rooms, and limit the
+/// error of each record to max_baked_error.
 constexpr float groups_per_deviation = 8, min_share_of_mean = 0.25f;
-constexpr float max_baked_error = 0.1f;  // standard error of a record
-/// Reach of a record, relative to the harmonic mean length of its rays; limits in spacings of the points. With 0.35 and
-/// 512 paths, errors are 1.1 to 1.8 times as large.
+constexpr float max_baked_error = 0.1f;  // standard error of a record, relative to E
+/// Reach of a record, relative to the harmonic mean length of its rays, and its limits in spacings of the points. With
+/// 0.35 in place of 0.15, errors are 1.1 to 1.8 times as large, even with 512 paths per record.
 constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
-/// Difference between a record and the fit of its neighbours that halves their reach, over all irradiance; least reach
-/// after that.
+/// A record and its neighbours halve their reach if the record differs from the fit of its neighbours by more than this
+/// share of all irradiance. The halved reach is at least min_halved_spacings.
 constexpr float max_residual = 0.1f, min_halved_spacings = 2;
-/// Squared error of interpolation at a point over that at a record without its own value: errors fall at least in
-/// proportion to the distance, and a point is half as far from the next record as that record from its neighbours.
+/// Squared error of interpolation at a point, relative to the squared error at a record that is interpolated from its
+/// neighbours. Errors fall at least in proportion to the distance, and a point is half as far from the next record as
+/// that record is from its neighbours: (1/2)^2.
 constexpr float bias_of_points = 0.25f;
-/// Least weight of neighbours that predict a record.
+/// Minimum sum of the weights of neighbours for a fit that predicts a record.
 constexpr float min_neighbour_weight = 0.3f;
-/// Sum of record weights, at most 1 each, that covers a point.
+/// A point is covered if the weights of the records around it, at most 1 each, have at least this sum.
 constexpr float covering_weight = 1.5f;
 constexpr std::size_t points_of_first_round = 256;  // the total doubles with each round
 constexpr std::size_t points_per_task = 1024, records_per_task = 64, groups_per_task = 128;
-/// Groups that each rank gathers between two questions whether to stop: some seconds of one thread.
+/// Groups that each rank gathers before it checks again for a stop; they take one thread some seconds.
 constexpr std::size_t groups_of_rank = 1 << 16;
 
 V3f nearest_on(const Contact& contact, const V3f& x) {
@@ -65,16 +68,16 @@ std::vector<Boxed> make_tree(const std::vector<Contact>& contacts) {
     return tree;
 }
 
-/// Light of a group of paths of a record.
+/// Light that a group of paths has gathered for a record.
 struct GatheredGroup {
     std::uint32_t record = 0;
     bool is_done = false;
-    float inverse_length = 0, hits = 0;  // as in FirstHit, sums over the paths
+    float inverse_length = 0, hits = 0;  // sums of FirstHit::inverse_length and hits over the paths
     std::array<RgbD, 2> indirect{};      // sums over the paths of each half
-    std::int64_t rays = 0;               // of all groups of its task, in the first of them
+    std::int64_t rays = 0;               // the first group of a task counts the rays of all its groups
 };
 
-/// Traces the batches, which all ranks share. @param plan  Gathers at the records.
+/// Traces the batches in all ranks together. @param plan  Plan whose gauges are the records.
 std::vector<GatheredGroup> gather_groups(const PathPlan& plan, std::span<SampleBatch> batches, const CommonStop& stop) {
     std::vector<GatheredGroup> groups(batches.size());
     parallel_for_own_ranges(stop.ranks(), batches.size(), groups_per_task, [&](std::size_t begin, std::size_t end) {
@@ -155,7 +158,7 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
     std::vector<SampleBatch> batches;
     for (const std::uint32_t i : chosen)
         for (std::uint32_t group = 0; group < groups; ++group)
-            batches.push_back({.pixel = i, .first_point = (records_[i].gathered.groups + group) * half, .size = half});
+            batches.push_back({.pixel = i, .first_index = (records_[i].gathered.groups + group) * half, .size = half});
     PathStart start;
     start.gauges = gauges;
     const PathPlan gathering{.scene = plan.scene,
@@ -165,7 +168,8 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
                              .seen_sources = plan.seen_sources,
                              .known = plan.known,
                              .paths_per_place = record_paths_per_place};
-    // Irradiance in pictures of irradiance, else radiance of a white surface.
+    // Light of a path is irradiance in pictures of irradiance, else the radiance L of a white surface; irradiance = pi
+    // L.
     const double per_path = (plan.shows_irradiance() ? 1 : std::numbers::pi) / paths_per_group;
     std::vector<float> inverse_length(records_.size()), hits(records_.size());
     const std::size_t at_once = stop.ranks() ? groups_of_rank * stop.ranks()->count() : batches.size();
@@ -197,7 +201,7 @@ bool IndirectField::add_records(const PathPlan& plan, std::span<const SurfacePoi
     std::iota(added.begin(), added.end(), static_cast<std::uint32_t>(old_count));
     std::vector<float> lengths;  // harmonic means; 0: no ray hit a surface
     if (gather(plan, added, min_groups, stop, &lengths)) {
-        records_.resize(old_count);  // without a reach yet
+        records_.resize(old_count);  // the new records have no reach yet
         return true;
     }
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -261,7 +265,7 @@ std::optional<IndirectField::Residual> IndirectField::residual(std::uint32_t i) 
 }
 
 void IndirectField::shorten_reaches(std::size_t first_new) {
-    constexpr double certain = 4;  // variances: two standard errors
+    constexpr double certain = 4;  // number of variances, which is the square of two standard errors
     pool_variances();
     std::vector<std::uint8_t> fails(records_.size(), 0);
     parallel_for_ranges(records_.size() - first_new, records_per_task, [&](std::size_t begin, std::size_t end) {
@@ -315,7 +319,7 @@ void IndirectField::refine_noisy_records(const PathPlan& plan, const CommonStop&
         needed[i] = groups_per_deviation * deviation * r.reach / r.spacing;
         if (is_bake) needed[i] = std::max(needed[i], (deviation * deviation) / (max_baked_error * max_baked_error));
     }
-    // Each round doubles the groups of noisy records.
+    // Each round doubles the number of groups of the noisy records.
     for (std::size_t groups = min_groups; groups < max_groups; groups *= 2) {
         std::vector<std::uint32_t> noisy;
         for (std::uint32_t i = 0; i < records_.size(); ++i)
@@ -352,8 +356,9 @@ float IndirectField::distance_to_contact(const V3f& x, float max_distance) const
 }
 
 float IndirectField::Reach::relative_distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const {
-    constexpr float min_cosine = 0.97f;  // between normals at the record itself: 14 degrees
-    constexpr float height_factor = 10;  // distances along the normal count more: parallel surfaces differ
+    constexpr float min_cosine = 0.97f;  // between the normals, 14 degrees at most
+    constexpr float height_factor =
+        10;  // weight of distances along the normal, because light differs on parallel surfaces
     const float cosine = normal.dot(n);
     if (cosine <= min_cosine) return 1;
     const V3f d = position - x;
@@ -381,7 +386,7 @@ IndirectField::Fit IndirectField::fit_at(const V3f& x, const V3f& n, PatchIndex 
 }
 
 std::optional<IndirectField::Light> IndirectField::at(const V3f& x, const V3f& n, PatchIndex patch) const {
-    constexpr float min_weight = 0.01f;  // less: at the end of a single record's reach
+    constexpr float min_weight = 0.01f;  // smaller weights occur at the end of a single record's reach
     const Fit fit = fit_at(x, n, patch);
     if (!(fit.values.weight() > min_weight)) return std::nullopt;
     const float squared_error = std::max(0.0f, fit.values.variance()) + records_[fit.nearest].squared_bias;

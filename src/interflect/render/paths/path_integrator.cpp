@@ -17,13 +17,14 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// In hybrid shading, one of so many paths also searches light sources in a direction of its own, which is better than
-/// shadow rays close to a source.
+/// In hybrid shading, one in four paths also samples a direction at its first point, because close to a light source
+/// sampled directions have less variance than shadow rays.
 constexpr std::uint32_t paths_per_direction = 4;
-/// Lower values reduce variance but lengthen paths; 0.25 to 1 are equally efficient.
+/// Paths of a smaller throughput are subject to Russian roulette. Lower thresholds reduce variance but lengthen paths;
+/// values from 0.25 to 1 are equally efficient.
 constexpr float roulette_threshold = 0.5f;
 
-/// Returns a point of the gauge, off its patch.
+/// Returns a point of the gauge, lifted off its patch.
 V3f start_on(const TracedScene& s, const Gauge& gauge, const V3f& normal, float u, float v) {
     if (gauge.patch == none) return gauge.position + normal * gauge.offset;
     return s.lifted(gauge.patch, gauge.point_on(s.geometry[gauge.patch], u, v)) + normal * gauge.offset;
@@ -37,7 +38,7 @@ void PathIntegrator::trace(std::span<SampleBatch> batches) {
         for (const std::uint64_t half : {0, 1})
             keys_.push_back(mix(mix(plan_.options.seed, b.pixel), 2 * std::uint64_t{b.number} + half));
 
-    // Find the first points: seen by the camera, or on the gauges
+    // Find the first points: points visible to the camera, or points on the gauges
     if (plan_.start.camera) {
         start_at_camera(batches);
         arrive_at_surfaces();
@@ -64,12 +65,12 @@ void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
     Path path;
     for (std::uint32_t h = 0; h < keys_.size(); ++h) {
         const SampleBatch& batch = batches[h / 2];
-        fill_points(PointSet::sobol, keys_[h], batch.first_point, batch.size, points);
+        fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.size, points);
         const std::uint32_t column = batch.pixel % width, row = batch.pixel / width;
         const auto left = static_cast<float>(column), top = static_cast<float>(row);
-        path.half = h;
+        path.half_batch = h;
         for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
-            path.point = batch.first_point + i;
+            path.index_in_sequence = batch.first_index + i;
             paths_.add(path, plan_.start.camera->ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
         }
     }
@@ -82,12 +83,12 @@ void PathIntegrator::start_at_gauges(std::span<const SampleBatch> batches) {
     for (std::uint32_t h = 0; h < keys_.size(); ++h) {
         const SampleBatch& batch = batches[h / 2];
         const Gauge& gauge = plan_.start.gauges[batch.pixel];
-        fill_points(PointSet::sobol, keys_[h], batch.first_point, batch.size, points);
-        path.half = h;
+        fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.size, points);
+        path.half_batch = h;
         path.patch = gauge.patch;
         path.lookup = start_on(plan_.scene, gauge, gauge.normal, 0.5f, 0.5f);
         for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
-            path.point = batch.first_point + i;
+            path.index_in_sequence = batch.first_index + i;
             path.normal = gauge.normal_at(points.coordinate[0][i]);
             path.position = start_on(plan_.scene, gauge, path.normal, points.coordinate[1][i], points.coordinate[2][i]);
             paths_.add(path, {path.position, path.normal});
@@ -173,56 +174,60 @@ void PathIntegrator::light_vertices() {
 void PathIntegrator::light_first_point(Path& path) {
     const LightSources& sources = plan_.sources();
     const UnoccludedLight& unoccluded = plan_.scene.unoccluded;
-    // Look up recorded indirect light; the path goes on where no record may be used
-    const FirstPoints::Lookup lookup = first_points_.add_indirect(path, light_[path.half]);
+    // Look up recorded indirect light; the path continues if no record is in reach
+    const FirstPoints::Lookup lookup = first_points_.add_indirect(path, light_[path.half_batch]);
     if (!lookup.is_found) return sample_sources(path);
-    // Sample directions if they find light that shadow rays find badly
+    // Sample directions as well if they may find light that shadow rays sample badly
     const bool has_sky = sources.skies().can_sample() || channel_sum(sources.skies().uniform_radiance()) > 0;
     SourceSampling& sampling = path.sampling;
     sampling.is_last = true;
     sampling.guide = lookup.guide;
-    sampling.has_patches = !unoccluded.has(SourceKind::patches);
-    sampling.directions = sampling.has_patches || has_sky ? 1.0f / paths_per_direction : 0;
+    sampling.directions_find_patches = !unoccluded.has(SourceKind::patches);
+    sampling.directions = sampling.directions_find_patches || has_sky ? 1.0f / paths_per_direction : 0;
     // Compute unoccluded light; shadow rays estimate the occlusion
-    const LightSample numbers = unoccluded.samples_sources()
-                                    ? light_sample(keys_[path.half], vertex_, LightStream::unoccluded, path.point)
-                                    : LightSample{};
+    const LightSample numbers =
+        unoccluded.samples_sources()
+            ? light_sample(keys_[path.half_batch], vertex_, LightStream::unoccluded, path.index_in_sequence)
+            : LightSample{};
     const std::uint32_t point = first_points_.add(path, numbers);
     for (const SourceKind kind : source_kinds) {
         const std::uint32_t rays = sources.useful_rays(kind, sampling.rays);
         const std::uint32_t first_point = unoccluded.has(kind) ? point : none;
         for (std::uint32_t k = 0; k < rays; ++k)
-            connect_to_source(path, kind, path.point * rays + k, rays, first_point);
+            connect_to_source(path, kind, path.index_in_sequence * rays + k, rays, first_point);
     }
-    for (std::uint32_t k = 0; k < sampling.rays; ++k) connect_to_sky(path, path.point * sampling.rays + k);
+    for (std::uint32_t k = 0; k < sampling.rays; ++k) connect_to_sky(path, path.index_in_sequence * sampling.rays + k);
 }
 
 void PathIntegrator::sample_sources(Path& path) {
     if (vertex_ == 1 && !plan_.has_direct) return;
     for (const SourceKind kind : source_kinds) {
         const std::uint32_t rays = plan_.sources().useful_rays(kind, path.sampling.rays);
-        for (std::uint32_t k = 0; k < rays; ++k) connect_to_source(path, kind, path.point * rays + k, rays, none);
+        for (std::uint32_t k = 0; k < rays; ++k)
+            connect_to_source(path, kind, path.index_in_sequence * rays + k, rays, none);
     }
-    for (std::uint32_t k = 0; k < path.sampling.rays; ++k) connect_to_sky(path, path.point * path.sampling.rays + k);
+    for (std::uint32_t k = 0; k < path.sampling.rays; ++k)
+        connect_to_sky(path, path.index_in_sequence * path.sampling.rays + k);
 }
 
 void PathIntegrator::connect_to_source(const Path& path, SourceKind kind, std::uint32_t index, std::uint32_t rays,
                                        std::uint32_t first_point) {
     constexpr std::array streams{LightStream::patches, LightStream::lamps, LightStream::suns};
-    const LightSample numbers = light_sample(keys_[path.half], vertex_, streams[static_cast<std::size_t>(kind)], index);
+    const LightSample numbers =
+        light_sample(keys_[path.half_batch], vertex_, streams[static_cast<std::size_t>(kind)], index);
     const SourceSample source = plan_.sources().sample(kind, path.position, path.normal, numbers);
     if (!(channel_sum(source.irradiance) > 0)) return;
     const Rgb irradiance = source.irradiance / static_cast<float>(rays);
     shadow_rays_.add({path.position, source.direction}, source.patch, source.distance);
     if (first_point != none) {
         first_points_.add_sampled(first_point, kind, irradiance);
-        connections_.push_back({path.half, 1, irradiance, first_point, kind});
+        connections_.push_back({path.half_batch, 1, irradiance, first_point, kind});
         return;
     }
     float weight = 1;
-    if (source.density > 0 && path.sampling.has_patches)
+    if (source.density > 0 && path.sampling.directions_find_patches)
         weight = balance(static_cast<float>(rays) * source.density, direction_density(path, source.direction));
-    connections_.push_back({path.half, vertex_, path.throughput / pi * irradiance * weight});
+    connections_.push_back({path.half_batch, vertex_, path.throughput / pi * irradiance * weight});
 }
 
 void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
@@ -232,7 +237,7 @@ void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
     const bool takes_turns = guide != none && skies.can_sample();
     const bool is_guided = guide != none && (!takes_turns || index % 2 == 0);
     const LightSample numbers =
-        light_sample(keys_[path.half], vertex_, is_guided ? LightStream::guided_skies : LightStream::skies,
+        light_sample(keys_[path.half_batch], vertex_, is_guided ? LightStream::guided_skies : LightStream::skies,
                      takes_turns ? index / 2 : index);
     const V3f direction = is_guided
                               ? plan_.hybrid->guide->sample(guide, path.normal, numbers.choice, numbers.u, numbers.v)
@@ -242,7 +247,7 @@ void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
     const float weight = balance(density, direction_density(path, direction));
     shadow_rays_.add({path.position, direction}, no_patch, std::numeric_limits<float>::infinity());
     connections_.push_back(
-        {path.half, vertex_, path.throughput * sampled_sky(path, direction) * (cosine / pi / density * weight)});
+        {path.half_batch, vertex_, path.throughput * sampled_sky(path, direction) * (cosine / pi / density * weight)});
 }
 
 void PathIntegrator::add_light_of_shadow_rays() {
@@ -254,7 +259,7 @@ void PathIntegrator::add_light_of_shadow_rays() {
         if (c.first_point != none)
             first_points_.add_visible(c.first_point, c.kind, light);
         else
-            add(c.half, c.bounces, light);
+            add(c.half_batch, c.bounces, light);
     }
     connections_.clear();
 }
@@ -262,13 +267,14 @@ void PathIntegrator::add_light_of_shadow_rays() {
 void PathIntegrator::leave_surfaces() {
     std::size_t alive = 0;
     for (Path path : paths_.paths) {
-        const std::uint64_t key = keys_[path.half];
+        const std::uint64_t key = keys_[path.half_batch];
         if (path.sampling.is_last) {
-            // With a random start, each path has the same chance even if the number of paths is no multiple.
-            if (!(path.sampling.directions > 0) || (path.point + mix(key, 2)) % paths_per_direction != 0) continue;
+            // The random offset gives each path the same probability, whatever the number of paths.
+            if (!(path.sampling.directions > 0) || (path.index_in_sequence + mix(key, 2)) % paths_per_direction != 0)
+                continue;
             path.throughput /= path.sampling.directions;
         }
-        const VertexSample sample = vertex_sample(key, vertex_, path.point);
+        const VertexSample sample = vertex_sample(key, vertex_, path.index_in_sequence);
         const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
         if (sample.roulette >= survival) continue;
         path.throughput /= survival;
@@ -295,23 +301,23 @@ void PathIntegrator::store(std::span<SampleBatch> batches) const {
 
 void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
     const Skies& skies = plan_.sources().skies();
-    if (vertex_ == 1) return add(path.half, 0, path.throughput * skies.seen(direction));
+    if (vertex_ == 1) return add(path.half_batch, 0, path.throughput * skies.seen(direction));
     Rgb radiance = sampled_sky(path, direction);
     if (channel_sum(radiance) > 0)
         radiance *= balance(direction_density(path, direction), sky_density(path, direction));
     if (path.sampling.guide == none) radiance += skies.uniform_radiance();
-    add(path.half, vertex_ - 1, path.throughput * radiance);
+    add(path.half_batch, vertex_ - 1, path.throughput * radiance);
 }
 
 void PathIntegrator::add_emission(const Hit& hit, const V3f& direction, float distance, const Path& path,
                                   const Rgb& exitance) {
-    if (vertex_ > 1 && !path.sampling.has_patches) return;  // found by shadow rays alone
+    if (vertex_ > 1 && !path.sampling.directions_find_patches) return;  // shadow rays alone sample this light
     const Rgb radiance = path.throughput * exitance / pi;
-    if (vertex_ == 1) return add(path.half, 0, radiance);
+    if (vertex_ == 1) return add(path.half_batch, 0, radiance);
     const float density =
         plan_.sources().density(hit.patch, path.position, path.normal, direction, distance * distance);
     const float weight = balance(direction_density(path, direction), static_cast<float>(path.sampling.rays) * density);
-    add(path.half, vertex_ - 1, radiance * weight);
+    add(path.half_batch, vertex_ - 1, radiance * weight);
 }
 
 float PathIntegrator::direction_density(const Path& path, const V3f& direction) {
@@ -332,9 +338,9 @@ float PathIntegrator::sky_density(const Path& path, const V3f& direction) const 
     return skies.can_sample() ? rays * (of_sky + of_guide) / 2 : rays * of_guide;
 }
 
-void PathIntegrator::add(std::uint32_t half, std::uint32_t bounces, const Rgb& radiance) {
+void PathIntegrator::add(std::uint32_t half_batch, std::uint32_t bounces, const Rgb& radiance) {
     if (bounces == 1 && !plan_.has_direct) return;
-    PathLight& light = light_[half];
+    PathLight& light = light_[half_batch];
     (bounces == 0 ? light.emitted : bounces == 1 ? light.direct : light.indirect) += RgbD(radiance);
 }
 

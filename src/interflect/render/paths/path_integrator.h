@@ -12,14 +12,14 @@
 
 namespace interflect::detail {
 
-/// Light along paths from the camera or from gauges: the one estimator of pictures, texels, vertices, measuring points
-/// and probes (Kajiya 1986; final gathering, Reichert 1992; hybrid shading).
+/// Estimates the light along paths from the camera or from gauges. It is the only estimator of pictures, texels,
+/// vertices, measuring points and probes (path tracing, Kajiya 1986; final gathering, Reichert 1992; hybrid shading).
 ///
-/// At each vertex, shadow rays sample the light sources, and a cosine-distributed direction continues the path. Light
-/// sources that both can find are weighted by the balance heuristic (Veach and Guibas 1995). Unbiased unless the plan
-/// ends paths at known light (biased by the error of the solution) or looks up records (FirstPoints). Omits light
-/// of mirrors that the camera does not see, light behind more than 32 panes and mirrors, and paths that panes and
-/// mirrors weaken to a throughput below 0.001 (find_surfaces()).
+/// At each vertex, shadow rays sample the light sources, and a cosine-distributed direction continues the path. If both
+/// can find a light source, the balance heuristic weights them (Veach and Guibas 1995). The estimate is unbiased,
+/// unless the plan ends paths at known light (biased by the error of the solution) or looks up records (FirstPoints).
+/// It omits light reflected by mirrors that the camera does not see, light behind more than 32 panes and mirrors, and
+/// paths that panes and mirrors weaken to a throughput below 0.001 (find_surfaces()).
 class PathIntegrator {
   public:
     /// @param plan  Must outlive this.
@@ -30,17 +30,17 @@ class PathIntegrator {
     const RayCounts& counts() const { return counts_; }
 
   private:
-    /// Light that a shadow ray brings if it is free.
+    /// Light that a shadow ray contributes if it is unoccluded.
     struct Connection {
-        std::uint32_t half;
-        std::uint32_t bounces;  // reflections between emitter and camera
+        std::uint32_t half_batch;
+        std::uint32_t bounces;  // number of reflections between emitter and camera
         Rgb light;              // radiance at the camera or, for first points, irradiance
         std::uint32_t first_point = none;
         SourceKind kind = SourceKind::patches;
     };
 
     void start_at_camera(std::span<const SampleBatch> batches);
-    /// Gauges are white surfaces: paths start on them.
+    /// Starts paths on the gauges, which are white surfaces.
     void start_at_gauges(std::span<const SampleBatch> batches);
     void arrive_at_surfaces();
     bool arrive(const Hit& hit, const Ray& ray, Path& path);
@@ -52,7 +52,7 @@ class PathIntegrator {
     void add_sky(const Path& path, const V3f& direction);
     void add_emission(const Hit& hit, const V3f& direction, float distance, const Path& path, const Rgb& exitance);
     bool end_at_known_light(const Hit& hit, const V3f& x, const V3f& direction, float distance, const Path& path);
-    /// Share of the light reflected at the hit towards the path's last vertex that virtual lights do not represent.
+    /// Returns the share of the light from the hit to the path's last vertex that virtual lights do not represent.
     float share_beyond_bound(const Hit& hit, const V3f& direction, float distance, const Path& path) const;
 
     // Shadow rays from a vertex:
@@ -67,22 +67,22 @@ class PathIntegrator {
     void connect_to_virtual_lights(const Path& path);
     void add_light_of_shadow_rays();
 
-    /// Density of the path's own directions [1/sr], per path.
+    /// Returns the expected density of the directions that continue paths [1/sr].
     static float direction_density(const Path& path, const V3f& direction);
-    /// Radiance of the skies that shadow rays sample; uniform skies need a guide.
+    /// Returns the radiance of the skies that shadow rays sample. They sample uniform skies only by a guide.
     Rgb sampled_sky(const Path& path, const V3f& direction) const;
-    /// Density of all shadow rays of a path to the sky [1/sr].
+    /// Returns the sum of the densities of a path's shadow rays to the sky [1/sr].
     float sky_density(const Path& path, const V3f& direction) const;
-    void add(std::uint32_t half, std::uint32_t bounces, const Rgb& radiance);
+    void add(std::uint32_t half_batch, std::uint32_t bounces, const Rgb& radiance);
 
     const PathPlan& plan_;
-    std::uint32_t vertex_ = 1;          // surface that paths meet next or have met; the camera is 0
-    std::vector<std::uint64_t> keys_;   // of the half batches
-    std::vector<PathLight> light_;      // of the half batches
-    std::vector<FirstHit> first_hits_;  // of the samples
+    std::uint32_t vertex_ = 1;          // number of the current vertex of all paths; the camera is 0
+    std::vector<std::uint64_t> keys_;   // random key of each half batch
+    std::vector<PathLight> light_;      // light of each half batch
+    std::vector<FirstHit> first_hits_;  // first hit of each sample
     PathRays paths_;
     ShadowRays shadow_rays_;
-    std::vector<Connection> connections_;  // of the shadow rays
+    std::vector<Connection> connections_;  // one for each shadow ray
     FirstPoints first_points_;
     RayCounts counts_;
 };

@@ -1,4 +1,4 @@
-// Steps of PathIntegrator for reflected light that is known: elements of a solution, virtual lights.
+// Steps of PathIntegrator for known reflected light, from the elements of a solution or from virtual lights.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,9 +14,9 @@ namespace {
 /// Number of shadow rays to virtual lights at the first vertex.
 constexpr std::uint32_t virtual_shadow_rays = 4;
 
-/// Density of directions towards places of KnownLight [1/sr], per path; 0 at its back.
-/// @param of_place   [1/m^2]
-/// @param distance2  [m^2]
+/// Returns the expected density, per path, of rays towards a place of KnownLight [1/sr]; 0 from behind its patch.
+/// @param of_place   Density of KnownLight::sample() [1/m^2].
+/// @param distance2  Squared distance of the place [m^2].
 float density_towards(const PathPlan& plan, const KnownLight::Place& place, float of_place, const V3f& direction,
                       float distance2) {
     const float cosine = -plan.scene.geometry[place.patch].normal().dot(direction);
@@ -34,14 +34,14 @@ bool PathIntegrator::end_at_known_light(const Hit& hit, const V3f& x, const V3f&
     const float light_density =
         density_towards(plan_, place, plan_.known->density(place, path.position, path.normal), direction, distance2);
     const float weight = balance(path.normal.dot(direction) / std::numbers::pi_v<float>, light_density);
-    add(path.half, vertex_, path.throughput * plan_.known->reflected_radiance(place) * weight);
+    add(path.half_batch, vertex_, path.throughput * plan_.known->reflected_radiance(place) * weight);
     return true;
 }
 
 void PathIntegrator::connect_to_known_light(const Path& path) {
-    if (path.point % plan_.paths_per_place != 0) return;
-    const LightSample numbers =
-        light_sample(keys_[path.half], vertex_, LightStream::reflections, path.point / plan_.paths_per_place);
+    if (path.index_in_sequence % plan_.paths_per_place != 0) return;
+    const LightSample numbers = light_sample(keys_[path.half_batch], vertex_, LightStream::reflections,
+                                             path.index_in_sequence / plan_.paths_per_place);
     const auto [place, density] = plan_.known->sample(path.position, path.normal, numbers.choice, numbers.u, numbers.v);
     if (place.patch == none) return;
     const V3f to_light = plan_.scene.geometry[place.patch].point(place.parameters) - path.position;
@@ -54,7 +54,7 @@ void PathIntegrator::connect_to_known_light(const Path& path) {
     const float weight = balance(light_density, direction_density);
     shadow_rays_.add({path.position, direction}, place.patch, 0);
     connections_.push_back(
-        {path.half, vertex_ + 1,
+        {path.half_batch, vertex_ + 1,
          path.throughput * plan_.known->reflected_radiance(place) * (direction_density / light_density * weight)});
 }
 
@@ -63,7 +63,8 @@ void PathIntegrator::connect_to_virtual_lights(const Path& path) {
     const std::uint32_t count = vertex_ == 1 ? virtual_shadow_rays : 1;
     for (std::uint32_t k = 0; k < count; ++k) {
         const double uniform =
-            light_sample(keys_[path.half], vertex_, LightStream::reflections, path.point * count + k).choice;
+            light_sample(keys_[path.half_batch], vertex_, LightStream::reflections, path.index_in_sequence * count + k)
+                .choice;
         const LightTree::Choice choice = lights.choose(path.position, path.normal, uniform);
         if (choice.index == none) continue;
         const VirtualLights::Light& light = lights.lights()[choice.index];
@@ -78,7 +79,7 @@ void PathIntegrator::connect_to_virtual_lights(const Path& path) {
         const float per_flux = bounded / (std::numbers::pi_v<float> * std::numbers::pi_v<float> * choice.probability *
                                           static_cast<float>(count));
         shadow_rays_.add({path.position, direction}, light.patch, 0);
-        connections_.push_back({path.half, vertex_ + 1, path.throughput * light.flux * per_flux});
+        connections_.push_back({path.half_batch, vertex_ + 1, path.throughput * light.flux * per_flux});
     }
 }
 

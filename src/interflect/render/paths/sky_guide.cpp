@@ -15,10 +15,11 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t places_per_task = 256, place_groups_per_task = 1;
-constexpr int rounds = 8;                    // of rays through each cell
-constexpr float share_of_neighbours = 0.1f;  // cells and groups of records
+constexpr int rounds = 8;                    // each round traces one ray per cell
+constexpr float share_of_neighbours = 0.1f;  // weight of light in neighbouring cells and groups of records
 
-/// Changes little between similar normals. Its singularity is far from the normals of walls and floors.
+/// A tangent frame that changes little between similar normals. Its singularity is far from the normals of walls and
+/// floors.
 struct SteadyFrame {
     V3f s, t, n;
 
@@ -41,7 +42,8 @@ V3f direction_in(std::size_t cell, const SteadyFrame& frame, float u, float v) {
     return frame.direction((static_cast<float>(ring) + u) / side, (static_cast<float>(sector) + v) / side);
 }
 
-/// Returns the group of each record: those in reach of the same early record, as most early ones are far apart.
+/// Returns the group of each record. A group consists of the records in reach of the same early record; most early
+/// records are far apart.
 std::vector<std::uint32_t> groups_of(const IndirectField& field) {
     std::vector<std::uint32_t> groups(field.size());
     parallel_for_ranges(field.size(), places_per_task, [&](std::size_t begin, std::size_t end) {
@@ -61,7 +63,7 @@ std::vector<std::uint32_t> groups_of(const IndirectField& field) {
     return groups;
 }
 
-/// Returns the groups of records in whose reach the places are, without repetitions.
+/// Returns the groups of all records that have one of the places in their reach, without repetitions.
 std::vector<std::uint32_t> groups_near(const IndirectField& field, std::span<const std::uint32_t> groups,
                                        std::span<const SurfacePoint> places) {
     std::vector<std::uint32_t> near;

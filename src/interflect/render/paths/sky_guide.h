@@ -12,20 +12,22 @@
 
 namespace interflect::detail {
 
-/// Directions towards the visible sky around the records of an IndirectField, for sampling: chance rarely finds a small
-/// window (path guiding, Vorba et al. 2014). Records in reach of the same record share a density over cells of equal
-/// projected solid angle, learned from their rays. Immutable, thread-safe.
+/// Samples directions towards the visible sky around the records of an IndirectField, because cosine-distributed
+/// directions rarely find a small window (path guiding, Vorba et al. 2014). Records in reach of the same record share a
+/// density over cells of equal projected solid angle, learned from their rays. Immutable, thread-safe.
 class SkyGuide {
   public:
-    /// Empty without skies. If stopped, ends with fewer densities: within milliseconds; with several ranks it runs to
-    /// its end. Collective.
+    /// Learns the densities; the guide is empty if the scene has no sky. After a stop, it has fewer densities and ends
+    /// within milliseconds, except that with several ranks it runs to its end. Collective.
     SkyGuide(const TracedScene& scene, const IndirectField& field, std::uint64_t seed, const CommonStop& stop);
 
     /// Whether some ray from around a record has reached the sky.
     bool sees_sky(std::uint32_t record) const {
         return record < groups_.size() && densities_[groups_[record]].back() > 0;
     }
-    /// @param record  That sees the sky; also below. @param n  Normal at the place. Numbers in [0, 1).
+    /// Samples a direction. @param record  Must see the sky, also for density().
+    /// @param n           Normal at the place.
+    /// @param cell, u, v  Random numbers in [0, 1).
     V3f sample(std::uint32_t record, const V3f& n, double cell, float u, float v) const;
     /// Returns the density of sample() [1/sr].
     float density(std::uint32_t record, const V3f& n, const V3f& direction) const;
@@ -35,25 +37,26 @@ class SkyGuide {
   private:
     static constexpr std::size_t side = 16, cells = side * side;
     using Cells = std::array<float, cells>;
-    using Cumulative = std::array<std::uint16_t, cells>;  // the last is max_cumulative, or 0 without visible sky
+    using Cumulative = std::array<std::uint16_t, cells>;  // the last entry is max_cumulative, or 0 without visible sky
     static constexpr std::uint16_t max_cumulative = 0xFFFF;
 
-    /// Rays that some places have sent to the sky.
+    /// Rays from some places, and the light of the sky that they found.
     struct Search {
         const TracedScene& scene;
         std::span<const SurfacePoint> places;
         std::uint64_t key;
-        Cells rays{}, squares{};  // number of rays, and sum of squared luminances that they found
-        std::int64_t traced = 0;  // includes those behind panes
+        Cells rays{}, squares{};  // number of rays in each cell, and sum of the squared luminances that they found
+        std::int64_t traced = 0;  // number of traced rays, with those behind panes
 
         void by_chance();
         void guided_by(const Cumulative& density);
         void trace(std::span<const std::uint8_t, cells> cells_of_rays);
-        /// Root mean square of the light in each cell: densities in proportion to it have the least variance.
+        /// Returns the root mean square of the light in each cell. Densities in proportion to it have the least
+        /// variance.
         Cells light() const;
     };
     static Search search(const TracedScene& scene, std::span<const SurfacePoint> places, std::uint64_t key);
-    /// Extends a density to neighbouring cells.
+    /// Returns a density in proportion to the light, with a share of the light of neighbouring cells.
     static Cumulative density_of(const Cells& light);
     static std::size_t cell_at(const Cumulative& density, double x);
 

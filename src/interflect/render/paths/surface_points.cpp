@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t pixels_per_task = 2048;
 
-/// One camera ray per pixel.
+/// Returns one camera ray for each pixel from `begin` to `end`.
 PathRays camera_rays(const PathPlan& plan, std::size_t begin, std::size_t end) {
     const auto width = static_cast<std::size_t>(plan.options.width);
     PathRays rays;

@@ -15,7 +15,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Amortises the cost of a batch.
+/// Enough rays to amortise the cost of a batch.
 constexpr std::size_t rays_per_batch = 4096;
 constexpr std::size_t batches_per_report = 256;
 

@@ -15,7 +15,7 @@ namespace interflect::detail {
 
 struct CameraSampling {
     int width = 1, height = 1;  ///< [pixels]
-    int samples = 16;           ///< Per pixel, >= 1.
+    int samples = 16;           ///< Number of samples per pixel, >= 1.
     std::uint64_t seed = 1;
 };
 
@@ -24,7 +24,7 @@ struct PixelOffset {
     float x = 0, y = 0;
 };
 
-/// Ordered by sample.
+/// Rays and hits of a pixel, ordered by sample.
 struct PixelSamples {
     std::size_t pixel = 0;  ///< y * width + x.
     std::span<const Ray> rays;
@@ -39,16 +39,16 @@ void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const Camer
 
 inline void trace_pixels(const Camera& camera, const RayCaster& ray_caster, const CameraSampling& sampling,
                          const Monitor& monitor, const std::function<void(const PixelSamples&)>& visit) {
-    constexpr PixelOffset none_at_all;
-    trace_pixels(camera, ray_caster, sampling, {&none_at_all, 1}, monitor, visit);
+    constexpr PixelOffset no_offset;
+    trace_pixels(camera, ray_caster, sampling, {&no_offset, 1}, monitor, visit);
 }
 
-/// The ray must hit a patch.
+/// Returns the parameters of the hit. The ray must hit a patch.
 inline Parameters parameters_of_hit(const ElementForest& forest, const Ray& ray, const Hit& hit) {
     return forest.geometry(hit.patch).parameters_of(ray.origin + hit.distance * ray.direction);
 }
 
-/// Returns `none` if the ray escaped.
+/// Returns the leaf that the ray hit; `none` if the ray escaped.
 inline ElementIndex leaf_of_hit(const ElementForest& forest, const Ray& ray, const Hit& hit) {
     if (hit.patch == none || forest.is_leaf(hit.patch)) return hit.patch;
     return forest.leaf_at(hit.patch, parameters_of_hit(forest, ray, hit));

@@ -24,15 +24,16 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum number of independent parts of a pixel's samples: 7 degrees of freedom for its standard error.
+/// Minimum number of independent parts of a pixel's samples. Eight give its standard error 7 degrees of freedom.
 constexpr int min_parts = 8;
-/// Larger batches stratify little better; more batches improve the error estimate.
+/// Larger batches hardly improve the stratification, and fewer batches make the error estimate worse.
 constexpr int largest_half_batch = 64;
 bool is_limited(const PictureOptions& options) { return std::isfinite(options.time); }
 
-/// Draws in rounds. The first gives every pixel a few samples, from which the needs of its neighbours are estimated;
-/// the others multiply these needs by a factor that is common to the picture. So the number of samples of a pixel does
-/// not depend on their values, and its mean is unbiased (up to the influence of a pixel on the error of the picture).
+/// Draws in rounds. The first round gives every pixel a few samples. The number of samples that a pixel needs is
+/// estimated from those of its neighbours. Later rounds multiply these numbers by a factor that is common to the
+/// picture. So the number of samples of a pixel does not depend on their values, and its mean is unbiased (up to the
+/// influence of a pixel on the error of the picture).
 class PathPicture {
   public:
     /// @param time_left  As PictureOptions::time.
@@ -62,7 +63,7 @@ class PathPicture {
             const bool has_target = options_.until > 0;
             if (has_target && error_of_picture() <= options_.until) break;
             if (!has_target && !is_limited(options_)) break;
-            if (!more && factor >= most) break;  // all have the most samples, or no noise
+            if (!more && factor >= most) break;  // each pixel has the maximum number of samples, or no noise
         }
         if (!stopped()) report(1);
     }
@@ -98,11 +99,11 @@ class PathPicture {
     double error_of_picture() const { return relative_error(pixels_, options_); }
     static std::uint32_t samples_of_half(int samples) { return static_cast<std::uint32_t>((samples + 1) / 2); }
 
-    /// Samples of each half that every pixel gets before the numbers follow the noise.
+    /// Samples of each half in the first round, before the noise determines the number of samples.
     std::uint32_t first_samples() const { return is_limited(options_) && !plan_.hybrid ? 2 : 4; }
 
-    /// Samples of each half in a batch, a power of two. In hybrid shading, batches continue two sequences, and any
-    /// number will do.
+    /// Samples of each half in a batch. A power of two, except in hybrid shading, where all batches of a pixel continue
+    /// the same two sequences.
     std::uint32_t batch_size() const {
         if (plan_.hybrid) return std::min(samples_of_half(options_.samples), first_samples());
         const int parts = error_source() == ErrorSource::batches ? 2 * min_parts : min_parts;
@@ -111,7 +112,8 @@ class PathPicture {
         return is_limited(options_) ? std::min(size, first_samples()) : size;
     }
 
-    /// @param part  Returns the mean light, or that of a half.
+    /// @param part       Returns the light of a pixel: its mean, or the mean of one half.
+    /// @param variances  Variance of this light, relative to the variance of the mean.
     SampledLight light_of(const auto& part, double variances) const {
         SampledLight light{Image(options_.width, options_.height), Image(options_.width, options_.height),
                            std::vector<float>(pixels_.size()), std::vector<float>(pixels_.size())};
@@ -135,7 +137,7 @@ class PathPicture {
         layers.is_indirect_interpolated = plan_.hybrid != nullptr;
         layers.reflected = light_of([](const PixelStatistics& p) { return p.light(); }, 1);
         for (std::size_t h = 0; h < layers.halves.size(); ++h)
-            layers.halves[h] = light_of([h](const PixelStatistics& p) { return p.half(h); }, 2);
+            layers.halves[h] = light_of([h](const PixelStatistics& p) { return p.half_mean(h); }, 2);
         for (Image* image : {&layers.emitted, &layers.albedo, &layers.normal, &layers.position})
             *image = Image(options_.width, options_.height);
         layers.depth.resize(pixels_.size());
@@ -155,8 +157,8 @@ class PathPicture {
     bool stopped() const { return monitor_.stop && *monitor_.stop; }
     bool is_over() const { return stopped() || (has_all_pixels_ && time_left_.is_out_of_time()); }
 
-    /// Samples of each half by which pixels reach the target. Neighbouring measuring points are strangers: they get
-    /// equal numbers.
+    /// Returns the samples of each half that pixels need to reach the target. All measuring points get equal numbers,
+    /// because points that are neighbours in the list may be far apart.
     std::vector<double> needed_by_pixels() const {
         const bool is_uniform = !plan_.hybrid && !(options_.until > 0);
         if (is_uniform)
@@ -169,7 +171,8 @@ class PathPicture {
         return needed_samples(pixels_, options_, target);
     }
 
-    /// Rounds to powers of two, which stratify best, and to whole batches.
+    /// Returns the number of samples of each half that every pixel should have. Rounds up to powers of two, which
+    /// stratify best, and limits it to `most`.
     std::vector<std::uint32_t> wanted(const std::vector<double>& needed, double factor, std::uint32_t most) {
         std::vector<std::uint32_t> wanted(pixels_.size());
         foreseen_ = 0;
@@ -181,7 +184,8 @@ class PathPicture {
         return wanted;
     }
 
-    /// Traces until each half of every pixel has these samples. Returns whether there was anything to trace.
+    /// Traces until each half of every pixel has the wanted number of samples. Returns whether any samples were
+    /// missing.
     bool trace_round(const std::vector<std::uint32_t>& wanted) {
         std::vector<std::uint32_t> present(pixels_.size());
         for (std::size_t i = 0; i < pixels_.size(); ++i) present[i] = pixels_[i].samples_of_half();
@@ -207,7 +211,8 @@ class PathPicture {
         return has_traced;
     }
 
-    /// Each batch of a pixel is lit by another set of virtual lights, so their spread includes the error of the sets.
+    /// Each batch of a pixel uses another set of virtual lights, so the variance of the batches includes the error of
+    /// the sets.
     void renew_virtual_lights(std::vector<SampleBatch>& chunk) {
         if (!plan_.virtual_lights) return;
         trace_chunk(chunk);
@@ -216,8 +221,8 @@ class PathPicture {
 
     /// In hybrid shading, the batches of a pixel continue two sequences; otherwise they are independent.
     SampleBatch next_batch(std::uint32_t pixel, std::uint32_t present, std::uint32_t wanted) const {
-        constexpr std::uint32_t largest = 64;  // of each half, in hybrid shading
-        if (plan_.hybrid) return {.pixel = pixel, .first_point = present, .size = std::min(largest, wanted - present)};
+        constexpr std::uint32_t largest = 64;  // samples of each half in a batch of hybrid shading
+        if (plan_.hybrid) return {.pixel = pixel, .first_index = present, .size = std::min(largest, wanted - present)};
         return {.pixel = pixel, .number = present / batch_size(), .size = batch_size()};
     }
 
@@ -251,10 +256,10 @@ class PathPicture {
     SharedBatches& shared_;
     bool has_all_pixels_ = false;
     std::vector<PixelStatistics> pixels_;
-    double foreseen_ = 0;  // expected total of samples of each half
+    double foreseen_ = 0;  // expected number of samples of each half, summed over the pixels
     std::int64_t samples_done_ = 0;
-    double error_ = std::numeric_limits<double>::infinity();  // after samples_of_error_
-    std::int64_t samples_of_error_ = 0;
+    double error_ = std::numeric_limits<double>::infinity();  // last computed error of the picture
+    std::int64_t samples_of_error_ = 0;                       // samples_done_ when error_ was computed
     RayCounts counts_;
 };
 
@@ -315,7 +320,8 @@ Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const P
     time_left.limit_time(StopRequest::Clock::now(), options.time);
     const TracedScene traced(scene, ray_caster);
     const PathPlan plan{.scene = traced, .start = start, .options = options};
-    const double share_of_records = known && known->is_interpolated ? 0.25 : 0;  // of the time; roughly
+    // Rough share of the time, for progress reports.
+    const double share_of_records = known && known->is_interpolated ? 0.25 : 0;
     const PreparedLight prepared(plan, known, monitor_section(monitor, 0, share_of_records));
     const PathPlan with_records = prepared.plan();
     Rendering result = draw(with_records, monitor_section(monitor, share_of_records, 1, prepared.rays()), time_left);

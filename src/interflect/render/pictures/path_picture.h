@@ -10,7 +10,7 @@
 
 namespace interflect::detail {
 
-/// @throws InputError for inconsistent sizes or a forest of another scene.
+/// Returns the irradiance as known light. @throws InputError for inconsistent sizes or a forest of another scene.
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
 
 /// Peak memory of trace_picture() [bytes].
@@ -20,13 +20,14 @@ inline constexpr std::size_t path_bytes_per_pixel = 600;
 Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                                 const PictureOptions& options, const Monitor& monitor);
 
-/// @param start  Starts of options.width x options.height pixels.
-/// @param known  Null: Russian roulette ends paths.
-/// @return       Empty in other ranks than 0. Collective.
+/// Draws a picture by path tracing, final gathering or hybrid shading. Collective.
+/// @param start  Camera or gauges of options.width x options.height pixels.
+/// @param known  Light at which paths end; null: only Russian roulette ends them.
+/// @return       The picture in rank 0; empty in other ranks.
 Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                         const PictureOptions& options, const Monitor& monitor, const KnownIrradiance* known);
 
-/// @throws InputError as Camera() does.
+/// Returns the start of paths at the camera of a view. @throws InputError as Camera() does.
 PathStart start_at_camera(const View& view, const PictureOptions& options, const Imath::V3d& origin);
 
 }  // namespace interflect::detail

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Half the width of a pixel's neighbourhood, on both axes [pixels].
+/// A neighbourhood of radius r has (2 r + 1)^2 pixels.
 constexpr std::size_t neighbourhood_radius = 3, radius_of_lamps = 1;
 
 std::array<RgbD, 3> parts_of(const PathLight& light) {
@@ -22,7 +22,7 @@ double mean_reflected(const std::vector<PixelStatistics>& pixels) {
     return sum / static_cast<double>(pixels.size());
 }
 
-/// Sums over neighbours in a line.
+/// Sums each value over its neighbours in a line. Line j starts at index j line_step; its values are `step` apart.
 std::vector<double> sums_along(const std::vector<double>& values, std::size_t lines, std::size_t line_step,
                                std::size_t length, std::size_t step, std::size_t radius) {
     std::vector<double> sums(values.size());
@@ -42,8 +42,9 @@ std::vector<double> sums_around(std::vector<double> values, const PictureOptions
     return sums_along(values, width, 1, height, width, radius);
 }
 
-/// Light that the error of each pixel is relative to: the mean of its neighbours, at least that of the picture. The
-/// noisy value of the pixel itself would hide errors of rare light, and bias the number of its samples.
+/// Returns the light to which the error of each pixel is relative: the mean of its neighbours, at least the mean of the
+/// picture. The pixel itself is left out, because its noisy value would hide errors of rare light and bias the number
+/// of its samples.
 std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
     std::vector<double> light;
     light.reserve(pixels.size());
@@ -56,8 +57,8 @@ std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, cons
     return scale;
 }
 
-/// Mean emitted light of the pixel and the eight around it: small lamps are brighter than all around. The pixel alone
-/// would hide its own error.
+/// Returns the mean emitted light of each pixel and the eight around it, because the neighbourhood of a small lamp is
+/// much darker than the lamp. The mean is used because a single noisy pixel would hide its own error.
 std::vector<double> lamps_around(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
     std::vector<double> light;
     light.reserve(pixels.size());
@@ -86,7 +87,7 @@ void PixelStatistics::add(const SampleBatch& b, ErrorSource source) {
     for (std::size_t h = 0; h < 2; ++h) sums_[h] += b.halves[h];
     if (source == ErrorSource::halves) {
         spread_ = {};
-        for (std::size_t h = 0; h < 2; ++h) spread_.add(half(h));
+        for (std::size_t h = 0; h < 2; ++h) spread_.add(half_mean(h));
     } else if (source == ErrorSource::half_batches) {
         for (const PathLight& sum : b.halves) spread_.add(sum * (1.0 / b.size));
     } else {
@@ -97,8 +98,8 @@ void PixelStatistics::add(const SampleBatch& b, ErrorSource source) {
 }
 
 PathLight PixelStatistics::light() const {
-    PathLight sum = half(0);
-    sum += half(1);
+    PathLight sum = half_mean(0);
+    sum += half_mean(1);
     return sum * 0.5;
 }
 
@@ -143,7 +144,7 @@ double relative_error(const std::vector<PixelStatistics>& pixels, const PictureO
 std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target) {
     const std::vector<double> scale = error_scale(pixels, options);
-    std::vector<double> variance(pixels.size());  // of one sample of each half
+    std::vector<double> variance(pixels.size());  // variance of a mean of two samples, one of each half
     for (std::size_t i = 0; i < pixels.size(); ++i)
         variance[i] = mean_channel(pixels[i].sampling_error()) * pixels[i].samples_of_half();
     const std::vector<double> sums = sums_around(variance, options);

@@ -11,31 +11,31 @@
 
 namespace interflect::detail {
 
-/// Relative standard error in hybrid shading above which a pixel or texel gets more samples.
+/// In hybrid shading, a pixel or texel gets more samples if its relative standard error exceeds this.
 inline constexpr double hybrid_target = 0.06;
 
-/// Independent parts of a pixel's samples, whose spread gives its standard error.
+/// Independent parts of a pixel's samples. The variance between the parts gives its standard error.
 enum class ErrorSource {
-    batches,       ///< The halves of a batch share virtual lights.
-    half_batches,  ///< Each is a sequence of its own.
-    halves,        ///< Two halves, which all batches continue.
+    batches,       ///< Whole batches, because the halves of a batch share virtual lights.
+    half_batches,  ///< Half batches, each of which has its own sequence.
+    halves,        ///< The two halves of all samples, because all batches continue the same two sequences.
 };
 
 /// Means over the samples of a pixel or gauge.
 class PixelStatistics {
   public:
-    /// @param source  Equal for all batches.
+    /// Adds a batch. @param source  Must be equal for all batches.
     void add(const SampleBatch& batch, ErrorSource source);
 
     std::uint32_t samples_of_half() const { return samples_; }
     bool has_error() const { return spread_.parts > 1; }
-    PathLight half(std::size_t h) const { return sums_[h] * (samples_ > 0 ? 1.0 / samples_ : 0.0); }
+    PathLight half_mean(std::size_t h) const { return sums_[h] * (samples_ > 0 ? 1.0 / samples_ : 0.0); }
     PathLight light() const;
     RgbD mean() const;
     FirstHit first() const;
     double reflected() const { return mean_channel(light().direct + light().indirect); }
 
-    /// Squared standard errors per channel; they include the error of records.
+    /// Squared standard errors per channel, with the error of records.
     RgbD squared_error() const { return sampling_error(0) + record_error(); }
     RgbD direct_squared_error() const { return sampling_error(1); }
     RgbD indirect_squared_error() const { return sampling_error(2) + record_error(); }
@@ -52,8 +52,8 @@ class PixelStatistics {
     };
     RgbD record_error() const;
 
-    std::array<PathLight, 2> sums_{};  // over the samples
-    std::uint32_t samples_ = 0;        // of each half
+    std::array<PathLight, 2> sums_{};  // sum over the samples of each half
+    std::uint32_t samples_ = 0;        // number of samples of each half
     FirstHit first_sum_;
     Spread spread_;
 };
@@ -61,9 +61,9 @@ class PixelStatistics {
 /// Returns Rendering::relative_error.
 double relative_error(const std::vector<PixelStatistics>& pixels, const PictureOptions& options);
 
-/// Returns the number of samples of each half by which each pixel reaches the target, from the errors of its
-/// neighbours: a pixel's own samples would bias it.
-/// @param target  Of the relative standard error.
+/// Returns the number of samples of each half that each pixel needs to reach the target. It is estimated from the
+/// errors of the pixel's neighbours, because its own samples would bias it.
+/// @param target  Target of the relative standard error.
 std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target);
 

@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 struct Quantity {
     std::string name;               ///< ASCII, as is `unit`.
-    std::string unit;               ///< "lm/m^2"; empty for pure numbers.
+    std::string unit;               ///< Such as "lm/m^2"; empty for pure numbers.
     std::span<const float> values;  ///< One per element; only leaves are used.
     Spacing spacing = Spacing::logarithmic;
 

@@ -12,11 +12,11 @@
 
 namespace interflect::detail {
 
-/// Irradiance per element, at which paths end.
+/// Irradiance of every element of a solution. Paths end at it.
 struct KnownIrradiance {
     const ElementForest& forest;
     std::span<const Rgb> irradiance;
-    bool is_interpolated = false;  ///< Hybrid shading: an IndirectField replaces gathered directions.
+    bool is_interpolated = false;  ///< Whether an IndirectField replaces gathering (hybrid shading).
 };
 
 /// Returns the known irradiance, with sampling adapted to the points (sample_seen_light()).
@@ -24,18 +24,18 @@ KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, s
                        std::uint64_t seed);
 
 /// Light around the first points of a picture or of gauges, measured before paths are traced: the visibility of light
-/// sources; for final gathering and hybrid shading also the reflected light of a solution.
-/// Thread-safe after construction.
+/// sources and, for final gathering and hybrid shading, the reflected light of a solution. Thread-safe after
+/// construction.
 class PreparedLight {
   public:
-    /// @param plan     Without known light; must outlive this, as does `known`.
-    /// @param known    Null for path tracing and for direct light alone.
-    /// @param monitor  Collective.
+    /// Measures the light. Collective.
+    /// @param plan   Plan without known light. Must outlive this, like `known`.
+    /// @param known  Null for path tracing and for direct light alone.
     PreparedLight(const PathPlan& plan, const KnownIrradiance* known, const Monitor& monitor);
     PreparedLight(const PreparedLight&) = delete;
     PreparedLight& operator=(const PreparedLight&) = delete;
 
-    /// The plan with that light. Refers to this object.
+    /// Returns the plan with the measured light. It refers to this object.
     PathPlan plan() const;
     std::int64_t rays() const { return rays_; }
 
@@ -49,10 +49,14 @@ class PreparedLight {
     std::int64_t rays_ = 0;
 };
 
-/// Shadow rays to each kind of light source at first points. Squared error times time of gathering in maze, office-graz
-/// and office2 (16 samples, filtered; one ray: 1): two rays 0.75, 0.82, 0.66; four rays 0.63, 0.76, 0.51. Error of
-/// filtered pixels of hybrid shading in office-graz, 16 samples: one ray 8.8%, two 6.5%, four 5.5% in 1.1 and 1.4 times
-/// the time of one.
+/// Shadow rays to each kind of light source at first points. Measured with 16 filtered samples per pixel:
+///
+///     rays                                                               1      2      4
+///     squared error x time of gathering, relative: maze                  1      0.75   0.63
+///                                                  office-graz           1      0.82   0.76
+///                                                  office2               1      0.66   0.51
+///     error of a pixel of hybrid shading, office-graz                    8.8%   6.5%   5.5%
+///     time of hybrid shading, relative, office-graz                      1      1.1    1.4
 inline constexpr std::uint32_t first_shadow_rays = 4;
 
 }  // namespace interflect::detail

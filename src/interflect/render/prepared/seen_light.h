@@ -9,8 +9,9 @@
 
 namespace interflect::detail {
 
-/// Adapts light.sample() to the points, by rays from random ones: it returns elements brighter than twice the mean
-/// radiosity visible from them, and seldom an element of a hidden patch, such as a sunlit wall outdoors.
+/// Adapts light.sample() to the points by tracing rays from random points. Afterwards it samples only elements brighter
+/// than twice the mean radiosity visible from the points, and rarely an element of a hidden patch, such as a sunlit
+/// wall outdoors.
 void sample_seen_light(KnownLight& light, const TracedScene& scene, std::span<const SurfacePoint> points,
                        std::uint64_t seed);
 

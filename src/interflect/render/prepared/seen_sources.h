@@ -10,9 +10,10 @@
 
 namespace interflect::detail {
 
-/// Weighs the scene's light sources by their visibility from the points: a bright lamp in another room must not take
-/// the shadow rays of a dim one in this room. Returns nullopt if an eighth of the unoccluded light arrives.
-/// The light of a point remains unbiased, and no source has less than half of its shadow rays.
+/// Weights the scene's light sources by their visibility from the points, so that a bright lamp in another room does
+/// not take the shadow rays of a dim lamp in this room. Returns nullopt if no weights are needed, because at least an
+/// eighth of the unoccluded light arrives. The light of a point remains unbiased, and each source keeps at least half
+/// of its shadow rays.
 std::optional<LightSources> seen_sources(const TracedScene& scene, std::span<const SurfacePoint> points,
                                          std::uint64_t seed);
 

@@ -33,7 +33,7 @@ TestedSources send_test_rays(const TracedScene& scene, std::size_t sources, std:
     parallel_for_ranges(count, tests_per_task, [&](std::size_t begin, std::size_t end) {
         ShadowRays rays;
         RayCounts counts;
-        std::vector<std::size_t> number;  // of the rays, in `sent`
+        std::vector<std::size_t> number;  // index of each ray in `sent`
         for (std::size_t i = begin; i < end; ++i) {
             const TestRay test = sample(i);
             if (test.source == none) continue;

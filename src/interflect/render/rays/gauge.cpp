@@ -7,7 +7,7 @@
 namespace interflect::detail {
 
 V3f Gauge::point_on(const PatchGeometry& geometry, float u, float v) const {
-    constexpr float rounding = 1e-3f;  // of the sides
+    constexpr float rounding = 1e-3f;  // tolerance, relative to the sides
     const float most = rounding * spacing();
     const V3f along_u = (u - 0.5f) * side_u, along_v = (v - 0.5f) * side_v;
     Parameters p;

@@ -16,17 +16,17 @@ class KnownLight;
 class SkyGuide;
 class VirtualLights;
 
-/// Camera, or one gauge per pixel.
+/// Where paths start: at the camera, or at one gauge per pixel.
 struct PathStart {
     std::optional<Camera> camera;
-    float pixel_angle = 0;  ///< [rad]
+    float pixel_angle = 0;  ///< Angle of a pixel of a perspective camera [rad]; else 0.
     std::span<const Gauge> gauges{};
-    float pixel_size = 0;  ///< [m]
+    float pixel_size = 0;  ///< Size of a pixel of a parallel camera [m]; else 0.
 };
 
-/// Hybrid shading of first points: direct light by FirstPoints, indirect light from records.
+/// Data for the hybrid shading of first points: direct light by FirstPoints, indirect light from records.
 struct HybridLight {
-    const IndirectField* field = nullptr;  ///< null: direct light only.
+    const IndirectField* field = nullptr;  ///< Records of indirect light; null: direct light only.
     const SkyGuide* guide = nullptr;       ///< Directions to the sky around the records; may be null.
 };
 
@@ -44,12 +44,13 @@ struct PathPlan {
     const TracedScene& scene;
     const PathStart& start;
     const PictureOptions& options;
-    std::uint32_t first_rays = 1;                   ///< Shadow rays to each kind of source at first points.
-    bool has_direct = true;                         ///< Includes light that is reflected once.
-    const LightSources* seen_sources = nullptr;     ///< Weighted by visibility; null: the scene's.
-    const KnownLight* known = nullptr;              ///< Ends paths; null: only Russian roulette does.
-    std::uint32_t paths_per_place = 1;              ///< Paths for each ray to a place of KnownLight::sample().
-    const VirtualLights* virtual_lights = nullptr;  ///< Light every vertex; paths find the light beyond their bounds.
+    std::uint32_t first_rays = 1;                ///< Shadow rays to each kind of source at first points.
+    bool has_direct = true;                      ///< Whether light that is reflected once is included.
+    const LightSources* seen_sources = nullptr;  ///< Sources weighted by visibility; null: those of the scene.
+    const KnownLight* known = nullptr;           ///< Light at which paths end; null: only Russian roulette ends them.
+    std::uint32_t paths_per_place = 1;           ///< Number of paths for each ray to a place of KnownLight::sample().
+    const VirtualLights* virtual_lights =
+        nullptr;  ///< Lights for every vertex; paths find the light beyond their bounds.
     const HybridLight* hybrid = nullptr;
 
     const LightSources& sources() const { return seen_sources ? *seen_sources : scene.sources; }

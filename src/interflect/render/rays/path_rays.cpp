@@ -9,7 +9,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Weaker paths end here: facing mirrors that are also panes would double the number of paths at each reflection.
+/// Paths of smaller throughput end. Otherwise, opposite mirrors that are also panes would double the number of paths at
+/// each reflection.
 constexpr float min_throughput = 1e-3f;
 
 Rgb reflectance_of_hit(const TracedScene& scene, const Ray& ray, const Hit& hit) {
@@ -17,7 +18,7 @@ Rgb reflectance_of_hit(const TracedScene& scene, const Ray& ray, const Hit& hit)
     return reflectance_at(scene.scene, scene.scene.patches[hit.patch], p);
 }
 
-/// Adds the paths behind the surface that path i hit, and in it.
+/// Adds the path behind the pane that path i hit, and the path that the surface mirrors.
 void split(const TracedScene& scene, bool has_mirrors, PathRays& paths, std::size_t i) {
     const Hit hit = paths.hits[i];
     if (hit.patch == none) return;

@@ -11,29 +11,30 @@ namespace interflect::detail {
 
 /// How light sources were sampled at a path's last vertex. The weight of the next hit depends on it.
 struct SourceSampling {
-    std::uint32_t rays = 1;      ///< Most shadow rays to each kind of source, and to skies.
-    std::uint32_t guide = none;  ///< Record of the SkyGuide that samples the sky.
-    float directions = 1;        ///< Sampled directions per path; below 1 for a share of the paths.
-    bool is_last = false;        ///< The path only looks for light sources and ends at its next surface.
-    bool has_patches = true;     ///< Whether directions sample emitting patches.
+    std::uint32_t rays = 1;      ///< Maximum number of shadow rays to each kind of source, and to skies.
+    std::uint32_t guide = none;  ///< Record whose SkyGuide samples the sky; none: no guide.
+    float directions = 1;  ///< Expected number of sampled directions per path; below 1 if only some paths sample one.
+    bool is_last = false;  ///< Whether the path ends at its next surface, where it only collects emitted light.
+    bool directions_find_patches =
+        true;  ///< Whether paths add the emission of patches that they hit. Else shadow rays alone do.
 };
 
 struct Path {
     Rgb throughput{1, 1, 1};
-    std::uint32_t half = 0;    ///< Half batch.
-    std::uint32_t sample = 0;  ///< In all half batches.
-    std::uint32_t point = 0;   ///< In the sequence of its half.
-    // Last vertex:
-    V3f position{0, 0, 0};  ///< Lifted off the surface; or the camera [m].
-    V3f lookup{0, 0, 0};    ///< Where records are looked up: there, or the middle of the gauge [m].
-    V3f normal{0, 0, 0};    ///< For shading.
+    std::uint32_t half_batch = 0;         ///< Index of the half batch.
+    std::uint32_t sample = 0;             ///< Index of the camera or gauge sample among all half batches.
+    std::uint32_t index_in_sequence = 0;  ///< Index of the path in the sequence of its half.
+    // The last vertex of the path:
+    V3f position{0, 0, 0};  ///< Position, lifted off the surface, or that of the camera [m].
+    V3f lookup{0, 0, 0};    ///< Position at which records are looked up: `position`, or the middle of the gauge [m].
+    V3f normal{0, 0, 0};    ///< Shading normal.
     PatchIndex patch{};     ///< Patch of the vertex; none for the camera and gauges in space.
     SourceSampling sampling{};
-    float travelled = 0;         ///< From there to the ray's origin, through panes and by mirrors [m].
-    bool sets_first_hit = true;  ///< Seen through clear panes and pure mirrors only.
+    float travelled = 0;         ///< Distance from the vertex to the ray's origin, through panes and by mirrors [m].
+    bool sets_first_hit = true;  ///< Whether only clear panes and pure mirrors are in front of the first hit.
 };
 
-/// Paths with their rays and, after find_surfaces(), first hits.
+/// Paths with their current rays and, after find_surfaces(), the hits of these rays.
 struct PathRays {
     std::vector<Path> paths;
     std::vector<Ray> rays;
@@ -46,7 +47,8 @@ struct PathRays {
 };
 
 /// Finds the first surface of each path. Adds paths behind panes, and in mirrors for rays from the camera.
-/// @param splits  Whether paths are split at panes and mirrors.
+/// @param splits       Whether paths are split at panes and mirrors.
+/// @param has_mirrors  Whether mirrors reflect the paths; false for rays that do not start at the camera.
 void find_surfaces(const TracedScene& scene, bool splits, bool has_mirrors, PathRays& paths, RayCounts& counts);
 
 }  // namespace interflect::detail

@@ -9,14 +9,14 @@
 
 namespace interflect::detail {
 
-/// First hit of a camera ray, or a sum; 0 if the ray escapes.
+/// First hit of a camera ray, or a sum of such hits. All fields are 0 if the ray escapes.
 struct FirstHit {
     RgbD albedo{0, 0, 0};
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
-    double distance = 0;        ///< From the camera, through panes and by mirrors [m].
-    double level = 0;           ///< Level of the element, with a known solution.
-    double inverse_length = 0;  ///< 1 / length of the first ray from a gauge, 0 if it escapes [1/m].
-    double hits = 0;            ///< Number of these rays that hit a surface.
+    double distance = 0;        ///< Distance from the camera, through panes and by mirrors [m].
+    double level = 0;           ///< Level of subdivision of the element, if a solution is known.
+    double inverse_length = 0;  ///< 1 / length of the first ray from a gauge; 0 if it escapes [1/m].
+    double hits = 0;            ///< Number of first rays from gauges that hit a surface.
 
     FirstHit& operator+=(const FirstHit& o) {
         albedo += o.albedo;
@@ -30,11 +30,11 @@ struct FirstHit {
     }
 };
 
-/// Sums over paths, by the number of reflections.
+/// Sums of the light of paths, by the number of reflections.
 struct PathLight {
-    RgbD emitted{0, 0, 0};    ///< Not reflected.
-    RgbD direct{0, 0, 0};     ///< Reflected once.
-    RgbD indirect{0, 0, 0};   ///< Reflected more often.
+    RgbD emitted{0, 0, 0};    ///< Light that is not reflected.
+    RgbD direct{0, 0, 0};     ///< Light that is reflected once.
+    RgbD indirect{0, 0, 0};   ///< Light that is reflected more than once.
     double record_error = 0;  ///< Standard error of recorded light, mean channel; common to all paths.
 
     PathLight& operator+=(const PathLight& o) {
@@ -54,11 +54,11 @@ struct PathLight {
 struct SampleBatch {
     std::uint32_t pixel = 0;
     std::uint32_t number = 0;       ///< Batches of different numbers are independent.
-    std::uint32_t first_point = 0;  ///< In the sequence of each half.
-    std::uint32_t size = 1;         ///< Paths of each half.
+    std::uint32_t first_index = 0;  ///< Index of the first path in the sequence of each half.
+    std::uint32_t size = 1;         ///< Number of paths of each half.
     bool done = false;
     std::array<PathLight, 2> halves{};
-    FirstHit first{};  ///< Sum over all paths.
+    FirstHit first{};  ///< Sum of the first hits of all paths.
 };
 
 struct RayCounts {

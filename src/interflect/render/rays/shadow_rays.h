@@ -10,11 +10,11 @@
 
 namespace interflect::detail {
 
-/// Visibility of points along rays, in bulk, through panes.
+/// Tests the visibility of many points along rays. Panes transmit a share of the light.
 class ShadowRays {
   public:
-    /// @param patch     Target of the ray; none: a free ray up to `distance`.
-    /// @param distance  [m]
+    /// @param patch     Patch that the ray must hit; none: the ray must be free up to `distance`.
+    /// @param distance  Distance of the target, used without a patch [m].
     void add(const Ray& ray, PatchIndex patch, float distance);
     /// Traces all rays and removes them. Returns the transmittance of each; 0 if it is occluded.
     std::span<const Rgb> trace(const RayCaster& ray_caster, const Panes& panes, RayCounts& counts);
@@ -23,7 +23,8 @@ class ShadowRays {
     struct Target {
         PatchIndex patch;
         float distance;
-        /// Escaped rays match luminaires and skies: neither has a patch.
+        /// Returns whether the ray reaches its target. An escaped ray reaches luminaires and skies, which have no
+        /// patch.
         bool is_met(const Hit& hit) const { return hit.patch == patch || (patch == none && hit.distance > distance); }
     };
     void pass_panes(const RayCaster& ray_caster, const Panes& panes, RayCounts& counts);

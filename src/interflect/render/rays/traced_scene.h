@@ -28,15 +28,15 @@ struct TracedScene {
     const UnoccludedLight unoccluded;
     const Panes panes;
     const bool has_mirrors;
-    std::optional<SmoothNormals> smooth_normals;  ///< Of visible surfaces, in scenes with normals.
+    std::optional<SmoothNormals> smooth_normals;  ///< Shading normals, in scenes with normals.
 
-    /// Projects x onto its patch, against rounding, and lifts it off.
+    /// Projects x onto its patch, to remove rounding errors, and lifts it off by the offset of rays.
     V3f lifted(PatchIndex patch, const V3f& x) const {
         const PatchGeometry& g = geometry[patch];
         return g.point(g.parameters_of(x)) + g.normal() * ray_caster.ray_offset(patch);
     }
     const Material& material(PatchIndex patch) const { return scene.materials[scene.patches[patch].material]; }
-    /// Normal for shading at a point of a visible surface.
+    /// Returns the shading normal at a point of a visible surface.
     V3f shading_normal(PatchIndex patch, const V3f& x) const {
         const PatchGeometry& g = geometry[patch];
         return smooth_normals ? smooth_normals->at(g, patch, g.parameters_of(x)) : g.normal();

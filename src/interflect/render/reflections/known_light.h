@@ -12,21 +12,22 @@
 
 namespace interflect::detail {
 
-/// Reflected light of a solution, for final gathering. sample() omits dim elements: combine it with sampled directions.
-/// Constant methods are thread-safe.
+/// Reflected light of a solution, for final gathering. sample() omits dim elements, so combine it with sampled
+/// directions. Constant methods are thread-safe.
 class KnownLight {
   public:
-    /// sample() returns no place until sample_brighter_than().
-    /// @param irradiance  Per element; only leaves are used. Arguments must outlive this.
+    /// Until sample_brighter_than() is called, sample() returns no place. Arguments must outlive this.
+    /// @param irradiance  One value per element; only leaves are used.
     KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
                std::span<const Rgb> irradiance);
 
-    /// @param radiosity  Reflected [lm/m^2 or W/m^2], sum of channels.
+    /// Restricts sample() to elements of greater reflected radiosity.
+    /// @param radiosity  Sum of channels [lm/m^2 or W/m^2].
     void sample_brighter_than(float radiosity);
-    /// Multiplies sampling_powers(). @param weights  Above 0, per patch.
+    /// Multiplies sampling_powers() by a weight per patch, > 0.
     void weigh(std::span<const float> weights);
 
-    /// Emitted power of each patch, as sample() assumes, sum of channels [lm or W].
+    /// Returns the power of each patch to which sample() is proportional, sum of channels [lm or W].
     std::span<const float> sampling_powers() const { return power_; }
 
     struct Place {
@@ -48,17 +49,17 @@ class KnownLight {
 
     struct Sample {
         Place place;
-        float density = 0;  ///< [1/m^2]
+        float density = 0;  ///< Density of the sample [1/m^2].
     };
     /// Samples a bright point that may illuminate x on a surface with normal n; its patch may be `none`.
     /// @param choice  Selects the patch; in (0, 1).
     /// @param u, v    In [0, 1).
     Sample sample(const V3f& x, const V3f& n, double choice, float u, float v) const;
-    /// Density of sample() [1/m^2].
+    /// Returns the density of sample() [1/m^2].
     float density(const Place& place, const V3f& x, const V3f& n) const;
 
   private:
-    /// Density of sample() once it has chosen the patch [1/m^2].
+    /// Returns the density of sample() within the chosen patch [1/m^2].
     float density_in_patch(const Place& place) const {
         return excess_[place.leaf] / (excess_[place.patch] * forest_.area(place.leaf));
     }
@@ -67,8 +68,8 @@ class KnownLight {
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
     std::span<const Rgb> irradiance_;
-    std::vector<float> excess_;  // power above the limit, sum of channels [lm or W]
-    std::vector<float> power_;   // of patches
+    std::vector<float> excess_;  // power of each element above the limit of radiosity, sum of channels [lm or W]
+    std::vector<float> power_;   // weighted power of each patch above the limit [lm or W]
     LightTree tree_;
 };
 

@@ -16,11 +16,12 @@ namespace {
 
 constexpr std::size_t walks_per_task = 1 << 10;
 
-/// Bound of the geometric term times the area per light.
+/// The bound of the geometric term is this number times the density of lights [1/m^2].
 constexpr float bound_per_density = 1;
 
-/// Splits [0, total) into consecutive intervals of these sizes, and calls visit(i, n) with the number n of points
-/// uniform + 0, 1, 2, ... in interval i. Its expected value is the size (systematic sampling).
+/// Systematic sampling: splits [0, total) into `count` consecutive intervals of length size(i), and calls visit(i, n)
+/// with the number n of points of a grid of spacing 1, with the random offset `uniform`, in interval i. The expected
+/// value of n is size(i).
 void sample_systematically(std::size_t count, double uniform, const auto& size, const auto& visit) {
     double end = 0;
     std::int64_t before = static_cast<std::int64_t>(std::floor(uniform));
@@ -51,14 +52,16 @@ VirtualLights::VirtualLights(const Scene& scene, const RayCaster& ray_caster, st
     measure_bounds();
 }
 
-/// From the lights of a pilot set, which draws no picture: bounds that depend on the lights in use would bias them.
+/// Computes the bounds from a pilot set of lights that draws no picture, because bounds that depend on the lights in
+/// use would bias the picture.
 void VirtualLights::measure_bounds() {
     renew(none);
     const double area = std::accumulate(geometry_.begin(), geometry_.end(), 0.0,
                                         [](double sum, const PatchGeometry& g) { return sum + double{g.area()}; });
     std::vector<double> count(geometry_.size(), 0.0);
     for (const Light& light : lights_) ++count[light.patch];
-    // A patch has a light more, on the mean area per light: the density of small patches is close to the mean.
+    // Add one light and the mean area per light to each patch, so that the density of a small patch is close to the
+    // mean.
     const double mean_area = area / std::max<double>(1, static_cast<double>(lights_.size()));
     bounds_.resize(geometry_.size());
     for (std::size_t i = 0; i < bounds_.size(); ++i)
@@ -106,7 +109,7 @@ std::vector<VirtualLights::Walk> VirtualLights::start(std::uint64_t key) const {
 void VirtualLights::start_at_patch(PatchIndex patch, std::uint64_t key, std::span<Walk> walks) const {
     const PatchGeometry& geometry = geometry_[patch];
     const V3f n = geometry.normal();
-    // Power of the patch over the expected number of its walks.
+    // Power of the patch over the expected number of its walks, per exitance.
     const auto flux_per_exitance = static_cast<float>(double{geometry.area()} * total_power_ /
                                                       (source_power_[patch] * static_cast<double>(walks_)));
     PointBlock points;
@@ -122,7 +125,7 @@ void VirtualLights::start_at_patch(PatchIndex patch, std::uint64_t key, std::spa
         }
     }
     if (ray_caster_.uncovered_share(patch) == 1) return;
-    // Coincident faces cover a part, which does not emit.
+    // Coincident faces cover a part of the patch; walks from that part carry no flux.
     std::vector<Ray> down;
     for (const Walk& walk : walks) down.push_back({walk.ray.origin, -n});
     std::vector<Hit> hits(down.size());
@@ -165,8 +168,7 @@ std::vector<VirtualLights::Walk> VirtualLights::meet_surfaces(std::span<const Wa
 }
 
 /// Russian roulette by systematic sampling: a walk survives with the probability flux / starting flux, at most 1. The
-/// number of survivors hence varies by at most 1, like Keller's fraction of walks, and all lights have about equal
-/// flux.
+/// number of survivors differs from its expected value by less than 1, and all lights have about equal flux.
 std::vector<VirtualLights::Walk> VirtualLights::survivors(std::vector<Walk> walks, double uniform) const {
     const double starting_flux = total_power_ / static_cast<double>(walks_);
     const auto survival = [&](std::size_t i) {

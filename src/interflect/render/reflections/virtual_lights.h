@@ -16,19 +16,20 @@
 
 namespace interflect::detail {
 
-/// Point lights that stand for all reflected light of a scene (Keller 1997). Random walks from the light sources leave
-/// one at each diffuse reflection. The sum of flux / pi times f(position) over the lights has the expected value of the
-/// integral of f times the reflected radiance over all surfaces, for any f. Constant methods are thread-safe.
+/// Point lights that represent all reflected light of a scene (instant radiosity, Keller 1997). Random walks from the
+/// light sources leave a light at each diffuse reflection. For any function f, the expected value of the sum of (flux /
+/// pi) f(position) over the lights is the integral of f times the reflected radiance over all surfaces. Constant
+/// methods are thread-safe.
 class VirtualLights {
   public:
     struct Light {
         V3f position;  ///< On the patch, relative to the scene's origin [m].
         PatchIndex patch;
-        Rgb flux;  ///< Reflected, cosine-distributed [lm or W].
+        Rgb flux;  ///< Reflected flux, cosine-distributed [lm or W].
     };
 
-    /// No lights until renew(). Arguments must outlive this.
-    /// @param walks  From the light sources, for each set of lights; > 0.
+    /// Creates no lights; call renew(). Arguments must outlive this.
+    /// @param walks  Number of walks from the light sources for each set of lights, > 0.
     VirtualLights(const Scene& scene, const RayCaster& ray_caster, std::span<const PatchGeometry> geometry,
                   const Panes& panes, std::size_t walks, std::uint64_t seed);
 
@@ -40,15 +41,16 @@ class VirtualLights {
     /// Samples a light for point x on a surface with normal n, in proportion to its estimated unoccluded irradiance.
     LightTree::Choice choose(const V3f& x, const V3f& n, double uniform) const;
 
-    /// Bound of the geometric term cos cos / distance^2 for the lights of a patch, below which they represent all of
-    /// its reflected light (Kollig and Keller 2004 use a constant). Does not depend on the lights in use [1/m^2].
+    /// Returns the bound of the geometric term cos cos / distance^2 for the lights of a patch [1/m^2]. If the term is
+    /// below the bound, the lights represent all light from the patch (Kollig and Keller 2004 use a constant bound).
+    /// The bound does not depend on the lights in use.
     float bound(PatchIndex patch) const { return bounds_[patch]; }
 
   private:
     struct Walk {
         Ray ray;
         Rgb flux;            // [lm or W]
-        PatchIndex patch{};  // start of the ray; none after a pane
+        PatchIndex patch{};  // patch at the start of the ray; none behind a pane
     };
     std::vector<Walk> start(std::uint64_t key) const;
     void start_at_patch(PatchIndex patch, std::uint64_t key, std::span<Walk> walks) const;
@@ -67,9 +69,9 @@ class VirtualLights {
     std::size_t walks_;
     std::uint64_t seed_;
     Emission emission_;
-    std::vector<double> source_power_;  // of patches, then of the luminaires' parts; sum of channels [lm or W]
+    std::vector<double> source_power_;  // powers of patches, then of the luminaires' parts; sum of channels [lm or W]
     double total_power_ = 0;
-    std::vector<float> bounds_;  // of each patch [1/m^2]
+    std::vector<float> bounds_;  // bound() of each patch [1/m^2]
     std::vector<Light> lights_;
     std::optional<LightTree> tree_;
     std::int64_t rays_ = 0;

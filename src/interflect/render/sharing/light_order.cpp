@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Sent before the camera and the gauges.
+/// First part of a message; the camera and the gauges follow.
 struct Header {
     LightOrder order;
     bool has_camera = false;

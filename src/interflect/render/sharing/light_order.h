@@ -21,22 +21,22 @@ struct LightOrder {
     };
     Kind kind = Kind::end;
     PictureOptions options{};      ///< Options of the paths.
-    bool is_known = false;         ///< Paths end at the solution.
-    bool is_interpolated = false;  ///< As KnownIrradiance::is_interpolated.
-    std::size_t group = 0;         ///< Light group.
+    bool is_known = false;         ///< Whether paths end at the solution.
+    bool is_interpolated = false;  ///< Value of KnownIrradiance::is_interpolated.
+    std::size_t group = 0;         ///< Index of the light group, for Kind::group.
 };
 
-/// Sends an order to the other ranks. No effect for null and in other ranks than 0.
-/// @param start  Of the paths.
+/// Sends an order to the other ranks. Does nothing if `ranks` is null or this is not rank 0.
+/// @param start  Start of the paths.
 void give_order(Ranks* ranks, LightOrder order, const PathStart& start = {});
 
 struct ReceivedOrder {
     LightOrder order;
     PathStart start;            // refers to `gauges`
-    std::vector<Gauge> gauges;  // of measuring points, texels or vertices
+    std::vector<Gauge> gauges;  // gauges at measuring points, texels or vertices
 };
 
-/// Waits for an order, in other ranks than 0.
+/// Waits for an order of rank 0. Called in the other ranks.
 ReceivedOrder receive_order(Ranks& ranks);
 
 }  // namespace interflect::detail

@@ -20,7 +20,7 @@ RayCounts SharedBatches::trace(std::span<SampleBatch> batches, const std::functi
         broadcast(*ranks_, std::span(&chunk, 1));
         std::vector<Key> keys;
         keys.reserve(batches.size());
-        for (const SampleBatch& b : batches) keys.push_back({b.pixel, b.number, b.first_point, b.size});
+        for (const SampleBatch& b : batches) keys.push_back({b.pixel, b.number, b.first_index, b.size});
         broadcast(*ranks_, std::span(keys));
     }
     return trace_own(batches, is_over);
@@ -51,14 +51,14 @@ void SharedBatches::help(const StopRequest& time_left) {
         if (chunk.light_set != light_set_) virtual_lights_->renew(light_set_ = chunk.light_set);
         std::vector<SampleBatch> batches;
         batches.reserve(keys.size());
-        for (const Key& k : keys) batches.push_back({k.pixel, k.number, k.first_point, k.size});
+        for (const Key& k : keys) batches.push_back({k.pixel, k.number, k.first_index, k.size});
         trace_own(batches, [&] { return chunk.is_limited && time_left.is_out_of_time(); });
     }
     ranks_->gather({});
 }
 
 RayCounts SharedBatches::trace_own(std::span<SampleBatch> batches, const std::function<bool()>& is_over) {
-    // Paths that are traced together, which amortises the cost of a call.
+    // Number of paths that are traced together, to amortise the cost of a call.
     constexpr std::size_t paths_per_tile = 2048;
     std::size_t largest = 1;
     for (const SampleBatch& b : batches) largest = std::max<std::size_t>(largest, 2 * std::size_t{b.size});

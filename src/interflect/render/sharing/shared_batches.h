@@ -13,42 +13,43 @@
 
 namespace interflect::detail {
 
-/// Batches of the paths of a picture, traced by all ranks in tiles. Rank 0 chooses the batches and alone receives their
-/// light; the others help(). So time, stops and adaptive sampling are decisions of rank 0, and only it stores the
-/// picture. A tile has the same batches for any number of ranks.
+/// Traces the batches of a picture in all ranks. Rank 0 chooses the batches and receives their light; the other ranks
+/// call help(). So rank 0 alone handles time limits, stops and adaptive sampling, and only rank 0 stores the picture.
+/// Batches are traced in tiles. A tile has the same batches for any number of ranks.
 class SharedBatches {
   public:
-    /// @param virtual_lights  Of `plan`; may be null. @param ranks  Null: this process alone.
+    /// @param virtual_lights  The virtual lights of `plan`; may be null.
+    /// @param ranks           Null: this process alone traces all batches.
     SharedBatches(const PathPlan& plan, VirtualLights* virtual_lights, Ranks* ranks)
         : plan_(plan), virtual_lights_(virtual_lights), ranks_(ranks) {}
 
-    /// Paths of one trace(), enough to occupy all processes.
+    /// Returns the number of paths to pass to one call of trace(), enough to occupy all processes.
     static std::size_t paths_at_once(const Ranks* ranks);
     bool is_helper() const { return ranks_ && ranks_->rank() != 0; }
 
-    // Rank 0:
+    // For rank 0:
 
-    /// Sets SampleBatch::done.
-    /// @param is_over     Omits the remaining tiles of this process; called once per tile.
-    /// @param is_limited  The other ranks omit tiles after PictureOptions::time.
+    /// Traces the batches and sets SampleBatch::done.
+    /// @param is_over     If it returns true, the remaining tiles of this process are omitted. Called once per tile.
+    /// @param is_limited  Whether the other ranks omit tiles after PictureOptions::time.
     RayCounts trace(std::span<SampleBatch> batches, const std::function<bool()>& is_over, bool is_limited);
-    /// Later batches are lit by another set of virtual lights. Returns its number of rays; 0 without virtual lights.
+    /// Replaces the virtual lights for later batches. Returns the number of rays for this; 0 without virtual lights.
     std::int64_t renew_virtual_lights();
-    /// Ends help() and waits until all ranks are there: a picture without the light of one is not usable.
+    /// Ends help() in the other ranks, and waits until all of them have finished.
     void end();
 
-    // Other ranks:
+    // For the other ranks:
 
-    /// Traces the tiles of this rank until end(). @param time_left  As PictureOptions::time.
+    /// Traces the tiles of this rank until rank 0 calls end(). @param time_left  Limit given by PictureOptions::time.
     void help(const StopRequest& time_left);
 
   private:
     struct Key {
-        std::uint32_t pixel, number, first_point, size;
+        std::uint32_t pixel, number, first_index, size;
     };
     struct Chunk {
-        std::size_t batches = 0;         // 0: the end
-        std::uint32_t light_set = none;  // of virtual lights
+        std::size_t batches = 0;         // number of batches; 0: the picture is finished
+        std::uint32_t light_set = none;  // number of the set of virtual lights
         bool is_limited = false;
     };
     RayCounts trace_own(std::span<SampleBatch> batches, const std::function<bool()>& is_over);

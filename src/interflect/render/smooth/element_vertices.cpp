@@ -18,13 +18,13 @@ using Corners = std::array<std::uint32_t, 4>;
 
 std::uint32_t corner_count(const Corners& corners) { return corners[3] == none ? 3 : 4; }
 
-/// Corners of each child as points of the parent: corners 0 to 3, the midpoint 4 + c of the edge that starts at corner
-/// c, the centre 8.
+/// Corners of each child, as points of the parent: 0 to 3 are its corners, 4 + c is the midpoint of the edge that
+/// starts at corner c, and 8 is its centre.
 using Places = std::array<std::array<std::uint32_t, 4>, 4>;
 constexpr Places quadrilateral_children{{{0, 4, 8, 7}, {4, 1, 5, 8}, {7, 8, 6, 3}, {8, 5, 2, 6}}};
 constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};
 
-/// Several times faster than std::unordered_map here.
+/// Hash table with open addressing. It is several times faster here than std::unordered_map.
 class KeyTable {
   public:
     explicit KeyTable(std::size_t most) : entries_(std::bit_ceil(most + most / 2 + 1)) {}
@@ -58,7 +58,8 @@ class VertexBuilder {
         : forest_(forest),
           surfaces_(find_smooth_surfaces(scene, options)),
           corners_(forest.size()),
-          middles_(forest.size() - forest.patch_count()) {  // a parent has at most four midpoints, and four children
+          // A parent has at most four midpoints, and four children, so there are at most as many midpoints as children.
+          middles_(forest.size() - forest.patch_count()) {
         edges_of_.assign(surfaces_.corners.count, no_edge);
         for (PatchIndex p{0}; p < forest.patch_count(); ++p)
             for (std::uint32_t c = 0; c < 4; ++c) corners_[p][c] = surfaces_.corners.group[CornerIndex(p, c)];
@@ -85,14 +86,15 @@ class VertexBuilder {
 
   private:
     using Ends = std::array<std::uint32_t, 2>;
-    static constexpr Ends no_edge{none, none};  // for patch corners and centres
+    static constexpr Ends no_edge{none, none};  // corners of patches and centres of elements are on no halved edge
 
     Ends ends_of_edge(ElementIndex e, std::uint32_t c) const {
         const Corners& corners = corners_[e];
         const std::uint32_t a = corners[c], b = corners[(c + 1) % corner_count(corners)];
         return {std::min(a, b), std::max(a, b)};
     }
-    /// Patch edges use their group: edges at a crease can have the same ends, but not the same midpoint.
+    /// Edges of patches use their group as key, because two edges at a crease can have the same ends but different
+    /// midpoints.
     std::uint64_t edge_key(ElementIndex e, std::uint32_t c) const {
         const auto key = [](std::uint64_t low, std::uint64_t high) { return high << 32 | low; };
         if (e < forest_.patch_count()) return key(surfaces_.edges.group[4 * e + c], surfaces_.edges.group[4 * e + c]);
@@ -126,22 +128,23 @@ class VertexBuilder {
         for (std::uint32_t c = 0; c < corner_count(corners_[leaf]); ++c)
             if (const std::uint32_t middle = middles_.find(edge_key(leaf, c)); middle != none) hangs[middle] = true;
     }
-    /// Requires final values of `hangs` before v.
+    /// Requires the final values of `hangs` for all vertices before v.
     bool lies_on_half_of_a_leafs_edge(std::uint32_t v, const std::vector<bool>& hangs) const {
         const auto [end, later_end] = edges_of_[v];
         return later_end != none && hangs[later_end] &&
                (edges_of_[later_end][0] == end || edges_of_[later_end][1] == end);
     }
 
-    /// Leaf edge on an edge of its patch.
+    /// Edge of a leaf that lies on an edge of its patch.
     struct LeafEdge {
         std::array<std::uint32_t, 2> vertices;
-        std::array<float, 2> at;  // along the patch edge, ascending
+        std::array<float, 2> at;  // positions along the patch edge in [0, 1], ascending
 
         float size() const { return at[1] - at[0]; }
     };
 
-    /// Collects edges that overlap [from, to] of the patch's edge. `e` covers [low, high].
+    /// Collects the leaf edges that overlap the interval [from, to] of the patch's edge. Edge c of element e covers
+    /// [low, high].
     void collect_leaf_edges(ElementIndex e, std::uint32_t c, float low, float high, float from, float to,
                             std::vector<LeafEdge>& found) const {
         if (high <= from || low >= to) return;
@@ -161,7 +164,7 @@ class VertexBuilder {
 
     struct SeamSide {
         std::vector<LeafEdge> leaves;
-        float length;  // of the whole patch edge [m]
+        float length;  // length of the whole patch edge [m]
     };
     using SeamSides = std::array<SeamSide, 2>;
 
@@ -184,7 +187,7 @@ class VertexBuilder {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
         float fraction, angle;
-        float edge_length;  // from ends[0] to ends[1] [m]
+        float edge_length;  // distance from ends[0] to ends[1] [m]
     };
 
     static void add_seam_vertices(const SmoothSurfaces::Seam& seam, const SeamSides& sides, std::size_t k,
@@ -211,7 +214,7 @@ class VertexBuilder {
     void find_vertices_on_seams(std::vector<ElementVertices::Hanging>& hanging,
                                 std::vector<ElementVertices::Coupling>& couplings) const {
         std::vector<SeamVertex> found;
-        std::unordered_map<std::uint32_t, float> longest_own;  // [m]
+        std::unordered_map<std::uint32_t, float> longest_own;  // longest leaf edge at each vertex [m]
         for (const SmoothSurfaces::Seam& seam : surfaces_.seams) {
             const SeamSides sides = sides_of(seam);
             for (std::size_t k = 0; k < 2; ++k) {
@@ -223,7 +226,7 @@ class VertexBuilder {
                     }
             }
         }
-        // The ends of an edge can hang only on longer edges, so they precede the vertices on it.
+        // The ends of an edge can hang only on longer edges. Sorted by length, they precede the vertices on the edge.
         std::stable_sort(found.begin(), found.end(),
                          [](const SeamVertex& a, const SeamVertex& b) { return a.edge_length > b.edge_length; });
         constexpr float clearly_longer = 1.01f;
@@ -231,7 +234,7 @@ class VertexBuilder {
         for (const SeamVertex& v : found)
             if (v.edge_length > clearly_longer * longest_own[v.vertex] && hangs.insert(v.vertex).second)
                 hanging.push_back({v.vertex, v.ends, v.fraction});
-        std::unordered_map<std::uint32_t, float> angle;  // of all couplings of a vertex
+        std::unordered_map<std::uint32_t, float> angle;  // sum of the angles of all couplings of a vertex
         for (const SeamVertex& v : found) angle[v.vertex] += v.angle;
         for (const SeamVertex& v : found)
             if (!hangs.contains(v.vertex))
@@ -241,7 +244,7 @@ class VertexBuilder {
     const ElementForest& forest_;
     const SmoothSurfaces surfaces_;
     std::vector<Corners> corners_;
-    std::vector<Ends> edges_of_;  // [vertex] ends of the halved edge, or no_edge
+    std::vector<Ends> edges_of_;  // for each vertex, the ends of the edge that it halves, or no_edge
     KeyTable middles_;
 };
 

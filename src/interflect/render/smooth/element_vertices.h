@@ -12,22 +12,22 @@
 
 namespace interflect::detail {
 
-/// Shared by the elements at a point of one smooth surface.
+/// Vertices of the elements. Elements that meet at a point of a smooth surface share its vertex.
 class ElementVertices {
   public:
-    /// T-vertex inside an edge of a larger leaf; interpolated linearly.
+    /// T-vertex inside an edge of a larger leaf. Its value is interpolated linearly between the ends of the edge.
     struct Hanging {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
-        float fraction = 0.5f;  // 0 at ends[0], 1 at ends[1]
+        float fraction = 0.5f;  // position on the edge: 0 at ends[0], 1 at ends[1]
     };
-    /// Vertex on a seam (SmoothSurfaces::Seam), inside a leaf edge of the other side not clearly longer than its own.
-    /// Averages both sides.
+    /// Vertex on a seam (SmoothSurfaces::Seam), inside a leaf edge of the other side that is not clearly longer than
+    /// its own leaf edges. Its value is averaged with the value of the other side.
     struct Coupling {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
         float fraction;
-        float share;  // of the other side's value; all couplings of a vertex have half
+        float share;  // weight of the other side's value; the shares of a vertex sum to 1/2
     };
 
     /// @throws InputError for a forest of another scene.
@@ -39,7 +39,7 @@ class ElementVertices {
     const std::array<std::uint32_t, 4>& corners(ElementIndex e) const { return corners_[e]; }
     /// The ends of an edge precede the vertices that hang on it.
     const std::vector<Hanging>& hanging() const { return hanging_; }
-    /// Couplings interpolate the values before any coupling.
+    /// All couplings are applied at once: they interpolate the uncoupled values.
     const std::vector<Coupling>& couplings() const { return couplings_; }
     const SmoothNormals& normals() const { return normals_; }
 

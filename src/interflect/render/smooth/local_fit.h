@@ -9,7 +9,7 @@ namespace interflect::detail {
 /// Weighted least-squares fit of a linear function to values around the origin of a plane.
 class LocalFit {
   public:
-    /// @param variance  Of the mean channel of the value.
+    /// Adds a value at (s, t) with weight w. @param variance  Variance of the mean channel of the value.
     void add(float w, float s, float t, const Rgb& value, float variance = 0) {
         for (int c = 0; c < 3; ++c) {
             least_[c] = weight_ > 0 ? std::min(least_[c], value[c]) : value[c];
@@ -34,12 +34,12 @@ class LocalFit {
     }
     float weight() const { return weight_; }
 
-    /// Coefficients of the values in the fit's value at the origin: w (constant + by_s s + by_t t).
+    /// The fit's value at the origin is the sum over the values of w (constant + by_s s + by_t t) value.
     struct Coefficients {
         float constant, by_s, by_t;
     };
     Coefficients coefficients() const {
-        // Bounds the slope of few or nearly collinear points.
+        // The ridge bounds the slope if there are few or nearly collinear points.
         constexpr float ridge_share = 0.1f;
         const float ridge = ridge_share * (ss_ + tt_), a = ss_ + ridge, d = tt_ + ridge;
         const float determinant = a * d - st_ * st_;
@@ -67,7 +67,7 @@ class LocalFit {
     float weight_ = 0, s_ = 0, t_ = 0, ss_ = 0, st_ = 0, tt_ = 0;  // weighted sums
     Rgb sum_{0, 0, 0}, sum_s_{0, 0, 0}, sum_t_{0, 0, 0};
     Rgb least_{0, 0, 0}, most_{0, 0, 0};
-    // Sums of w^2 times the variances.
+    // Sums of w^2 times the variance, also multiplied by the coordinates in the name.
     float variance_ = 0, variance_s_ = 0, variance_t_ = 0, variance_ss_ = 0, variance_st_ = 0, variance_tt_ = 0;
 };
 

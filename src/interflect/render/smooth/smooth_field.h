@@ -10,15 +10,16 @@
 
 namespace interflect::detail {
 
-/// Continuous on each smooth surface: linear on triangles, bilinear on quadrilaterals.
+/// Interpolates values of elements, continuously on each smooth surface: linearly on triangles and bilinearly on
+/// quadrilaterals.
 class SmoothField {
   public:
     /// @param forest, vertices  Must not change during use.
-    /// @param values            Per element; only leaves are used.
+    /// @param values            One value per element; only leaves are used.
     /// @throws InputError if sizes disagree.
     SmoothField(const ElementForest& forest, const ElementVertices& vertices, std::span<const Rgb> values);
 
-    /// Thread-safe.
+    /// Returns the interpolated value. Thread-safe.
     Rgb at(PatchIndex patch, Parameters p) const;
 
   private:

@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Bounds G where neighbours are nearly coplanar; reduces it by 2% on a regular mesh.
+/// Ridge that bounds G if neighbours are nearly coplanar. It reduces G by 2% on a regular mesh.
 constexpr double relative_ridge = 0.02;
 
 Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance, ElementIndex e, std::uint32_t c,

@@ -13,22 +13,23 @@
 
 namespace interflect::detail {
 
-/// Shading of curved surfaces by CornerNormals: H(x) = H_solved(x) + G (n(x) - n_mean) (docs/method/method.md, Curved
-/// surfaces). The correction is clamped to the largest step of irradiance across edges.
+/// Shades curved surfaces with CornerNormals: H(x) = H_solved(x) + G (n(x) - n_mean), where n is the interpolated
+/// normal and G the gradient of the irradiance with respect to the normal (docs/method/method.md, Curved surfaces). The
+/// correction is clamped to the largest step of irradiance across edges.
 class SmoothNormals {
   public:
     SmoothNormals() = default;
     SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces);
 
-    /// Corrects the centres of leaves; clamps to >= 0.
-    /// @param irradiance  Per element; only leaves change.
+    /// Corrects the irradiance at the centres of leaves, and clamps it to >= 0.
+    /// @param irradiance  One value per element; only leaves change.
     void apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const;
 
-    /// Returns the unit normal of the curved surface; the patch's own unless all corners have normals.
+    /// Returns the unit normal of the curved surface, or the normal of the patch unless all its corners have normals.
     V3f at(const PatchGeometry& geometry, PatchIndex patch, Parameters p) const;
 
   private:
-    /// Edges are numbered by their first corner.
+    /// Patch beyond an edge. Edges are numbered by their first corner.
     struct Neighbour {
         PatchIndex patch;
         std::uint32_t edge, other_edge;
@@ -42,7 +43,7 @@ class SmoothNormals {
         V3f mean_normal(bool is_triangle) const;
     };
     struct Gradient {
-        std::array<Imath::V3d, 3> by_normal;  ///< G per channel.
+        std::array<Imath::V3d, 3> by_normal;  ///< G of each channel.
         Rgb largest_change;
     };
 

@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns the means of the four basis functions over an element.
+/// Returns the mean of each of the four basis functions over an element.
 std::array<double, 4> basis_means(const PatchGeometry& patch, const Cell& cell) {
     if (patch.is_triangle()) return {1.0 / 3, 1.0 / 3, 1.0 / 3, 0};
     std::array<double, 4> jacobian{}, means{};
@@ -19,7 +19,9 @@ std::array<double, 4> basis_means(const PatchGeometry& patch, const Cell& cell) 
         const auto [s, t] = square_corners[c];
         sum += jacobian[c] = std::max(0.0f, patch.jacobian(cell.at(s, t)));
     }
-    // Integrals of products of two bilinear functions: 1/9, 1/18, 1/36; the area is the mean of the Jacobian.
+    // The Jacobian is bilinear. The integral of the product of the bilinear basis functions of two corners is 1/9 for
+    // the same corner, 1/18 for neighbours and 1/36 for opposite corners; the area is the mean of the Jacobian, sum
+    // / 4.
     for (std::size_t c = 0; c < 4; ++c) {
         const double beside = jacobian[(c + 1) % 4] + jacobian[(c + 3) % 4];
         means[c] = (4 * jacobian[c] + 2 * beside + jacobian[(c + 2) % 4]) / (9 * sum);
@@ -27,7 +29,7 @@ std::array<double, 4> basis_means(const PatchGeometry& patch, const Cell& cell) 
     return means;
 }
 
-/// The linear map of joined_values(). Each result is a mean of values.
+/// The linear map of joined_values(). Each of its results is a weighted mean of values.
 class Joins {
   public:
     Joins(const ElementVertices& vertices, std::vector<bool> is_known)
@@ -82,7 +84,7 @@ std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertice
                                      forest.size()));
     std::vector<Rgb> values(irradiance.begin(), irradiance.end());
     vertices.normals().apply(forest, values);
-    // Integrate each leaf's basis functions, alone and times its irradiance.
+    // Integrate the basis functions over each leaf, without and with its irradiance as factor
     std::vector<RgbD> power(vertices.count(), RgbD(0));
     std::vector<double> area(vertices.count(), 0.0);
     for (ElementIndex e{0}; e < forest.size(); ++e) {
@@ -95,7 +97,7 @@ std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertice
             area[vertices.corners(e)[c]] += integral;
         }
     }
-    // Hanging vertices and seams extend the basis functions of others.
+    // Hanging vertices and seams extend the basis functions of other vertices, which receive their integrals
     const Joins joins(vertices, std::vector<bool>(vertices.count(), true));
     joins.apply_transposed(power);
     joins.apply_transposed(area);

@@ -11,17 +11,18 @@
 
 namespace interflect::detail {
 
-/// Values at vertices whose interpolation has the irradiance of the leaves, after SmoothNormals: the mean of the leaves
-/// around each vertex, weighted by their integrals of the vertex's basis function, which is 1 there and 0 at all
-/// others. Linear in the irradiance, and >= 0. Interpolation keeps the power of each smooth surface, to rounding.
-/// @param irradiance  Per element, >= 0; only leaves are used.
+/// Computes values at vertices for interpolation of the irradiance of the leaves, after SmoothNormals. The value at a
+/// vertex is the mean over the leaves around it, weighted by their integrals of the vertex's basis function, which is 1
+/// at this vertex and 0 at all others. Linear in the irradiance, and >= 0. Interpolation preserves the power of each
+/// smooth surface, to rounding.
+/// @param irradiance  One value per element, >= 0; only leaves are used.
 /// @throws InputError if sizes disagree. Cost: O(leaves).
 std::vector<Rgb> vertex_values(const ElementForest& forest, const ElementVertices& vertices,
                                std::span<const Rgb> irradiance);
 
 /// Makes values at vertices continuous: averages both sides of seams, and interpolates hanging vertices.
-/// @param values  Per vertex; nullopt to ignore it.
-/// @return        0 for ignored vertices.
+/// @param values  One value per vertex; nullopt for vertices to ignore.
+/// @return        One value per vertex; 0 for ignored vertices.
 std::vector<Rgb> joined_values(const ElementVertices& vertices, std::span<const std::optional<Rgb>> values);
 
 }  // namespace interflect::detail

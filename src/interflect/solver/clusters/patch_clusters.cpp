@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t trees = 4;
 
-using Place = std::array<float, 7>;  // position, normal, openness: 0 in gaps, 1 in the open
+using Place = std::array<float, 7>;  // position, normal, openness (0 in narrow gaps, 1 without an opposite surface)
 struct Placed {
     Place place;
     PatchIndex patch;
@@ -26,7 +26,7 @@ using Range = std::span<Placed>;
 
 V3f centre(const PatchGeometry& geometry) { return geometry.point(Cell().centre(geometry.is_triangle())); }
 
-/// Returns the distance from the centre of each patch to the surface before it, along the normal [m].
+/// Returns the distance from the centre of each patch to the surface opposite it, along the normal [m].
 std::vector<float> distances(const ElementForest& forest, const RayCaster& ray_caster) {
     constexpr std::size_t patches_per_task = 1 << 12;
     std::vector<float> distances(forest.patch_count(), std::numeric_limits<float>::infinity());
@@ -44,27 +44,27 @@ std::vector<float> distances(const ElementForest& forest, const RayCaster& ray_c
     return distances;
 }
 
-/// Returns half of the distance between opposite surfaces [m]: the median, weighted by area and distance, because light
-/// does not enter narrow gaps.
+/// Returns half of the median distance between opposite surfaces [m]. The median is weighted by area and distance,
+/// because little light enters narrow gaps.
 float distance_of_change(const ElementForest& forest, std::span<const float> distances) {
     std::vector<PatchIndex> bounded;
-    double area = 0, twice = 0;
+    double area = 0, weights = 0;
     for (PatchIndex p{0}; p < forest.patch_count(); ++p) {
         area += forest.area(p);
         if (!std::isfinite(distances[p])) continue;
         bounded.push_back(p);
-        twice += static_cast<double>(forest.area(p)) * distances[p];
+        weights += static_cast<double>(forest.area(p)) * distances[p];
     }
     std::ranges::sort(bounded, {}, [&](PatchIndex p) { return distances[p]; });
     double below = 0;
     for (const PatchIndex p : bounded)
-        if ((below += static_cast<double>(forest.area(p)) * distances[p]) >= twice / 2) return distances[p] / 2;
+        if ((below += static_cast<double>(forest.area(p)) * distances[p]) >= weights / 2) return distances[p] / 2;
     return static_cast<float>(std::sqrt(area)) / 2;
 }
 
 std::vector<Placed> places(const ElementForest& forest, std::span<const PatchIndex> patches,
                            std::span<const float> distances, float length, float turn) {
-    constexpr float weight_of_openness = 2;  // the distance of opposite normals
+    constexpr float weight_of_openness = 2;  // equal to the distance between opposite unit normals
     Imath::M44f rotation;
     rotation.setAxisAngle(V3f(1, 1, 1).normalized(), turn);
     std::vector<Placed> places;
@@ -110,7 +110,7 @@ PatchClusters::PatchClusters(const ElementForest& forest, std::span<const PatchI
                              std::span<const float> distances, float length, float turn)
     : patch_count_(forest.patch_count()) {
     std::vector<Placed> placed = places(forest, patches, distances, length, turn);
-    std::vector<Range> ranges{placed};  // of the nodes
+    std::vector<Range> ranges{placed};  // patches of each node
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const Range range = ranges[i];
         if (range.size() == 1) {
@@ -133,7 +133,7 @@ std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const Ra
     std::vector<PatchIndex> patches;
     for (PatchIndex p{0}; p < forest.patch_count(); ++p)
         if (ray_caster.uncovered_share(p) > 0) patches.push_back(p);
-    // A turn of 120 degrees about (1, 1, 1) would exchange the axes.
+    // The trees are turned by equal steps below 120 degrees about (1, 1, 1), a turn that would only exchange the axes.
     std::vector<std::vector<PatchClusters>> made(trees);
     parallel_for_ranges(trees, 1, [&](std::size_t tree, std::size_t) {
         const float turn = static_cast<float>(tree) / trees * 2 * std::numbers::pi_v<float> / 3;

@@ -10,11 +10,11 @@
 
 namespace interflect::detail {
 
-/// Tree of clusters: groups of patches that are near each other, face alike and are equally open, groups of
-/// groups, up to the scene.
+/// Tree of clusters. The lowest clusters contain patches that are near each other, with similar normals and openness;
+/// the root contains the whole scene.
 class PatchClusters {
   public:
-    /// Groups of 32 are divided into four of eight.
+    /// Maximum number of patches in a cluster that is not divided further.
     static constexpr std::uint32_t most_parts = 31;
 
     struct Node {
@@ -25,15 +25,15 @@ class PatchClusters {
         bool is_patch() const { return patch != no_patch; }
     };
 
-    /// @param patches  To be divided.
-    /// @param distances  From each patch to the surface before it [m]; faces in gaps receive little light.
-    /// @param length  Distance over which irradiance changes about as much as from one direction to the opposite [m].
-    /// @param turn  Angle by which the scene is turned before it is divided [radians].
+    /// @param patches    Patches to be divided into clusters.
+    /// @param distances  Distance from each patch to the surface opposite it [m]; faces in gaps receive little light.
+    /// @param length     Distance over which irradiance changes as much as between opposite normals [m].
+    /// @param turn       Angle by which the scene is turned before it is divided [rad].
     PatchClusters(const ElementForest& forest, std::span<const PatchIndex> patches, std::span<const float> distances,
                   float length, float turn);
 
     std::uint32_t patch_count() const { return patch_count_; }
-    /// Parents first; children of a node are adjacent.
+    /// Returns the nodes. Parents precede their children, and the children of a node are adjacent.
     std::span<const Node> nodes() const { return nodes_; }
 
     /// Returns the sum over the patches of each node.
@@ -55,8 +55,8 @@ class PatchClusters {
     std::vector<Node> nodes_;
 };
 
-/// Returns trees with different boundaries between clusters, to be averaged. They lack patches that are wholly covered
-/// by others, and receive no light.
+/// Returns several trees with different boundaries between clusters; their results are averaged. Patches that others
+/// cover completely receive no light and are omitted.
 std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster);
 
 }  // namespace interflect::detail

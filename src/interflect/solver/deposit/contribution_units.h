@@ -11,11 +11,12 @@
 
 namespace interflect::detail {
 
-/// Fixed-point units in which the sums over all rays fit.
+/// Fixed-point units of contributions. The sums over all rays do not overflow.
 struct ContributionUnits {
     FixedPoint power, square, importance;
 
-    /// @param max_deposits  Upper bound of the elements that receive the same power by reflection; >= 1.
+    /// @param max_deposits  Upper bound of the number of elements on which the same power is deposited by reflections;
+    /// >= 1.
     ContributionUnits(const PayloadTotals& all, double max_deposits)
         : power(channel_sum(all.power) * max_deposits), square(all.square * max_deposits), importance(all.importance) {}
 

@@ -13,15 +13,16 @@
 
 namespace interflect::detail {
 
-/// Three channels of power, squared luminance, importance.
+/// Terms of a contribution: three channels of power, squared luminance, importance.
 using Contribution = std::array<std::int64_t, 5>;
 inline constexpr std::size_t power_terms = 4, importance_term = 4;
 
-/// Integer sums by element, independent of order. Threads bin contributions by region of the forest and flush full bins
-/// under its lock.
+/// Sums of contributions by element. They are integers, so they do not depend on the order of additions. Each thread
+/// collects contributions in bins, one for each region of the forest, and adds a full bin to the sums under the
+/// region's lock.
 class ContributionSums {
   public:
-    /// Address space [bytes].
+    /// Address space per element [bytes].
     static constexpr std::size_t reserved_per_element(std::size_t groups) {
         return sizeof(Contribution) + 3 * groups * sizeof(std::int64_t);
     }
@@ -33,7 +34,7 @@ class ContributionSums {
     void clear(std::size_t elements) {
         for (std::size_t e = 0; e < elements; ++e) clear_one(e);
     }
-    /// Number of terms in read() and add(): a contribution, then the power of all groups.
+    /// Returns the number of terms for read() and add(): those of a contribution, then the power of all groups.
     std::size_t terms() const { return Contribution().size() + group_terms_; }
     void read(std::size_t element, std::span<std::int64_t> terms) const {
         const Contribution& sum = sums_[element];
@@ -62,7 +63,8 @@ class ContributionSums {
     void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
         for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
     }
-    /// Small forests keep their memory: clearing new pages is slower than the additions.
+    /// Releases the memory of these elements. Small forests keep it, because clearing new pages is slower than the
+    /// additions.
     void release(std::size_t begin, std::size_t end) {
         if (elements_ <= max_kept) return;
         sums_.release(begin, end);
@@ -73,8 +75,9 @@ class ContributionSums {
       public:
         explicit ScatterBuffer(ContributionSums& sums) : sums_(&sums) {}
 
-        /// Returns its index.
-        /// @param contribution  Of one ray. @param power_by_group  Empty: 0.
+        /// Stores a payload and returns its index.
+        /// @param contribution    Contribution of one ray.
+        /// @param power_by_group  Three channels per group; empty: 0.
         std::uint32_t add_payload(const Contribution& contribution, std::span<const std::int64_t> power_by_group = {}) {
             contributions_.push_back(contribution);
             group_contributions_.insert(group_contributions_.end(), power_by_group.begin(), power_by_group.end());
@@ -94,7 +97,7 @@ class ContributionSums {
         void release_payloads() {
             if (contributions_.size() >= enough_payloads) flush_all();
         }
-        /// Invalidates the indices of payloads, as does release_payloads().
+        /// Adds all bins to the sums. Invalidates the indices of payloads, as release_payloads() may.
         void flush_all() {
             for (std::size_t region = 0; region < regions; ++region) flush(region);
             contributions_.clear();
@@ -125,7 +128,7 @@ class ContributionSums {
     static constexpr std::uint32_t max_payloads = 1u << 30;  // width of Deposit::payload
     static constexpr std::size_t enough_payloads = 8192;     // a quarter of a second-level cache
 
-    static constexpr std::size_t max_kept = std::size_t{1} << 20;  // elements
+    static constexpr std::size_t max_kept = std::size_t{1} << 20;  // largest number of elements whose memory is kept
 
     std::int64_t* group_sum(std::size_t element, std::size_t group) {
         return &group_sums_[element * group_terms_ + 3 * group];

@@ -11,12 +11,12 @@ void Descent::deposit(std::uint32_t source, const Contribution& contribution,
     const std::uint32_t payload = buffer_.add_payload(contribution, power_by_group);
     sources_in_task_.push_back({source, 0, transmitted});
     const auto source_in_task = static_cast<std::uint32_t>(sources_in_task_.size() - 1);
-    bool has_path = false;  // one for all rays of a leaf
+    bool has_path = false;  // all rays of a leaf share a path
     for (std::size_t r = 0; r < rays.size(); ++r) {
         if (hits[r].patch == none) {
             count_escaped(contribution);
         } else if (!refines_ && forest_.is_leaf(hits[r].patch)) {
-            buffer_.add(hits[r].patch, payload, Terms::both);  // absent terms are 0
+            buffer_.add(hits[r].patch, payload, Terms::both);  // terms that the ray does not carry are 0
             if (step_.reflects_where_received(hits[r].patch)) {
                 const V3f point = rays[r].origin + hits[r].distance * rays[r].direction;
                 add_start_point(hits[r].patch, forest_.geometry(hits[r].patch).parameters_of(point), contribution);
@@ -83,8 +83,9 @@ void Descent::begin(std::uint32_t payload, std::uint32_t source_in_task, const R
     source_paths_.begin(pairs_, i, path_, rays_[i].reflectance);
 }
 
-/// Divides rejected pairs at the larger end (Eq. 14, 15, Prikryl et al. 2000). An accepted pair fixes the receiver of
-/// power; rays with importance for leaves continue to their leaf.
+/// Moves all rays in flight one level down. Pairs that the oracle rejects are divided at the larger end (Eq. 14, 15,
+/// Prikryl et al. 2000). An accepted pair determines the receiver of power. Rays that deposit importance on leaves then
+/// continue to their leaf.
 void Descent::advance() {
     Lanes selected, kept;
     for (const std::uint32_t i : active()) look_up_receiver(i);
@@ -108,7 +109,7 @@ void Descent::advance() {
         const ElementIndex element(pairs_.receiver[i]);
         forest_.prefetch(element);
         if (step_.oracle.by_importance)
-            __builtin_prefetch(step_.oracle.importance.data() + element);  // may exceed its size: harmless
+            __builtin_prefetch(step_.oracle.importance.data() + element);  // addresses beyond the array are harmless
     }
 }
 
@@ -126,7 +127,7 @@ inline void Descent::look_up_receiver(std::size_t i) {
     const ElementIndex element(pairs_.receiver[i]);
     pairs_.area[i] = forest_.area(element);
     pairs_.children[i] = forest_.first_child(element);
-    if (step_.oracle.by_importance && element < old_size_)  // new elements keep their ancestor's
+    if (step_.oracle.by_importance && element < old_size_)  // new elements have the importance of their ancestor
         pairs_.importance[i] = step_.oracle.importance[element];
 }
 
@@ -138,7 +139,7 @@ void Descent::provide_children(std::size_t i) {
         pairs_.next[i] = find_or_create_children(forest_, receiver, may_grow_);
         if (pairs_.next[i] != none) return;
     }
-    pairs_.settled[i] = true;  // indivisible; importance continues in the old mesh
+    pairs_.settled[i] = true;  // the pair is indivisible, but importance continues to a leaf of the old mesh
     pairs_.continues[i] = needs_leaf_ && receiver < old_size_ && pairs_.children[i] < old_size_;
     if (pairs_.continues[i]) pairs_.next[i] = pairs_.children[i];
 }
@@ -161,7 +162,7 @@ void Descent::deposit_ray(std::size_t i) {
 }
 
 void Descent::add_start_point(ElementIndex leaf, const Parameters& at, const Contribution& contribution) {
-    // Fixed-point units: StartPoints uses only ratios.
+    // The power remains in fixed-point units, because StartPoints uses only ratios.
     const auto power = static_cast<float>(contribution[0] + contribution[1] + contribution[2]);
     if (power > 0) start_points_.push_back({leaf, power, at});
 }

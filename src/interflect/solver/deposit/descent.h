@@ -31,13 +31,15 @@ struct Escaped {
     }
 };
 
-/// One object per thread. Many rays descend together, to vectorise and hide memory latency.
+/// Finds the elements on which rays are deposited, by descending from the hit patches. Each thread has its own object.
+/// Many rays descend together, for vector code and to hide memory latency.
 class Descent {
     using Terms = ContributionSums::ScatterBuffer::Terms;
 
   public:
-    /// @param old_size  Size of the forest before the step. @param importance  May be null. Arguments must outlive
-    /// this.
+    /// Arguments must outlive this.
+    /// @param old_size    Size of the forest before the step.
+    /// @param importance  Receives the importance at hit points; may be null.
     Descent(const Materials& materials, ElementForest& forest, const TransportStep& step, std::uint32_t old_size,
             ContributionSums& sums, FoundImportance* importance)
         : materials_(materials),
@@ -54,10 +56,11 @@ class Descent {
         pairs_.next.fill(none);
     }
 
+    /// Deposits rays of one source.
     /// @param source       Leaf, or old_size + luminaire part.
-    /// @param contribution, power_by_group  Of each ray.
-    /// @param origins      On the leaf's patch; of luminaire parts: any values.
-    /// @param transmitted  Transmittance before the hits; scales found importance.
+    /// @param contribution, power_by_group  Contribution of each ray.
+    /// @param origins      Start points on the leaf's patch; ignored for luminaire parts.
+    /// @param transmitted  Transmittance of panes in front of the hits; scales the found importance.
     void deposit(std::uint32_t source, const Contribution& contribution, std::span<const std::int64_t> power_by_group,
                  std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
                  float transmitted = 1);
@@ -76,11 +79,11 @@ class Descent {
   private:
     static constexpr std::size_t lanes = RayPairs::lanes;
     struct RayState {
-        std::uint32_t payload;  // index in buffer_
+        std::uint32_t payload;  // index of the payload in buffer_
         PatchIndex patch;       // that the ray hits
         std::uint32_t source_in_task;
         Parameters start;
-        Rgb reflectance{0, 0, 0};  // rho_i
+        Rgb reflectance{0, 0, 0};  // reflectance rho_i of the hit patch
     };
 
     using Lanes = std::array<std::uint32_t, lanes>;
@@ -107,13 +110,13 @@ class Descent {
     FoundImportance* found_importance_;
     struct SourceInTask {
         std::uint32_t source;
-        double found;  // importance at the hits of its rays
+        double found;  // sum of the importance at the hits of its rays
         float transmitted;
     };
     std::vector<SourceInTask> sources_in_task_;
     RayPairs pairs_{};
     std::array<RayState, lanes> rays_;
-    Lanes active_;  // `active_count_` lanes in use, then free lanes
+    Lanes active_;  // indices of the `active_count_` lanes in use, then of the free lanes
     std::size_t active_count_ = 0;
     SourcePaths source_paths_;
     SourcePaths::Path path_;

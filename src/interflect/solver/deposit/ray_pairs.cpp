@@ -2,7 +2,7 @@
 
 #include "interflect/elements/forest.h"
 
-// Processing unused lanes is faster than skipping them.
+// The loops process unused lanes as well, which is faster than skipping them.
 namespace interflect::detail {
 
 void RayPairs::evaluate_oracle(const Oracle& oracle) {
@@ -21,9 +21,9 @@ void RayPairs::evaluate_oracle(const Oracle& oracle) {
 
 void RayPairs::choose_next(bool needs_leaf, std::uint32_t old_size) {
     const float *from_area = shooter_area.data(), *to_area = area.data();
-    const std::uint32_t old = needs_leaf ? old_size : 0;  // importance ignores newer elements
+    const std::uint32_t old = needs_leaf ? old_size : 0;  // importance is deposited on leaves of the old mesh
     for (std::size_t i = 0; i < lanes; ++i) {
-        // Integers, not bool, for lanes of equal size.
+        // Integers in place of bool give vector lanes of equal size.
         const std::uint32_t child = children[i], rejected = settled[i] ? 0 : 1;
         const std::uint32_t to_leaf = (receiver[i] < old ? 1 : 0) & (child < old ? 1 : 0);
         const std::uint32_t shooter_is_larger = from_area[i] > to_area[i] ? 1 : 0;

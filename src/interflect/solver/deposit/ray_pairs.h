@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 /// Pairs of shooter j and receiver i of the rays in flight, as a structure of arrays.
 struct alignas(64) RayPairs {
-    static constexpr std::size_t lanes = 64;  // fits the first-level cache
+    static constexpr std::size_t lanes = 64;  // the arrays fit into the first-level cache
     using Floats = std::array<float, lanes>;
     using Numbers = std::array<std::uint32_t, lanes>;
     struct Vectors {
@@ -24,29 +24,31 @@ struct alignas(64) RayPairs {
         V3f operator[](std::size_t i) const { return {x.data()[i], y.data()[i], z.data()[i]}; }
     };
 
-    // The hit patch (PatchGeometry::Shape) and point.
+    // The hit patch (see PatchGeometry::Shape) and the hit point on it:
     Vectors patch_origin, edge_u, edge_v, twist;
     Numbers is_triangle;
     Floats hit_u, hit_v;
-    // Receiver: the current element around the hit.
-    Numbers receiver, children;  // children: first one, if any
-    Floats u, v, size;           // its cell
+    // The receiver, which is the current element around the hit point:
+    Numbers receiver, children;  // the element and its first child; none in leaves
+    Floats u, v, size;           // cell of the element
     Vectors normal;
-    Floats area, importance;  // psi_i
-    // Shooter: the current element around the origin.
-    Numbers shooter, lowest_shooter;  // in SourcePaths; lowest: leaf or new element
+    Floats area, importance;  // area [m^2] and importance psi_i of the element
+    // The shooter, which is the current element around the origin of the ray:
+    Numbers shooter,
+        lowest_shooter;  // indices in SourcePaths of the element and of its smallest descendant on the path
     Vectors shooter_centre, shooter_normal;
     Floats shooter_area, shooter_least_cosine;
     Floats reflected;        // largest channel of rho_i B_j
-    Numbers settled;         // accepted or indivisible
-    Numbers power_receiver;  // final if settled
-    Numbers needs_children;  // the larger end lacks known children
-    Numbers continues;       // the ray stays in flight
-    Numbers next;            // first child of the receiver to descend to, if any
+    Numbers settled;         // whether the pair is accepted or indivisible
+    Numbers power_receiver;  // element that receives the power; final if settled
+    Numbers needs_children;  // whether the children of the larger end are unknown
+    Numbers continues;       // whether the ray stays in flight
+    Numbers next;            // first child to which the receiver descends; none: it does not descend
 
     /// Settles pairs that the oracle accepts or that are too small to divide.
     void evaluate_oracle(const Oracle& oracle);
-    /// @param needs_leaf  Rays descend to a leaf among the first `old_size` elements.
+    /// Sets needs_children, continues and next.
+    /// @param needs_leaf  Whether rays continue to a leaf among the first `old_size` elements.
     void choose_next(bool needs_leaf, std::uint32_t old_size);
     void descend();
 };

@@ -28,9 +28,9 @@ SourcePaths::Path SourcePaths::append_leaf(ElementIndex leaf) {
     return {first, static_cast<std::uint32_t>(sources_.size() - 1)};
 }
 
-/// Represents the part by a small disk of the same irradiance at the receiver.
+/// Represents the part by a small disk that causes the same irradiance at the receiver.
 SourcePaths::Path SourcePaths::append_part(std::uint32_t part, const Ray& ray, const Hit& hit) {
-    constexpr float share_of_view = 1e-6f;  // never the larger end of a pair
+    constexpr float share_of_view = 1e-6f;  // so small that the disk is never the larger end of a pair
     constexpr float tiny = std::numeric_limits<float>::min();
     const Emission::Proxy proxy = step_.emission->proxy(part, ray, hit.distance);
     const float squared = hit.distance * hit.distance;

@@ -11,10 +11,10 @@
 
 namespace interflect::detail {
 
-/// Ancestors of the leaves that shot the rays in flight.
+/// Paths of shooters, from the root to the leaf that shot a ray, for all rays in flight.
 class SourcePaths {
   public:
-    /// Range of shooters, root first.
+    /// Range of shooters; the root is the first.
     struct Path {
         std::uint32_t first = 0, last = 0;
     };
@@ -26,7 +26,7 @@ class SourcePaths {
     Path append_part(std::uint32_t part, const Ray& ray, const Hit& hit);
     void clear() { sources_.clear(); }
 
-    /// @param reflectance  rho_i of the hit patch.
+    /// Starts lane i at the first shooter of its path. @param reflectance  Reflectance rho_i of the hit patch.
     void begin(RayPairs& pairs, std::size_t i, const Path& path, const Rgb& reflectance) const {
         pairs.lowest_shooter[i] = path.last;
         pairs.shooter_normal.set(i, sources_[path.first].normal);
@@ -40,14 +40,14 @@ class SourcePaths {
         return (shooter > receiver) & (number < lowest);
     }
 
-    /// Selects the largest shooter not larger than the receiver, or the lowest.
+    /// Selects the largest shooter that is not larger than the receiver. If there is none, selects the lowest shooter.
     void choose_shooter(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
         while (number < pairs.lowest_shooter[i] && sources_[number].area > pairs.area[i]) ++number;
         take(pairs, i, number, reflectance);
     }
 
-    /// Continues at the child of the lowest shooter. @return  False if indivisible.
+    /// Divides the lowest shooter and continues at its child. Returns false if it is indivisible.
     bool subdivide(RayPairs& pairs, std::size_t i, const Parameters& start, const Rgb& reflectance, bool may_grow);
 
   private:
@@ -73,7 +73,7 @@ class SourcePaths {
     std::vector<Shooter> sources_;
 };
 
-/// Returns the first child, if any.
+/// Returns the first child, or no_element if the element has no children and the forest may not grow.
 inline ElementIndex find_or_create_children(ElementForest& forest, ElementIndex element, bool may_grow) {
     const ElementIndex child = forest.first_child(element);
     return child == no_element && may_grow ? forest.subdivide(element) : child;

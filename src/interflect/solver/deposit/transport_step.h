@@ -14,19 +14,19 @@ namespace interflect::detail {
 struct TransportStep : RayPlan {
     explicit TransportStep(RayPlan plan = {}) : RayPlan(std::move(plan)) {}
 
-    Radiosity oracle_light;  ///< Empty: `light`.
+    Radiosity oracle_light;  ///< Light with which the oracle decides; empty: that of the rays, `light`.
     const Radiosity& light_for_oracle() const { return oracle_light.empty() ? light : oracle_light; }
     bool importance_at_patches = false;
     Oracle oracle;
     bool completes_by_walks = false;
-    /// Nonzero for leaves that reflect where they receive (StartPoints); may be empty.
+    /// Per element: 1 if its reflected rays start at hit points (StartPoints), else 0. May be empty.
     std::span<const std::uint8_t> reflecting_where_received;
     bool reflects_where_received(ElementIndex leaf) const {
         return !reflecting_where_received.empty() && reflecting_where_received[leaf] != 0;
     }
-    /// Reused after tracing; may be null.
+    /// Memory that the step may reuse after tracing; may be null.
     std::vector<Rgb>* reusable_buffer = nullptr;
-    /// Inner elements receive 0. Not with a refining oracle.
+    /// Whether inner elements of the result are 0. Must be false if the oracle refines.
     bool leaves_only = false;
 };
 

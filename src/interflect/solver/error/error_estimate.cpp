@@ -17,14 +17,14 @@ namespace interflect::detail {
 
 namespace {
 
-/// Bounds of the decay of mean squared differences per level: 1/4 for smooth irradiance; 1/2 at edges, plus room for
-/// noise of the measured ratio.
+/// Bounds of the factor by which mean squared differences decrease per level. It is 1/4 for smooth irradiance and 1/2
+/// at edges; the upper bound leaves room for noise of the measured ratio.
 constexpr double min_decay = 0.25, max_decay = 0.7;
 
 struct ErrorSums {
     double weight = 0, noise = 0, bias = 0;
     double noise_of_patches = 0, bias_of_patches = 0;
-    double assumed_bias = 0;  // of undivided patches
+    double assumed_bias = 0;  // bias within undivided patches
 
     ErrorSums& operator+=(const ErrorSums& o) {
         weight += o.weight;
@@ -59,7 +59,7 @@ ErrorSums sum_errors(const SolverState& state, ErrorMeasure measure, const Eleme
     return parallel_sum(state.work.stop.ranks(), forest.size(), elements_per_task, ErrorSums(), sum);
 }
 
-/// Extrapolates differences from parents to finer levels.
+/// Returns the squared error of levels below the leaves, by extrapolating the differences of leaves from their parents.
 double error_within_leaves(const RiskCheck& check) {
     if (!(check.weight > 0)) return 0;
     const bool is_known = check.signal > 0 && check.signal_of_parents > 0;
@@ -73,8 +73,8 @@ double error_within_leaves(const RiskCheck& check) {
     return sum / check.weight;
 }
 
-/// Noise + bias as corrected by RiskCheck, or as measured if the bias is strongly negative (docs/method/method.md,
-/// Errors).
+/// Returns noise + bias, corrected by the factor of the RiskCheck. If the bias is strongly negative, returns the
+/// squared error that the RiskCheck has measured (docs/method/method.md, Errors).
 double squared_error_of_differences(const RiskCheck& check, double noise_of_differences, double bias) {
     const double expected = noise_of_differences + bias;
     const bool is_reliable = bias > -noise_of_differences / 2;
@@ -82,7 +82,8 @@ double squared_error_of_differences(const RiskCheck& check, double noise_of_diff
                                               : std::max(0.0, check.measured / check.weight);
 }
 
-/// Sets the errors of reduced means in the first tree. The average over the trees has slightly smaller errors.
+/// Sets the errors of the patch means after shrinkage towards the clusters of the first tree. The average over all
+/// trees, which is the result, has slightly smaller errors.
 void set_errors_of_clusters(const RunInputs& inputs, const LightState& light, ErrorMeasure measure,
                             ElementErrors& errors) {
     const ElementForest& forest = *light.forest;
@@ -153,7 +154,8 @@ ErrorEstimate estimate_error(const SolverState& state, ErrorMeasure measure) {
         error_within_leaves(state.light.risk_check) + sums.assumed_bias;
     const double squared_discretisation =
         state.light.options().method.refines ? std::max(0.0, squared_total - sums.noise) : 0;
-    // `mean` and `sums` average over pixels with a surface, a share s: over the picture, s mean and s sum.
+    // `mean` and `sums` are averages over pixels with a surface, a share s of the picture. Averages over the whole
+    // picture are s times as large.
     const double surface_share = measure == ErrorMeasure::surfaces ? 1 : state.sampling.view.surface_share();
     const double scale = 1 / (mean * std::sqrt(total_weight * surface_share));
     return {std::sqrt(sums.noise) * scale, std::sqrt(squared_discretisation) * scale};

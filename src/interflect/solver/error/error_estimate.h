@@ -7,10 +7,10 @@
 
 namespace interflect::detail {
 
-/// Mean square errors by element; bias may be negative.
+/// Mean squared errors of the elements. The bias may be negative.
 struct ElementErrors {
     std::vector<float> noise, bias;
-    std::vector<float> noise_of_patch;  // variance of the patch mean, part of `noise`
+    std::vector<float> noise_of_patch;  // part of `noise`: variance of the mean of the element's patch
 };
 ElementErrors element_errors(const RunInputs& inputs, const LightState& light, ErrorMeasure measure);
 

@@ -6,15 +6,17 @@
 
 namespace interflect::detail {
 
-/// Domain of the error: pictures of the views, or all surfaces.
+/// Where errors are measured: in pictures of the views, or on all surfaces.
 enum class ErrorMeasure { pictures, surfaces };
-/// Returns pictures if a view shows a surface.
+/// Returns `pictures` if a view shows a surface, else `surfaces`.
 ErrorMeasure default_measure(const LightState& light);
 
-/// Weight per area. Pictures: view importance times squared luminance of rho. Surfaces: 1.
+/// Returns the weight of squared errors per area: for pictures, view importance times the squared luminance of rho; for
+/// surfaces, 1.
 double error_weight(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, ElementIndex element);
 
-/// Weighted mean luminance: reflected light (pictures) or irradiance (surfaces).
+/// Returns the mean luminance to which errors are relative: of the reflected light in pictures, or of the irradiance of
+/// surfaces.
 double error_reference(const RunInputs& inputs, const LightState& light, ErrorMeasure measure);
 
 }  // namespace interflect::detail

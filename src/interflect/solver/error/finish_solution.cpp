@@ -35,8 +35,9 @@ void share_among_groups(const std::vector<Rgb>& irradiance, GroupLight& groups) 
         }
 }
 
-/// Moves the patches' means as their clusters demand, the average over the trees. Elements keep their shares of it.
-/// @param unreduced  The same light before any reduction.
+/// Replaces the mean of each patch by the average of the shrunk means over all trees of clusters. Scales the elements
+/// of the patch by the same factor.
+/// @param unreduced  The same light before any shrinkage.
 void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, std::vector<Rgb>& light) {
     if (state.inputs.clusters.empty()) return;
     const ElementForest& forest = *state.light.forest;
@@ -64,8 +65,8 @@ void finish_solution(SolverState& state) {
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (ElementIndex e{0}; e < forest.size(); ++e) {
-        const float within =
-            std::max(0.0f, signal_among_siblings(state.light, e)) / 3;  // 1/4 + 1/16 + ... of the signal
+        const float within = std::max(0.0f, signal_among_siblings(state.light, e)) /
+                             3;  // finer levels add 1/4 + 1/16 + ... = 1/3 of the signal
         solution.standard_error[e] = std::sqrt(errors.noise[e]);
         solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
     }
@@ -89,7 +90,7 @@ void finish_solution(SolverState& state) {
             return difference;
         };
         const std::array<Rgb, 4> difference = differences(solution.irradiance);
-        Rgb factor(1);  // if a child would be negative, scales all four differences
+        Rgb factor(1);  // scales all four differences if a child would be negative
         for (int c = 0; c < 3; ++c) {
             float lowest = 0;
             for (const Rgb& d : difference) lowest = std::min(lowest, d[c]);

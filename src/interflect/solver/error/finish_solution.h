@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// Shrinks differences of siblings if enabled; computes errors and ray counts of elements.
+/// Shrinks the differences of siblings, if this is enabled. Computes the errors and ray counts of the elements.
 void finish_solution(SolverState& state);
 
 }  // namespace interflect::detail

@@ -14,7 +14,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns the mean of y z over siblings (docs/method/method.md, Errors), less the noise of rays that both have.
+/// Returns the mean over siblings of y z, the product of their differences in the running mean and in the new estimate
+/// (docs/method/method.md, Errors). Subtracts the noise of rays that are part of both.
 double measured_signal(const LightState& light, const Estimate& fresh, ElementIndex first) {
     const ElementForest& forest = *light.forest;
     const ElementIndex parent = forest.parent(first);
@@ -79,7 +80,7 @@ void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays
         return error_weight(state.inputs, state.light, measure, e) * state.light.forest->area(e);
     };
     if (uses_shrinkage(state.light) && state.light.noise.is_known()) {
-        constexpr double long_enough = 0.25;  // of the averaged rays
+        constexpr double long_enough = 0.25;  // share of the averaged rays at which an iteration has full weight
         const double before = long_enough * static_cast<double>(state.rays.schedule.averaged_rays());
         state.light.risk_check.add(check_risk(state, fresh),
                                    std::min(1.0, static_cast<double>(rays) / std::max(1.0, before)));

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Updates noise model and RiskCheck. Call before the merge.
+/// Updates the noise model and the RiskCheck. Call before the estimate is merged.
 void estimate_noise(SolverState& state, const Estimate& fresh, std::int64_t rays);
 
 }  // namespace interflect::detail

@@ -8,8 +8,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Share of the variance of a piecewise constant signal after a box filter of width 1; `a` is the length of a piece.
-/// Steps: independent pieces. Pairs: adjacent pieces of opposite values.
+/// Return the share of the variance of a piecewise constant signal that remains after a box filter of width 1; `a` is
+/// the length of a piece. The pieces of shown_of_steps() are independent. Those of shown_of_pairs() form pairs of
+/// opposite values.
 float shown_of_steps(float a) { return a > 1 ? 1 - 1 / (3 * a) : a * (1 - a / 3); }
 float shown_of_pairs(float a) {
     if (a > 1) return 1 - 1 / (2 * a);
@@ -26,14 +27,15 @@ Extents extents_in_pixels(const RunInputs& inputs, const LightState& light, Elem
     const ElementForest& forest = *light.forest;
     const PatchGeometry::Shape& shape = forest.geometry(forest.patch(element)).shape();
     const float u2 = shape.edge_u.length2(), v2 = shape.edge_v.length2();
-    const float across = shape.edge_u.cross(shape.edge_v).length();  // the shorter extent times the longer edge
+    const float across =
+        shape.edge_u.cross(shape.edge_v).length();  // length of the longer edge times the extent across it
     const float aspect = !(across > 0) ? 1 : u2 > v2 ? u2 / across : across / v2;
     const float pixels = forest.area(element) / pixel_area(inputs, light, element);
     return {std::sqrt(pixels * aspect), std::sqrt(pixels / aspect)};
 }
 
-/// Sibling differences change sign along one side, the other, or both.
 float shown_of_patch(const Extents& patch) { return shown_of_steps(patch.u) * shown_of_steps(patch.v); }
+/// Averages over three cases: the differences of siblings change sign along u, along v, or along both.
 float shown_of_siblings(const Extents& sibling) {
     const float u = shown_of_pairs(sibling.u), v = shown_of_pairs(sibling.v);
     return (u * shown_of_steps(2 * sibling.v) + shown_of_steps(2 * sibling.u) * v + u * v) / 3;

@@ -10,17 +10,18 @@ namespace interflect::detail {
 
 namespace {
 
-/// Share of the next larger neighbourhood (Neighbourhoods::smooth()).
+/// Share by which Neighbourhoods::smooth() moves the mean of a neighbourhood towards that of the next larger one.
 constexpr float taken_over = 0.3f;
 
-/// Mean importance in a box (Emission), and the factor of its parts.
+/// Importance that the rays of a box of Emission found, and the factor of the weights of its parts.
 struct BoxImportance {
     PartImportance all;
     float factor = 1;
     double mean() const { return all.rays > 0 ? all.found / all.rays : 0; }
 };
 
-/// The factors restore exponent 1 between boxes (docs/method/method.md, Light sources that are not surfaces).
+/// Returns factors that make weights of different boxes proportional to their importance, with exponent 1, although the
+/// weights within a box have the given exponent (docs/method/method.md, Light sources that are not surfaces).
 std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const std::vector<PartImportance>& found,
                                                float exponent) {
     std::vector<BoxImportance> boxes(emission.box_count());
@@ -68,7 +69,7 @@ void weigh_parts(const Emission& emission, const std::vector<PartImportance>& fo
 }
 
 void pow_each(std::span<float> numbers, float exponent) {
-    if (exponent == 0.75f) {  // default; square roots vectorise
+    if (exponent == 0.75f) {  // the default: square roots allow vector code
         for (float& x : numbers) x = std::sqrt(x) * std::sqrt(std::sqrt(x));
     } else {
         for (float& x : numbers) x = std::pow(x, exponent);

@@ -11,26 +11,26 @@
 
 namespace interflect::detail {
 
-/// Off without a view.
+/// Returns the use of importance; ImportanceUse::off without a view.
 ImportanceUse importance_use(const Solution& so_far);
 
-/// Returns psi of every element; empty without a view. Refers to the solution.
+/// Returns the importance psi of every element; empty without a view. Refers to the solution.
 Importance importance_of(const Solution& so_far);
 std::vector<float> total_importance(const Solution& so_far);
 
-/// By the rays of a luminaire part (Emission).
+/// Importance that the rays of a luminaire part (Emission) have found.
 struct PartImportance {
-    double found = 0;  ///< Sum over its rays [1/m^2]
-    double rays = 0;
+    double found = 0;  ///< Sum over the rays [1/m^2].
+    double rays = 0;   ///< Number of rays.
 };
 
-/// For sampling rays of power; empty if not used.
+/// Factors of the probability of sampling a source of power. Empty arrays have no effect.
 struct ImportanceWeights {
     std::vector<float> elements;
-    std::vector<float> nearby;               ///< By patch; may be empty.
-    std::vector<float> parts, parts_nearby;  ///< By luminaire part.
+    std::vector<float> nearby;               ///< Smoothed over the neighbourhood of each patch.
+    std::vector<float> parts, parts_nearby;  ///< For each luminaire part, and smoothed over similar parts.
 };
-/// @param found  By luminaire part.
+/// @param found  Importance found by each luminaire part.
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 

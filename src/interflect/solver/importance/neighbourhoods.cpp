@@ -44,7 +44,7 @@ void Neighbourhoods::smooth(const ElementForest& forest, std::span<float> values
     struct Sum {
         double value = 0, area = 0;
     };
-    std::vector<Sum> sums(2 * patches_.size());  // depth-first
+    std::vector<Sum> sums(2 * patches_.size());  // sums of the nodes, in depth-first order
     std::size_t next = 0;
     const auto add_up = [&](const auto& self, std::size_t first, std::size_t count) -> Sum {
         const std::size_t here = next++;

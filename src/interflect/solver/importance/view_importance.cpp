@@ -80,7 +80,7 @@ void ViewImportance::archive(StateArchive& archive) {
     archive.amounts("view/hit_shares", hit_weight_);
 }
 
-bool ViewImportance::fits(const ElementForest& forest) const {
+bool ViewImportance::is_consistent(const ElementForest& forest) const {
     const auto is_valid = [&](const Point& p) {
         return p.leaf < forest.size() && p.patch == forest.patch(p.leaf) && std::isfinite(p.parameters.u) &&
                std::isfinite(p.parameters.v) && std::isfinite(p.share) && p.share >= 0;

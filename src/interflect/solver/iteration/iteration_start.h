@@ -8,11 +8,11 @@
 
 namespace interflect::detail {
 
-/// After restore(), a repeated iteration has the bits of an uninterrupted run.
+/// State at the start of an iteration. After restore(), a repeated iteration produces the bits of an uninterrupted run.
 class IterationStart {
   public:
     explicit IterationStart(const SolverState& state);
-    /// Irradiance and its statistics may only have grown with the mesh.
+    /// Restores the state. Irradiance and its statistics must be unchanged, except for new elements.
     void restore(SolverState& state) const;
 
   private:

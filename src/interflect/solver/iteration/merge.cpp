@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// factor * child + offset: scales children to their parent's mean.
+/// Maps a child's value to factor * value + offset, so that the mean of the children becomes their parent's mean.
 template <class T>
 struct Scaling {
     T factor, offset;
@@ -27,7 +27,8 @@ Scaling<Rgb> scaling(const Rgb& children_mean, const Rgb& parent_mean) {
     return {Rgb(fx, fy, fz), Rgb(ox, oy, oz)};
 }
 
-/// Rays of the mean so far: rays averaged into an element, up to a limit, plus the rays of a first estimate.
+/// Number of rays in the mean so far: the rays averaged into an element, at most `most`, plus the `first` rays of a
+/// first estimate.
 struct Earlier {
     float most = std::numeric_limits<float>::infinity(), first = 0;
 

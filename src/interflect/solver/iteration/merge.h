@@ -7,19 +7,19 @@
 
 namespace interflect::detail {
 
-/// Merges a step by Eq. 6, Prikryl et al. 2000, with tau = N / (history + N) per element. Children with a larger tau
-/// only redistribute their parent's mean, which preserves power.
+/// Merges a step by Eq. 6, Prikryl et al. 2000: mean += tau (received - mean), with tau = N / (history + N) per element
+/// and N rays. Children with a larger tau only redistribute their parent's mean, which preserves power.
 void merge(const LightState& light, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
            const TracedIteration& iteration);
-/// The same for the indirect importance.
+/// Merges the indirect importance in the same way.
 void merge_importance(LightState& light, const RayTotals& rays, const std::vector<float>& received,
                       const TracedIteration& iteration);
 
-/// Merges independent estimates (docs/method/method.md, A run); means may be negative.
+/// Merges an independent estimate (docs/method/method.md, A run). The resulting means may be negative.
 void merge_independent(const LightState& light, std::vector<Rgb>& mean, const std::vector<Rgb>& received,
                        const TracedIteration& iteration);
 
-/// Groups dimmed to 0 do not change.
+/// Merge every light group. Groups that are dimmed to 0 do not change.
 void merge(const LightState& light, GroupLight& mean, const GroupLight& received, const TracedIteration& iteration);
 void merge_independent(const LightState& light, GroupLight& mean, const GroupLight& received,
                        const TracedIteration& iteration);

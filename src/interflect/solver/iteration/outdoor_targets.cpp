@@ -57,7 +57,7 @@ struct LineFinder {
             }
         std::vector<OutdoorLine> lines;
         if (state.inputs.emission.has_sky()) {
-            // Directions have density cos(theta) / pi: irradiance is pi times the mean radiance.
+            // Directions have the density cos(theta) / pi, so irradiance is pi times the mean radiance.
             std::vector<double> importance_per_radiance;
             importance_per_radiance.reserve(importance.size());
             for (const double i : importance) importance_per_radiance.push_back(i * std::numbers::pi);
@@ -81,7 +81,7 @@ struct LineFinder {
     }
 };
 
-/// Preserves the total importance.
+/// Returns a part of the lines with the same total importance.
 std::vector<OutdoorLine> thinned(const std::vector<OutdoorLine>& lines) {
     constexpr std::size_t enough = 1 << 14;
     const std::size_t stride = (lines.size() + enough - 1) / enough;
@@ -128,7 +128,8 @@ std::vector<WeightedLine> crossing(const std::vector<WeightedLine>& lines, const
     return found;
 }
 
-/// Weights decrease from the centre to the corners.
+/// Returns the weight of the lines that cross the box. The weight of a line decreases with its distance from the
+/// centre, to 0 at the corners.
 double centred_weight(const std::vector<WeightedLine>& lines, const Imath::Box3f& box) {
     const float largest_square = (box.size() / 2).length2();
     double sum = 0;
@@ -140,7 +141,8 @@ double centred_weight(const std::vector<WeightedLine>& lines, const Imath::Box3f
     return sum;
 }
 
-/// Returns the half, along the long axes, with the largest centred weight.
+/// Returns the box of half the size along the long axes, among overlapping positions, that has the largest centred
+/// weight.
 Imath::Box3f best_half(const std::vector<WeightedLine>& lines, const Imath::Box3f& box) {
     const V3f size = box.size();
     const float widest = std::max({size.x, size.y, size.z});
@@ -172,9 +174,9 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
                                        const Imath::Box3f& scene_box) {
     constexpr std::size_t max_lines = 4096, fewest_lines = 16;
     static_assert(max_targets % max_chains == 0);
-    constexpr double share_of_rest = 0.05;      // minimum weight for another chain
-    constexpr double worthwhile_share = 0.4;    // evenly spread lines: 0.25
-    constexpr float widest_target = 1.0f / 16;  // of the diagonal; the scene's box resolves wider ones
+    constexpr double share_of_rest = 0.05;      // minimum weight of the remaining lines for another chain
+    constexpr double worthwhile_share = 0.4;    // minimum weight in a half; evenly spread lines have 0.25
+    constexpr float widest_target = 1.0f / 16;  // relative to the diagonal; the scene's box suffices for wider targets
     std::vector<WeightedLine> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / max_lines);
     for (std::size_t i = 0; i < lines.size(); i += stride)
@@ -216,8 +218,8 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
 
 namespace {
 
-/// Returns light along lines over the square root of their source's total: only the dimmer sky locates windows along a
-/// sun's parallel lines.
+/// Returns the light along each line, over the square root of the total of its source. This raises the weight of the
+/// dimmer sky, because the parallel lines of a sun do not locate windows along its direction.
 std::vector<double> weights_of(const Emission& emission, const std::vector<OutdoorLine>& lines) {
     const auto source = [&](const OutdoorLine& line) { return line.sun == none ? emission.sun_count() : line.sun; };
     std::vector<double> weights, of_sources(emission.sun_count() + 1, 0.0);
@@ -233,9 +235,10 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
     return weights;
 }
 
-/// Light per power; a mean line in each box keeps all parts above zero.
+/// Returns the importance of each part, which is light per power. A mean line in each box is added, so that the
+/// importance of every part is positive.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
-    constexpr double rays_of_lines = 8;  // prior weight
+    constexpr double rays_of_lines = 8;  // number of rays that this prior knowledge is worth
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);
     double all = 0;
     for (const OutdoorLine& line : lines)
@@ -257,7 +260,8 @@ std::vector<PartImportance> importance_of_parts(const Emission& emission, const 
 }  // namespace
 
 std::vector<OutdoorLine> aim_outdoor_light(SolverState& state) {
-    // Many rays: a small window transmits little importance. `all` is the run's limit.
+    // Many rays are needed, because a small window transmits little importance. At most 1 / 32 of the run's rays are
+    // used.
     constexpr std::int64_t max_rays = 1 << 18, all_over_rays = 32;
     if (importance_use(state.light.solution) != ImportanceUse::full) return {};
     const auto suns = static_cast<std::int64_t>(state.inputs.emission.sun_count());

@@ -10,17 +10,19 @@
 
 namespace interflect::detail {
 
+/// A line from a surface point to a sky or sun.
 struct OutdoorLine {
-    Ray light;          ///< From the surface point, in the direction of the light.
+    Ray light;          ///< Starts at the surface point, in the direction in which light travels.
     std::uint32_t sun;  ///< Index of the sun; `none` for skies.
-    double importance;  ///< Weighted power received per PartAlong::brightness.
+    double importance;  ///< Importance-weighted power per PartAlong::brightness.
 };
 
-/// Finds nested boxes in which weighted lines converge, such as windows.
+/// Finds nested boxes around places where weighted lines converge, such as windows.
 std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, const std::vector<double>& weights,
                                        const Imath::Box3f& scene_box);
 
-/// Sets targets and part importance; has no effect without full importance or outdoor light.
+/// Sets the targets of outdoor light and the importance of its parts. Does nothing without full importance or outdoor
+/// light.
 /// @return  Lines of outdoor light to important surfaces.
 std::vector<OutdoorLine> aim_outdoor_light(SolverState& state);
 

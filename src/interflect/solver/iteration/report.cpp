@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Largest fraction of rays, time, or samples for the target error.
+/// Returns the fraction of the run that is done: the largest fraction of the limits of rays, time and error.
 double fraction_done(const Limits& limits, const IterationReport& report) {
     double fraction = static_cast<double>(report.rays) / static_cast<double>(limits.rays);
     fraction = std::max(fraction, report.seconds / limits.time);

@@ -4,7 +4,7 @@
 
 namespace interflect::detail {
 
-/// Also calls the monitor.
+/// Appends the report of an iteration to the solution, and passes it to the monitor.
 void append_report(SolverState& state, int iteration);
 
 }  // namespace interflect::detail

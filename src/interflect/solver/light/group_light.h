@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Colours [group][element], summing to the total. Empty without groups.
+/// Light of each group and element, [group][element]. The sum over the groups is the total. Empty without groups.
 using GroupLight = std::vector<std::vector<Rgb>>;
 
 inline void inherit(const ElementForest& forest, std::uint32_t first, GroupLight& light) {
@@ -20,21 +20,21 @@ inline void inherit(const ElementForest& forest, std::uint32_t first, GroupLight
 inline void pull(const ElementForest& forest, GroupLight& light) {
     for (std::vector<Rgb>& of_group : light) pull(forest, of_group);
 }
-/// @param sum  May be empty.
+/// Adds `more` to `sum`, which may be empty.
 void accumulate(GroupLight& sum, const GroupLight& more);
 void scale(GroupLight& light, float factor);
 
-/// @param dimming  Solution::dimming; excludes groups with factor 0.
+/// Returns the sum over the groups. @param dimming  Solution::dimming; groups with factor 0 are excluded.
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
 struct GroupRadiosity {
-    const SourceGroups* groups = nullptr;  ///< Null: not separated.
+    const SourceGroups* groups = nullptr;  ///< Null if the light of groups is not separated.
     const GroupLight* irradiance = nullptr;
     const std::vector<float>* dimming = nullptr;
     bool emits = true;
 
     std::size_t size() const { return groups ? groups->size() : 0; }
-    /// Returns B of a leaf by one group [lm/m^2 or W/m^2].
+    /// Returns the radiosity B of a leaf that one group causes [lm/m^2 or W/m^2].
     Rgb of(const Materials& materials, const ElementForest& forest, ElementIndex leaf, std::size_t group) const {
         if ((*dimming)[group] == 0) return Rgb(0);
         const MeanSurface surface = materials.surface(forest.patch(leaf), leaf);

@@ -12,8 +12,8 @@
 
 namespace interflect::detail {
 
-/// Reflectance, exitance and transmittance by patch and, with textures, by element. Refers to the scene. Covered
-/// emitters keep the exitance of their uncovered share (RayCaster).
+/// Reflectance, exitance and transmittance of each patch and, with textures, of each element. Refers to the scene. The
+/// exitance of partly covered emitters is multiplied by their uncovered share (RayCaster).
 class Materials {
   public:
     /// Ignores coincident faces.
@@ -24,7 +24,7 @@ class Materials {
     bool has_panes() const { return has_panes_; }
     const Rgb& reflectance(PatchIndex patch) const { return material(patch).reflectance; }
     const Rgb& exitance(PatchIndex patch) const { return material(patch).exitance; }  ///< [lm/m^2 or W/m^2]
-    /// Exact for grey surfaces.
+    /// Returns the mean over the channels, which is exact for grey surfaces.
     float mean_reflectance(PatchIndex patch) const { return channel_sum(reflectance(patch)) / 3; }
     void prefetch(PatchIndex patch) const { __builtin_prefetch(&scene_->patches[patch].material); }
     const Material& material(PatchIndex patch) const {
@@ -42,7 +42,7 @@ class Materials {
         return channel_sum(surface(patch, element).reflectance) / 3;
     }
     bool has_textures() const { return !elements_.empty(); }
-    /// New elements have the mean of their patch until then.
+    /// Computes the means of new elements. Until then, they have the mean of their patch.
     void grow(const ElementForest& forest) { elements_.grow(forest); }
 
   private:
@@ -51,14 +51,14 @@ class Materials {
     const Scene* scene_;
     bool has_panes_;
     TexturedElements elements_;
-    RankedBits has_own_;  // textured or partly covered patches
+    RankedBits has_own_;  // marks textured and partly covered patches
     std::vector<Material> own_materials_;
 };
 
 /// Returns Radiosity by element. With textures, inner elements have the mean of their children.
 std::vector<Rgb> radiosity(const Materials& materials, const ElementForest& forest, const std::vector<Rgb>& irradiance);
 
-/// Sum of area times value over the roots, in fixed order.
+/// Returns the sum of area times value over the patches, in fixed order.
 RgbD integral(const ElementForest& forest, const std::vector<Rgb>& values);
 
 }  // namespace interflect::detail

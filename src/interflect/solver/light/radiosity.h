@@ -11,20 +11,20 @@
 
 namespace interflect::detail {
 
-/// B = M + rho H [lm/m^2 or W/m^2], computed on demand. Refers to its arguments.
+/// Radiosity B = M + rho H [lm/m^2 or W/m^2], computed on demand. Refers to its arguments.
 class Radiosity {
   public:
     Radiosity() = default;
-    /// @param emits  False: B = rho H.
+    /// @param emits  If false, B = rho H.
     Radiosity(const Materials& materials, std::span<const Rgb> irradiance, bool emits = true)
         : materials_(&materials), irradiance_(irradiance), emits_(emits) {}
 
     bool empty() const { return irradiance_.empty(); }
     bool emits() const { return emits_; }
 
-    /// False if B is certainly 0.
+    /// Returns false if B is certainly 0.
     bool may_shine(ElementIndex e) const { return emits_ || irradiance_[e] != Rgb(0); }
-    /// B, or 0 if not finite.
+    /// Returns B, or 0 if it is not finite.
     Rgb of(const ElementForest& forest, ElementIndex e) const { return of_element(forest.patch(e), e); }
     Rgb of_element(PatchIndex patch, ElementIndex e) const {
         const Rgb b = unchecked(patch, e);
@@ -33,7 +33,7 @@ class Radiosity {
     bool is_not_finite(const ElementForest& forest, ElementIndex e) const {
         return !is_finite(unchecked(forest.patch(e), e));
     }
-    /// An inner element's B may then differ from its children's mean.
+    /// Whether there are textures. The B of an inner element may then differ from the mean of its children.
     bool has_textures() const { return materials_->has_textures(); }
 
   private:
@@ -48,7 +48,7 @@ class Radiosity {
     bool emits_ = false;
 };
 
-/// [lm or W]; with textures, the sum over the leaves.
+/// Returns the power that leaves an element [lm or W]; with textures, the sum over its leaves.
 inline RgbD power_of(const ElementForest& forest, const Radiosity& light, ElementIndex e) {
     const ElementIndex first_child = light.has_textures() ? forest.first_child(e) : no_element;
     if (first_child == no_element) return RgbD(light.of(forest, e)) * static_cast<double>(forest.area(e));
@@ -57,7 +57,7 @@ inline RgbD power_of(const ElementForest& forest, const Radiosity& light, Elemen
     return sum;
 }
 
-/// [lm or W], summed in fixed order.
+/// Returns the power that leaves all surfaces [lm or W], summed in fixed order.
 inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) {
     return parallel_sum(forest.patch_count(), elements_per_task, RgbD(0), [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);
@@ -66,7 +66,7 @@ inline RgbD radiated_power(const ElementForest& forest, const Radiosity& light) 
     });
 }
 
-/// Importance per area [1/m^2]: sum of two arrays, each possibly empty.
+/// Importance per area [1/m^2]: the sum of two arrays, each of which may be empty.
 class Importance {
   public:
     Importance() = default;

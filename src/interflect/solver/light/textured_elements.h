@@ -10,6 +10,7 @@
 
 namespace interflect::detail {
 
+/// Mean of the material over an element.
 struct MeanSurface {
     Rgb reflectance{0, 0, 0};
     Rgb exitance{0, 0, 0};  ///< [lm/m^2 or W/m^2]
@@ -18,14 +19,14 @@ struct MeanSurface {
 
 class TexturedElements {
   public:
-    /// @param exitance_share  By patch; empty: 1.
+    /// @param exitance_share  Factor of the exitance of each patch; empty: 1.
     explicit TexturedElements(const Scene& scene, std::vector<float> exitance_share = {});
 
     bool empty() const { return !means_; }
 
     MeanSurface of_patch(PatchIndex patch, const PatchGeometry& geometry) const { return mean(patch, geometry, {}); }
 
-    /// Null if not textured, or before grow(). Not for roots.
+    /// Returns the means of an element below a patch; null if it has no texture, or before grow().
     const MeanSurface* find(ElementIndex element) const {
         const std::uint32_t block = (element - patch_count_) / 4;
         if (block >= slot_of_block_.size() || slot_of_block_[block] == none) return nullptr;
@@ -41,8 +42,8 @@ class TexturedElements {
     std::vector<float> exitance_share_;
     std::unique_ptr<TextureMeans> means_;
     std::uint32_t patch_count_;
-    std::vector<std::uint32_t> slot_of_block_;  // one per block of siblings, if textured
-    std::vector<MeanSurface> surfaces_;         // four per slot
+    std::vector<std::uint32_t> slot_of_block_;  // slot of each block of four siblings; none without texture
+    std::vector<MeanSurface> surfaces_;         // four for each slot
 };
 
 }  // namespace interflect::detail

@@ -7,15 +7,16 @@ namespace interflect::detail {
 
 namespace {
 
-/// Random walks replace the remaining bounces below this number of rays.
+/// Random walks replace the remaining bounces if the next bounce would have fewer rays.
 constexpr double fewest_rays_of_bounce = 2;
-/// The same below this share of a pass: each bounce takes time for every element.
+/// Random walks also replace the remaining bounces below this share of a pass, because each bounce takes time for every
+/// element.
 constexpr double min_share_left = 0.05;
-/// Fewer make small passes noisy. Rays beyond the plan are not counted.
+/// Minimum number of random walks. Fewer make small passes noisy. Their rays beyond the planned number are not counted.
 constexpr std::int64_t fewest_walks = 32;
-/// Value of total_unshot() until measured.
+/// Value of total_unshot() before the first pass has measured it.
 constexpr double assumed_bounces = 2;
-/// Expected ratio of unshot power between bounces: first; after an increase; maximum.
+/// Expected ratio of the unshot power of successive bounces: after the first bounce; after an increase; at most.
 constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, highest_decay = 0.99;
 
 }  // namespace
@@ -31,9 +32,9 @@ BounceRays BounceBudget::next(double unshot) {
     const double ratio = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
     decay_ = ratio < 1 ? std::min(highest_decay, ratio) : decay_while_it_grows;
     last_unshot_ = unshot;
-    // Unshot power from here on: as in the previous pass, or a geometric series.
+    // Unshot power of this and later bounces: that of the previous pass, or a geometric series.
     const double geometric = unshot / (1 - decay_), planned = is_measured_ ? previous_total_ - unshot_sum_ : geometric;
-    // Later bounces keep a tenth, for light missed by the previous pass.
+    // Later bounces keep at least a tenth of the rays, for light that the previous pass missed.
     const double to_come = is_measured_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;
     const double share = std::min(left * unshot / to_come, static_cast<double>(rays_) * unshot / previous_total_);
     const double to_walk = std::max(planned, geometric);

@@ -12,9 +12,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Share of unshot importance at which the transport ends.
+/// The transport ends when this share of the importance is unshot.
 constexpr double negligible_importance = 0.005;
-/// Most that the next bounce is expected to receive of the importance of the last one, as in BounceBudget.
+/// Maximum expected ratio of the importance of two successive bounces, as in BounceBudget.
 constexpr double most_received_again = 0.99;
 
 }  // namespace
@@ -24,7 +24,8 @@ void transport_importance(SolverState& state, std::int64_t rays) {
     std::vector<float> unshot = solution.view_importance;
     BounceBudget budget(rays, 0);
     const std::int64_t rays_before = state.rays.importance;
-    double left = 1, decay = 0;  // importance received in a bounce; initially all of V
+    double left = 1,
+           decay = 0;  // importance received in the last bounce, initially all of V; its ratio to the bounce before
     while (left > negligible_importance && !budget.has_planned_last_bounce()) {
         TransportStep step(plan_importance(state.inputs.materials, solution, Importance(unshot),
                                            std::max<std::int64_t>(1, budget.next(left).expected)));
@@ -38,7 +39,7 @@ void transport_importance(SolverState& state, std::int64_t rays) {
         }
         decay = std::min(most_received_again, left / before);
     }
-    // The untraced bounces are a geometric series with the distribution of the last one.
+    // Estimate the untraced bounces as a geometric series with the distribution of the last bounce.
     const auto rest = static_cast<float>(decay / (1 - decay));
     for (ElementIndex e{0}; e < state.light.forest->size() && rest > 0; ++e)
         solution.indirect_importance[e] += rest * unshot[e];

@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Bounce by bounce (Eq. 7, 8), with about `rays` rays. @throws Interrupted
+/// Computes the indirect importance bounce by bounce (Eq. 7, 8), with about `rays` rays. @throws Interrupted
 void transport_importance(SolverState& state, std::int64_t rays);
 
 }  // namespace interflect::detail

@@ -22,11 +22,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// One ray each for importance, the two passes of prepare() and an iteration.
+/// One ray for importance, one for each of the two passes of prepare(), and one for an iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
-/// Returns beta p + (1 - beta) w, with unshot power p and importance-weighted power w relative to the first bounce;
-/// without importance, p.
+/// Returns beta p + (1 - beta) w, where p is the unshot power and w the importance-weighted unshot power, both relative
+/// to the first bounce. Returns p if no power is weighted by importance.
 double relative_unshot(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -38,12 +38,13 @@ Estimate zero_estimate(const RunInputs& inputs, const LightState& light) {
     const std::size_t elements = light.forest->size();
     Estimate zero{.irradiance = std::vector<Rgb>(elements, Rgb(0)), .variance = std::vector<float>(elements, 0.0f)};
     zero.groups.assign(inputs.groups.size(), zero.irradiance);
-    const std::size_t direct_parts = std::max<std::size_t>(1, inputs.groups.size());  // one without groups
+    // Without light groups, direct light is a single part.
+    const std::size_t direct_parts = std::max<std::size_t>(1, inputs.groups.size());
     if (light.options().keep_direct) zero.direct.assign(direct_parts, zero.irradiance);
     return zero;
 }
 
-/// May move `received.variance`.
+/// Adds the received light to the sum. The first call moves `received.variance`.
 void add(Estimate& sum, Received& received) {
     sum.escaped_power += received.escaped_power;
     accumulate(sum.groups, received.groups);
@@ -76,21 +77,22 @@ bool oracle_refines_passes(const LightState& light) {
 }  // namespace
 
 void Passes::prepare(SolverState& state) {
-    set_estimate(
-        state.light,
-        zero_estimate(state.inputs, state.light));  // IterationStart keeps the light of an interrupted preparation
+    // Start from zero: an interrupted preparation may have left an estimate.
+    set_estimate(state.light, zero_estimate(state.inputs, state.light));
     if (state.light.options().limits.rays < fewest_rays_with_preparation) return;
-    const bool needs_importance = importance_use(state.light.solution) == ImportanceUse::full;
-    // With importance, all passes share an eighth of the rays. Without, meshes of 20,000 rays need an eighth each.
-    const std::int64_t passes = !needs_importance ? 1 : state.light.options().method.refines ? 3 : 1;
+    const bool uses_importance = importance_use(state.light.solution) == ImportanceUse::full;
+    // With importance, the passes share an eighth of all rays. Without importance, each pass gets an eighth, because
+    // runs of 20,000 rays need that many for the initial mesh.
+    const std::int64_t passes = !uses_importance ? 1 : state.light.options().method.refines ? 3 : 1;
     const std::int64_t rays = state.rays.schedule.start_rays(passes);
     total_unshot_ = 0;
-    if (needs_importance) transport_importance(state, rays);
+    if (uses_importance) transport_importance(state, rays);
     aim_outdoor_light(state);
-    if (state.light.options().method.refines)  // the first pass estimates the light that the oracle needs
+    // Trace one pass on the initial mesh, for the light that the oracle needs, then one pass that refines.
+    if (state.light.options().method.refines)
         for (const bool oracle_refines : {false, true})
             set_estimate(state.light, trace_pass(state, rays, oracle_refines));
-    aim_outdoor_light(state);  // again: passes improve importance
+    aim_outdoor_light(state);  // the passes have improved the importance
     state.rays.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state.rays));
     if (rays_so_far(state.rays) > 0) append_report(state, 0);
 }
@@ -122,14 +124,14 @@ Estimate Passes::trace(SolverState& state, TracedIteration& iteration) {
     Estimate estimate =
         trace_pass(state, iteration.plan.rays - iteration.importance_rays, oracle_refines_passes(state.light));
     iteration.rays = std::max<std::int64_t>(1, iteration.importance_rays + rays_so_far(state.rays) - rays_before);
-    iteration.weight = iteration.rays;  // > 0
+    iteration.weight = iteration.rays;
     return estimate;
 }
 
 void Passes::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
     state.rays.schedule.count_other_rays(iteration.rays_for_new_views);
     scale_history(state.light, iteration.history_factor);
-    needs_importance_ = false;  // an interrupted iteration starts over
+    needs_importance_ = false;  // cleared here and not before, because an interrupted iteration is repeated
     view_change_.clear();
     if (estimate.irradiance.empty()) return;
     estimate_noise(state, estimate, iteration.weight);
@@ -149,7 +151,7 @@ struct Passes::Pass {
     const bool oracle_refines;
     BounceBudget budget;
     ImportanceWeights weights;
-    /// Nonzero for leaves whose rays start at hit points (StartPoints). Empty while the oracle refines.
+    /// Per element: 1 if its reflected rays start at hit points (StartPoints), else 0. Empty while the oracle refines.
     std::vector<std::uint8_t> reflecting_where_received = {};
     bool emits = true;             ///< Whether the next bounce shoots emitted power.
     std::vector<Rgb> unshot = {};  ///< Irradiance that the next bounce reflects.
@@ -161,7 +163,7 @@ struct Passes::Pass {
 
 /// @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
-    state.sampling.payloads = {};  // reported for the last pass only
+    state.sampling.payloads = {};  // the report describes the last pass only
     Pass pass{rays, oracle_refines, BounceBudget(rays, total_unshot_),
               importance_weights(state.light.solution, state.sampling.neighbourhoods, state.inputs.emission,
                                  state.sampling.part_importance)};
@@ -172,9 +174,9 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     }
     total_unshot_ = pass.budget.total_unshot();
     Estimate& sum = pass.sum;
-    if (sum.irradiance.empty()) sum = zero_estimate(state.inputs, state.light);  // no power to shoot
+    if (sum.irradiance.empty()) sum = zero_estimate(state.inputs, state.light);  // no bounce had power to shoot
     if (!oracle_refines) {
-        // Inner elements are still empty.
+        // Rays deposit on leaves only, so compute the inner elements from their children.
         pull(*state.light.forest, sum.irradiance);
         pull_variance(*state.light.forest, sum.variance);
         pull(*state.light.forest, sum.groups);
@@ -186,7 +188,7 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
 /// @return  False if no unshot light or rays are left.
 bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     Solution& solution = state.light.solution;
-    // The first bounce, with the most rays, transports importance.
+    // Only the first bounce transports importance, because it has the most rays.
     const bool carries_importance = pass.emits && importance_use(solution) == ImportanceUse::full &&
                                     !state.light.options().experimental.separate_iterations;
     const Radiosity light(state.inputs.materials, pass.unshot, pass.emits);
@@ -202,7 +204,7 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(unshot) : BounceRays();
     if (rays.expected == 0) return false;
 
-    bounce.plan.rays = rays.started;  // walks trace the others
+    bounce.plan.rays = rays.started;  // random walks continue with the other expected rays
     TransportStep step = make_step(state, pass, std::move(bounce.plan));
     const std::uint32_t old_elements = state.light.forest->size();
     Received received =
@@ -218,7 +220,7 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     if (pass.emits && state.light.options().keep_direct)
         pass.sum.direct = received.groups.empty() ? GroupLight{received.irradiance} : received.groups;
     add(pass.sum, received);
-    if (carries_importance)  // at once: the oracle uses it in the next bounces
+    if (carries_importance)  // merge now, because the oracle uses importance in the next bounces
         merge_importance(state.light, state.rays, received.importance, TracedIteration{{.rays = rays.expected}});
     pass.emits = false;
     pass.start_points = std::move(received.start_points);
@@ -238,7 +240,7 @@ TransportStep Passes::make_step(const SolverState& state, Pass& pass, RayPlan pl
     if (pass.oracle_refines)
         step.oracle = make_oracle(state.light.solution, state.rays.schedule.averaged_rays() + pass.rays,
                                   state.inputs.floor.default_min_area());
-    step.reusable_buffer = &pass.unshot;  // after tracing
+    step.reusable_buffer = &pass.unshot;  // the step no longer needs it after tracing
     return step;
 }
 
@@ -265,7 +267,8 @@ void Passes::change_views(SolverState& state) {
         state.rays.schedule.averaged_rays() > 0 && importance_use(state.light.solution) == ImportanceUse::full;
     if (adapts_history && view_change_.empty()) view_change_.record(state);
     IterationMethod::change_views(state);
-    const bool has_begun = !state.light.solution.iterations.empty();  // otherwise, prepare() transports importance
+    // Before the first iteration, prepare() transports importance.
+    const bool has_begun = !state.light.solution.iterations.empty();
     needs_importance_ = has_begun && importance_use(state.light.solution) == ImportanceUse::full;
     if (!needs_importance_) view_change_.clear();
 }
@@ -276,7 +279,7 @@ void Passes::archive(StateArchive& archive) {
     view_change_.archive(archive);
 }
 
-bool Passes::fits(const SolverState& state) const { return view_change_.fits(state); }
+bool Passes::is_consistent(const SolverState& state) const { return view_change_.is_consistent(state); }
 
 std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state) {
     if (state.light.options().experimental.one_bounce) return std::make_unique<OneBounce>();

@@ -22,7 +22,7 @@ class Passes : public IterationMethod {
     /// Keeps the light; ViewChange adapts its history in the next iteration.
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
-    bool fits(const SolverState& state) const override;
+    bool is_consistent(const SolverState& state) const override;
 
     /// Starts another method with prepare() and one pass.
     void make_first_estimate(SolverState& state);
@@ -40,9 +40,9 @@ class Passes : public IterationMethod {
     static TransportStep make_step(const SolverState& state, Pass& pass, RayPlan plan);
     static void grow_pass(const ElementForest& forest, std::uint32_t first, Pass& pass);
 
-    /// BounceBudget::total_unshot() of the last pass; 0: unknown.
+    /// BounceBudget::total_unshot() of the last pass; 0 before the first pass.
     double total_unshot_ = 0;
-    bool needs_importance_ = false;  // the next iteration starts with transport_importance()
+    bool needs_importance_ = false;  // whether the next iteration starts with transport_importance()
     ViewChange view_change_;
 };
 

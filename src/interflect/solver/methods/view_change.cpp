@@ -18,7 +18,8 @@ std::vector<float> patch_importance(const LightState& light) {
     return values;
 }
 
-/// Variance per ray of old and new sampling, weighted by importance. Payloads are proportional to power over q.
+/// Variance per ray of the old and the new sampling, weighted by importance. The payload of a ray is proportional to
+/// the power of its source over its probability q.
 struct Noise {
     double before = 0, now = 0;
 
@@ -28,7 +29,7 @@ struct Noise {
     }
 };
 
-/// @param importance  By patch.
+/// Computes the noise of rays from leaves. @param importance  One value per patch.
 Noise noise_of_leaves(const RunInputs& inputs, const LightState& light, const std::vector<float>& importance,
                       const std::vector<float>& old_q, const std::vector<float>& new_q) {
     const ElementForest& forest = *light.forest;
@@ -44,7 +45,7 @@ Noise noise_of_leaves(const RunInputs& inputs, const LightState& light, const st
     return noise;
 }
 
-/// The same for outdoor light by one sampling.
+/// Returns the noise of outdoor light for one sampling.
 double noise_of_lines(const Emission& emission, const std::vector<float>& part_q, std::span<const OutdoorLine> lines) {
     double noise = 0;
     for (const OutdoorLine& line : lines)
@@ -101,7 +102,7 @@ std::vector<float> ViewChange::history_factor(const SolverState& state,
 }
 
 void ViewChange::archive(StateArchive& archive) {
-    archive.unchecked("passes/old_q", old_.q);  // not finite if nothing was important
+    archive.unchecked("passes/old_q", old_.q);  // not finite if no surface was important
     archive.unchecked("passes/old_part_q", old_.part_q);
     archive("passes/old_targets", old_.targets);
     for (const Imath::Box3f& target : old_.targets)
@@ -109,7 +110,7 @@ void ViewChange::archive(StateArchive& archive) {
     archive.amounts("passes/old_importance", old_importance_);
 }
 
-bool ViewChange::fits(const SolverState& state) const {
+bool ViewChange::is_consistent(const SolverState& state) const {
     const std::uint32_t patches = state.light.forest->patch_count();
     return old_.q.empty() || (old_.q.size() >= patches && old_.q.size() <= state.light.forest->size() &&
                               old_.targets.size() <= max_targets && old_importance_.size() == patches);

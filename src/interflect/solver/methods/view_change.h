@@ -11,11 +11,12 @@
 
 namespace interflect::detail {
 
-/// Converts history to rays of the new views with the same noise.
+/// Converts the history after a change of views: to the number of rays that would give the same noise with the new
+/// views.
 class ViewChange {
   public:
     bool empty() const { return old_.q.empty(); }
-    /// Call before the views change.
+    /// Records the sampling of the current views. Call before the views change.
     void record(const SolverState& state);
     void clear() { *this = {}; }
     /// Returns a factor per patch.
@@ -23,17 +24,17 @@ class ViewChange {
     std::vector<float> history_factor(const SolverState& state, std::span<const OutdoorLine> outdoor_light) const;
 
     void archive(StateArchive& archive);
-    bool fits(const SolverState& state) const;
+    bool is_consistent(const SolverState& state) const;
 
   private:
     struct Sampling {
-        std::vector<float> q, part_q;  // probability by element, by luminaire part
+        std::vector<float> q, part_q;  // sampling probability of each element and of each luminaire part
         std::vector<Imath::Box3f> targets;
     };
     static Sampling sampling_of(const SolverState& state);
 
     Sampling old_;
-    std::vector<float> old_importance_;  // by patch
+    std::vector<float> old_importance_;  // importance of each patch
 };
 
 void scale_history(LightState& light, const std::vector<float>& factor);

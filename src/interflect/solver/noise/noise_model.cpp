@@ -9,10 +9,10 @@ namespace interflect::detail {
 
 namespace {
 
-/// Weight per iteration of earlier spreads, because mesh and sampling change.
+/// Factor by which the weight of earlier spreads decreases in each iteration, because mesh and sampling change.
 constexpr double spread_decay = 0.75;
 constexpr double largest_scale = 100;
-/// Contributions at which measured shares have weight 1/2.
+/// Number of contributions at which the measured shares have weight 1/2.
 constexpr float contributions_of_half_weight = 16;
 
 }  // namespace

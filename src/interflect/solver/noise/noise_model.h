@@ -25,29 +25,30 @@ class NoiseModel {
     float variance(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex e, float rays) const {
         return scale_[hit_rate_class(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
-    /// The same for a part of the mean. @param independent  Its variance for independent rays.
+    /// Returns the variance of a part of the mean. @param independent  Variance of this part for independent rays.
     float variance_of_part(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex e,
                            float independent) const {
         return scale_[hit_rate_class(forest, mean, e)] * share_of_own(forest, e) * independent;
     }
     bool is_known() const { return iterations_ > 1; }
 
-    /// Returns the noise variance of the siblings `first` ... `first` + 3 relative to its mean. With few rays, a
-    /// sibling may be dark by chance, so the shares tend to 1.
+    /// Returns the noise variance of each sibling `first` ... `first` + 3, relative to the mean variance of the four.
+    /// With few rays, the shares tend to 1, because a sibling may be dark by chance.
     std::array<float, 4> shares(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex first,
                                 float rays) const;
 
-    /// A new element receives a quarter of the rays on a quarter of the area.
+    /// Adds new elements. Their variance per ray is four times that of the parent, because a child receives a quarter
+    /// of the rays on a quarter of the area.
     void grow(const ElementForest& forest, std::uint32_t first);
 
-    /// Call before the iteration is merged.
-    /// @param history  Rays in the mean; 0: the difference from the parent is unknown.
-    /// @param weight   Of the squared error; inner elements have the sum of their leaves.
+    /// Adds the differences between an iteration and the mean. Call before the iteration is merged.
+    /// @param history  Number of rays in the mean of each element; 0: its difference from the parent is unknown.
+    /// @param weight   Weight of the squared error of an element; inner elements have the sum of their leaves.
     void add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
              std::span<const float> history, float rays, const std::function<double(ElementIndex)>& weight);
 
-    /// Takes the variance of independent rays from a mean with known variance, for elements from `first` on.
-    /// @param history  Its rays.
+    /// Sets the variance per ray from a mean with known variance, for the elements from `first` on.
+    /// @param history  Number of rays in the mean of each element.
     void set_variance(std::span<const float> variance, std::span<const float> history, std::uint32_t first = 0) {
         for (std::size_t e = first; e < per_ray_.size(); ++e) per_ray_[e] = history[e] * variance[e];
     }
@@ -73,7 +74,8 @@ class NoiseModel {
         Spread& operator+=(const Spread& other);
     };
 
-    /// Class n: about one in 2^n rays hits the element. Siblings share a class: one may be hit by chance.
+    /// Returns the class n of an element: about one in 2^n rays hits it. Siblings share a class, because a single
+    /// sibling may be hit by chance.
     std::size_t hit_rate_class(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex e) const {
         const ElementIndex parent = forest.parent(e), known = parent == none ? e : parent;
         const float h = luminance(mean[known]), rays_per_contribution = per_ray_[known] / (h * h);
@@ -81,7 +83,8 @@ class NoiseModel {
         const int n = rays_per_contribution > 1 ? std::ilogb(rays_per_contribution) : 0;
         return static_cast<std::size_t>(n) + (parent == none ? 0 : 2);
     }
-    /// Differences from the siblings' mean have three quarters of the variance.
+    /// Returns the variance of an element's difference from its parent, relative to its own variance. For four
+    /// independent siblings it is 3/4.
     static float share_of_own(const ElementForest& forest, ElementIndex e) {
         return e < forest.patch_count() ? 1.0f : 0.75f;
     }
@@ -89,9 +92,9 @@ class NoiseModel {
         return share_of_own(forest, e) * per_ray_[e];
     }
 
-    std::vector<float> per_ray_;  // [irradiance^2]
+    std::vector<float> per_ray_;  // variance of the irradiance for one ray, by element [irradiance^2]
     std::array<float, hit_rate_classes> scale_;
-    Spread spread_;  // decays per iteration
+    Spread spread_;  // earlier iterations have exponentially decreasing weights
     int iterations_ = 0;
 };
 

@@ -7,29 +7,30 @@
 
 namespace interflect::detail {
 
-/// Levels below the leaves to which variation is extrapolated.
+/// Number of levels below the leaves to which variation is extrapolated.
 inline constexpr std::size_t finer_levels = 6;
 
-/// Products of the mean and an independent iteration: on average, squared errors and differences without noise.
+/// Sums of products of the mean and an independent iteration. Their expected values are squared errors and differences
+/// without noise.
 struct RiskCheck {
-    double weight = 0;             ///< 0: no data.
-    double expected = 0;           ///< Squared errors after shrinkage by SiblingVariation::risk().
-    double measured = 0;           ///< The same, by the later iteration.
+    double weight = 0;             ///< Total weight; 0 without data.
+    double expected = 0;           ///< Squared errors after shrinkage, predicted by SiblingVariation::risk().
+    double measured = 0;           ///< Squared errors after shrinkage, measured with the later iteration.
     double signal = 0;             ///< Squared differences of the leaves from their parents.
-    double signal_of_parents = 0;  ///< The same of the parents.
-    /// Share of `signal` that pictures show if the descendants of leaves vary alike, by level.
+    double signal_of_parents = 0;  ///< Squared differences of the leaves' parents from their own parents.
+    /// Part of `signal` that pictures would show if the descendants of leaves varied in the same way, by level.
     std::array<double, finer_levels> within{};
 
     RiskCheck& operator+=(const RiskCheck& o) { return add(1, o, 1); }
-    /// @param share  In [0, 1]; less for short iterations.
+    /// Adds an iteration. @param share  Weight in [0, 1], smaller for short iterations.
     void add(const RiskCheck& fresh, double share) { add(1 - share / 2, fresh, share); }
     bool is_finite() const {
-        // The sum is not finite if a term is not.
+        // The sum is not finite if any term is not finite.
         double sum = weight + expected + measured + signal + signal_of_parents;
         for (const double level : within) sum += level;
         return std::isfinite(sum);
     }
-    /// Returns 1 without data.
+    /// Returns the correction factor of predicted squared errors; 1 without data.
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }
 
   private:

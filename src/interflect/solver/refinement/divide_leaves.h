@@ -8,7 +8,8 @@
 namespace interflect::detail {
 
 /// Subdivides the marked leaves, in order, up to RefinementOptions::max_elements. Children inherit their parent's mean
-/// with a history of 0: their differences are unknown. @param splits  By element; nonzero for leaves to divide.
+/// with a history of 0, because their differences are unknown.
+/// @param splits  One value per element; nonzero for leaves to divide.
 void divide_leaves(SolverState& state, const std::vector<std::uint8_t>& splits);
 
 }  // namespace interflect::detail

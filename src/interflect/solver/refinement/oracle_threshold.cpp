@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Rays at which ExperimentalOptions::epsilon is the threshold.
+/// Number of rays at which ExperimentalOptions::epsilon is the threshold.
 constexpr double rays_at_epsilon = 20e6;
 
 }  // namespace
@@ -22,7 +22,7 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
     oracle.by_importance = importance_use(so_far) != ImportanceUse::off;
     oracle.threshold = so_far.options.experimental.epsilon * decay * reference_power(so_far);
     if (oracle.by_importance) {
-        // Smoothed, because underestimated importance would leave elements coarse.
+        // Smooth the importance, because underestimated importance would leave elements coarse.
         oracle.importance = smoothed_importance(*so_far.forest, importance_of(so_far),
                                                 so_far.options.importance.smoothing, /*exponent=*/1);
         oracle.threshold *= reference_importance(so_far, oracle.importance);
@@ -35,7 +35,8 @@ Oracle make_oracle(const Solution& so_far, std::int64_t rays, double min_area) {
 double reference_power(const Solution& so_far) {
     const ElementForest& forest = *so_far.forest;
     if (so_far.view_importance.empty()) return channel_sum(so_far.emitted_power) / 3;
-    double mean_irradiance = 0, visible_area = 0;  // of the picture, as V sums to 1 [lm/m^2 or W/m^2]; [m^2]
+    double mean_irradiance = 0;  // mean of the pictures, because V sums to 1 [lm/m^2 or W/m^2]
+    double visible_area = 0;     // [m^2]
     for (PatchIndex i{0}; i < forest.patch_count(); ++i) {
         if (!(so_far.view_importance[i] > 0)) continue;
         mean_irradiance += static_cast<double>(so_far.view_importance[i]) * forest.area(i) *

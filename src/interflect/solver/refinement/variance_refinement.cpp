@@ -19,20 +19,21 @@ namespace interflect::detail {
 
 namespace {
 
-/// Expected ratio of squared differences of children and siblings: 1/4 for linear irradiance, 1/2 at an edge.
+/// Expected ratio of the squared differences among a leaf's children to those among its siblings: 1/4 for linear
+/// irradiance, 1/2 at an edge.
 constexpr float expected_decay = 0.3f;
-/// Relative to squared irradiance, for a root.
+/// Assumed squared differences among the children of a patch, relative to its squared irradiance.
 constexpr float assumed_square = 0.04f;
-/// Minimum expected signal relative to the children's noise, which shrinkage suppresses at first.
+/// Minimum expected signal for a split, relative to the children's noise, which shrinkage suppresses at first.
 constexpr float min_signal = 0.12f;
-/// Reduction of the total squared error by a split.
+/// A leaf is not split if this reduces the total squared error by less than this share.
 constexpr double negligible_gain = 2e-7;
-/// Share of the pictures' light that a leaf reflects from wrong places.
+/// A leaf is split if it reflects more than this share of the pictures' light from wrong places.
 constexpr double negligible_misplacement = 3e-7;
-/// Leaves above this share reflect where they receive (docs/method/method.md, A run). Light behind a 1 cm slit is then
-/// within 6%.
+/// The rays of leaves above this share start at hit points (docs/method/method.md, A run). The light behind a slit of 1
+/// cm then has an error of at most 6%.
 constexpr double tolerable_misplacement = 3e-5;
-/// Relative weight of errors on invisible surfaces, whose effect on the view is blurred.
+/// Relative weight of errors on invisible surfaces. It is small because their effect on the view is blurred.
 constexpr double invisible_error_weight = 0.02;
 
 class VarianceOracle {
@@ -69,14 +70,14 @@ class VarianceOracle {
         return blurs || misplaces;
     }
 
-    /// True if unknown.
+    /// Returns whether a leaf may reflect a significant amount of light from wrong places; true if this is unknown.
     bool may_misplace(ElementIndex leaf) const {
         if (state_.light.history[leaf] == 0 || !state_.light.noise.is_known()) return true;
         return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > max_misplaced_power_;
     }
 
   private:
-    /// Mean squared differences from the leaf.
+    /// Expected mean squared differences of the children from the leaf.
     struct Expected {
         float signal, noise;
     };
@@ -97,7 +98,7 @@ class VarianceOracle {
         }
         return w * forest_.area(leaf);
     }
-    /// Returns [lm or W, times importance].
+    /// Returns the power that the leaf reflects from wrong places [lm or W, times importance].
     double misplaced_power(ElementIndex leaf, float signal) const {
         const double rho = luminance(state_.inputs.materials.surface(forest_.patch(leaf), leaf).reflectance);
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
@@ -110,7 +111,7 @@ class VarianceOracle {
         return mean * mean * weight;
     }
 
-    /// Light in the pictures or, without a view, all received power.
+    /// Returns the light in the pictures or, without a view, all received power.
     double reference_power() const {
         if (!psi_.empty()) return error_reference(state_.inputs, state_.light, ErrorMeasure::pictures);
         double sum = 0;
@@ -122,8 +123,8 @@ class VarianceOracle {
     const SolverState& state_;
     const ElementForest& forest_;
     ErrorMeasure measure_;
-    std::optional<VisibleDifference> visible_;                  // if it decides
-    std::span<const float> psi_;                                // indirect importance, if used
+    std::optional<VisibleDifference> visible_;                  // only for the perceptual criterion
+    std::span<const float> psi_;                                // indirect importance; empty if it is not used
     double min_misplaced_power_ = 0, max_misplaced_power_ = 0;  // [lm or W, times importance]
 };
 

@@ -13,16 +13,16 @@ namespace interflect::detail {
 
 namespace {
 
-// The display: white of tone_map() by default, black with a contrast of 200 in a lit room [cd/m^2].
+// Luminance of the display [cd/m^2]: its white is the default of tone_map(), and its contrast in a lit room is 200.
 constexpr float display_white = 100, display_black = 0.5f;
-/// Logarithmic mean of a picture relative to white, as in automatic_exposure().
+/// Logarithmic mean of a picture, relative to white, after automatic_exposure().
 constexpr float mean_over_white = 0.2f;
-/// The observer of FLIP (docs/method/metrics.md).
+/// Resolution for the observer of FLIP (docs/method/metrics.md).
 constexpr float pixels_per_degree = 67.02f;
-/// Cycles per degree of the greatest sensitivity.
+/// Frequency of the greatest sensitivity [cycles per degree].
 constexpr double best_frequency = 8;
-/// JND of a steadily viewed edge relative to cone_threshold(), which is for brief flashes. Chosen by measurement
-/// (docs/method/results.md).
+/// Just noticeable difference of a steadily viewed edge, relative to cone_threshold(), which applies to brief flashes.
+/// The value was chosen by measurement (docs/method/results.md).
 constexpr float jnd_of_edge = 0.2f;
 
 /// Returns the logarithmic mean of reflected light in the pictures [lm/m^2 or W/m^2]; 0 if they are dark.
@@ -47,7 +47,8 @@ double logarithmic_mean(const RunInputs& inputs, const LightState& light) {
     return sums.weight > 0 ? std::exp2(sums.stops / sums.weight) : 0;
 }
 
-/// Edges contain all higher frequencies, so large elements are not less visible.
+/// Returns the sensitivity relative to its maximum. It is 1 for low frequencies, because the edges of large elements
+/// contain all higher frequencies.
 float relative_sensitivity(double cycles_per_degree) {
     return static_cast<float>(contrast_sensitivity(std::max(best_frequency, cycles_per_degree)) /
                               contrast_sensitivity(best_frequency));
@@ -108,7 +109,7 @@ float VisibleDifference::threshold(ElementIndex leaf) const {
     const float shown = exposure_ * luminance(rho);  // display luminance per irradiance
     if (!(light_.solution.view_importance[leaf] > 0 && shown > 0)) return infinity;
     const float pixels = light_.forest->area(leaf) / pixel_area(inputs_, light_, leaf);
-    const float period = std::sqrt(std::max(1.0f, pixels));  // of two children, in pixels
+    const float period = std::sqrt(std::max(1.0f, pixels));  // extent of two adjacent children [pixels]
     const float unmasked = jnd_of_edge * cone_threshold(adapted_luminance(leaf, pixels)) /
                            relative_sensitivity(static_cast<double>(pixels_per_degree / period));
     const float visible = unmasked * threshold_elevation(masking_contrast(leaf) / unmasked);

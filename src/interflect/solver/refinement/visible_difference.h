@@ -9,7 +9,7 @@ namespace interflect::detail {
 /// Just noticeable differences (JND) in tone-mapped pictures on a display (docs/method/method.md, Visible differences).
 class VisibleDifference {
   public:
-    /// Needs full importance. The arguments must outlive this. O(elements).
+    /// Requires full importance. The arguments must outlive this. Cost: O(elements).
     explicit VisibleDifference(const RunInputs& inputs, const LightState& light);
 
     /// Returns the smallest mean squared difference of a leaf's children that is visible directly [(lm/m^2)^2 or

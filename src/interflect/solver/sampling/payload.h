@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// Payload of one ray. Leaf s: power A_s B_s / (N q_s), importance A_s rho_s psi_s / (N q_s). Luminaire part: its power
-/// / (N q_s).
+/// Payload of one ray. From leaf s: power A_s B_s / (N q_s) and importance A_s rho_s psi_s / (N q_s). From a luminaire
+/// part: its power / (N q_s).
 class Payload {
   public:
     Payload(const Materials& materials, const ElementForest& forest, const RayPlan& plan, double q_sum)
@@ -54,7 +54,7 @@ class Payload {
     const Materials& materials_;
     const ElementForest& forest_;
     const RayPlan& plan_;
-    std::uint32_t elements_;  // before the step
+    std::uint32_t elements_;  // number of elements before the step
     double q_sum_over_rays_;
 };
 
@@ -65,7 +65,8 @@ class PayloadHistogram {
     void add(double power, std::int64_t rays);
     PayloadHistogram& operator+=(const PayloadHistogram& other);
 
-    double largest_over_mean() const;  ///< 1 without power.
+    /// Returns the largest power of a ray, relative to the mean; 1 without power.
+    double largest_over_mean() const;
     /// Returns the power that a share of the rays exceeds, relative to the mean; accurate to 19%.
     double quantile_over_mean(double share) const;
 
@@ -86,7 +87,7 @@ class PayloadHistogram {
 
 struct PayloadTotals {
     RgbD power{0, 0, 0};  ///< [lm or W]
-    double square = 0;    ///< Squared luminance of power.
+    double square = 0;    ///< Sum of the squared luminance of power.
     double importance = 0;
     double importance_square = 0;
     PayloadHistogram histogram;

@@ -26,7 +26,9 @@ struct WeightSums {
     }
 };
 
-/// @param powers       Zeros; set by element. @param importances  The same; empty if not shared.
+/// Computes the sums of the weights of leaves.
+/// @param powers       Zeros; receives the power of each leaf.
+/// @param importances  Zeros; receives the importance of each leaf. Empty if no rays are sampled by importance.
 WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, std::span<double> powers,
                         std::span<double> importances) {
     const bool by_power = shares.power > 0 || shares.weighted_power > 0 || shares.power_nearby > 0;
@@ -71,7 +73,7 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     weigh_parts(sampled, shares, sums);
     const auto factor = [](double share, double of) { return of > 0 ? share / of : 0; };
     const double for_power = factor(shares.power, sums.power),
-                 for_driven = factor(shares.weighted_power, sums.weighted_power),
+                 for_weighted = factor(shares.weighted_power, sums.weighted_power),
                  for_nearby = factor(shares.power_nearby, sums.power_nearby),
                  for_importance = factor(shares.importance, sums.importance);
     std::vector<float> q(forest.size() + sampled.part_count());
@@ -79,17 +81,17 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
         for (ElementIndex e(begin); e < end; ++e) {
             const double importance = importances.empty() ? 0 : for_importance * importances[e];
             double by_power = for_power;
-            if (powers[e] > 0 && for_driven > 0) by_power += for_driven * sampled.importance_weight[e];
+            if (powers[e] > 0 && for_weighted > 0) by_power += for_weighted * sampled.importance_weight[e];
             if (powers[e] > 0 && for_nearby > 0) by_power += for_nearby * sampled.nearby[forest.patch(e)];
             q[e] = static_cast<float>(by_power * powers[e] + importance);
         }
     });
     for (std::size_t i = 0; i < sampled.part_count(); ++i) {
         double by_power = for_power;
-        if (sampled.part_importance.empty())  // unknown: the mean
+        if (sampled.part_importance.empty())  // if the importance is unknown, use the mean
             by_power = factor(shares.power + shares.weighted_power + shares.power_nearby, sums.power);
         else
-            by_power += for_driven * sampled.part_importance[i] + for_nearby * sampled.part_nearby[i];
+            by_power += for_weighted * sampled.part_importance[i] + for_nearby * sampled.part_nearby[i];
         q[forest.size() + i] = static_cast<float>(by_power * channel_sum(sampled.emission->power(i)));
     }
     return {std::move(q), sums.lost, sums.power, sums.weighted_power};

@@ -8,18 +8,19 @@
 
 namespace interflect::detail {
 
-/// Systematic allocation of N rays to sources, in order: N q_s / sum q for source s, rounded up or down, exact in the
-/// mean over `offset`.
+/// Systematic allocation of N rays to sources, in order. Source s receives N q_s / sum q rays, rounded up or down. The
+/// mean over all values of `offset` is exact.
 class RayAllocation {
   public:
     /// @param q       Weights >= 0, not normalised; must outlive this.
-    /// @param rays    N > 0. @param offset  Uniform in [0, 1).
+    /// @param rays    Number N of rays, > 0.
+    /// @param offset  Uniform random number in [0, 1).
     RayAllocation(std::span<const float> q, std::int64_t rays, double offset);
 
-    double q_sum() const { return q_sum_; }  ///< 0: no rays.
+    double q_sum() const { return q_sum_; }  ///< Sum of the weights; 0: no source receives rays.
 
-    /// Calls body(s, first, from, to) for sources of rays [begin, end). `first` is the first ray of s; [from, to) are
-    /// in the range.
+    /// Calls body(s, first, from, to) for each source s of the rays [begin, end). `first` is the first ray of s, and
+    /// [from, to) are its rays in the range.
     template <class Body>
     void for_each_source(std::int64_t begin, std::int64_t end, const Body& body) const {
         const auto after =
@@ -36,8 +37,8 @@ class RayAllocation {
 
     std::size_t block_count() const { return blocks_.size(); }
     static std::size_t block_of(std::size_t source) { return source / block_sources; }
-    /// Calls body(s, first, next) for a block's sources, with rays [first, next), until it returns false. Returns the
-    /// last result.
+    /// Calls body(s, first, next) for each source s of a block, which has the rays [first, next). Stops if `body`
+    /// returns false. Returns the last result.
     template <class Body>
     bool for_each_in_block(std::size_t block, const Body& body) const {
         const std::size_t begin = block * block_sources, end = std::min(q_.size(), begin + block_sources);
@@ -56,10 +57,10 @@ class RayAllocation {
   private:
     static constexpr std::size_t block_sources = 256;
     struct SourceBlock {
-        double q_before;         // over previous blocks
-        std::int64_t first_ray;  // of previous blocks
+        double q_before;         // sum of the weights of all previous blocks
+        std::int64_t first_ray;  // number of rays of all previous blocks
     };
-    /// `q` has the same bits at the end of a block and at the start of the next.
+    /// Returns the number of rays before a source, if the sum of the weights before it is `q`.
     std::int64_t rays_before(double q) const {
         const double before = q / q_sum_ * static_cast<double>(rays_) + offset_;
         return std::min(rays_, static_cast<std::int64_t>(before));  // N + offset may round up to N + 1

@@ -22,9 +22,10 @@ struct CosSin {
     float cosine, sine;
 };
 
-/// Returns (cos, sin) of 2 pi t for t in [0, 1], to 3e-7. Vectorises.
+/// Returns the cosine and sine of 2 pi `turn`, for `turn` in [0, 1], with an error of 3e-7. Compilers generate vector
+/// code.
 inline CosSin cos_sin_of_turn(float turn) {
-    // Nearest quarter turn, then Taylor series on [-pi/4, pi/4].
+    // Subtract the nearest quarter turn, then use Taylor series on [-pi/4, pi/4].
     const float quadrant = std::floor(4 * turn + 0.5f);
     const float x = (turn - 0.25f * quadrant) * 6.283185307f, x2 = x * x;
     const float s = x * (1 + x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040))));
@@ -45,7 +46,8 @@ void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, Poin
         const std::size_t count = std::min(PointBlock::capacity, rays.size() - begin);
         fill_points(set, key, first_sample + begin, count, points);
         auto& [a, b, c, d] = points.coordinate;
-        for (std::size_t i = 0; i < count; ++i) {  // Malley's method: uniform on the disk, projected up
+        for (std::size_t i = 0; i < count;
+             ++i) {  // Malley's method: project a uniform point of the disk to the hemisphere
             const float radius = std::sqrt(c[i]), height = std::sqrt(1 - c[i]);
             const CosSin turn = cos_sin_of_turn(d[i]);
             rays[begin + i].direction =
@@ -110,7 +112,7 @@ void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_
     constexpr std::size_t blocks_per_task = 16;
     streams.used.resize(std::max(streams.used.size(), elements), 0);
     streams.used_by_parts.resize(std::max(streams.used_by_parts.size(), parts), 0);
-    // A source belongs to one block, hence to one thread.
+    // A source belongs to a single block and hence to a single thread.
     parallel_for_ranges(allocation.block_count(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block)
             allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {

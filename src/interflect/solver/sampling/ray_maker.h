@@ -16,20 +16,21 @@
 
 namespace interflect::detail {
 
-/// Each leaf's sequence continues through all iterations.
+/// Random sequences of the sources. The sequence of a leaf continues through all iterations.
 struct SampleStreams {
     SampleStreams(PointSet set, std::uint64_t run_seed) : points(set), seed(run_seed) {}
 
     PointSet points;
     std::uint64_t seed;
-    std::vector<std::uint64_t> used;
-    std::vector<std::uint64_t> used_by_parts;
-    std::uint64_t allocations = 0;
+    std::vector<std::uint64_t> used;           // number of used points of each leaf
+    std::vector<std::uint64_t> used_by_parts;  // number of used points of each luminaire part
+    std::uint64_t allocations = 0;             // number of allocations so far
 };
 
-/// Origins are uniform on the cell, `offset` above the patch. Directions have density cos(theta) / pi.
-/// @param key     Of the point sequence (fill_points).
-/// @param starts  Origins to sample (StartPoints::of); empty: uniform.
+/// Samples rays with origins `offset` above the patch, uniform on the cell. Directions have the density cos(theta) /
+/// pi.
+/// @param key     Key of the point sequence (fill_points).
+/// @param starts  Origins to sample (StartPoints::of); empty: uniform origins.
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
                 std::uint64_t first_sample, PointBlock& points, std::span<Ray> rays, std::span<Parameters> origins,
                 std::span<const StartPoint> starts = {});
@@ -40,7 +41,7 @@ struct SourceRays {
     std::uint32_t begin, end;
 };
 
-/// One object per thread.
+/// Rays that a thread makes at once.
 struct RayBatch {
     std::vector<SourceRays> sources;
     std::vector<Ray> rays;
@@ -48,7 +49,7 @@ struct RayBatch {
     PointBlock points;
 };
 
-/// Refers to its arguments.
+/// Samples the rays of a plan. Refers to its arguments.
 class RayMaker {
   public:
     RayMaker(const ElementForest& forest, const RayCaster& ray_caster, const RayPlan& plan,

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Share of importance-driven rays sampled by neighbourhood importance.
+/// Share of the importance-driven rays that are sampled by the importance of neighbourhoods.
 constexpr double share_of_nearby = 0.2;
 
 MixtureWeights shares_of(const Solution& so_far, bool combined, bool nearby) {

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Quantises x in [0, 1] to the even bits.
+/// Returns x in [0, 1], quantised to 16 bits, which occupy the even bits of the result.
 std::uint32_t spread_bits(float x) {
     auto bits = static_cast<std::uint32_t>(std::clamp(x, 0.0f, 1.0f) * 65535.0f);
     bits = (bits | bits << 8) & 0x00ff00ffu;

@@ -12,19 +12,22 @@ namespace interflect::detail {
 
 namespace {
 
-/// Contributions of a part, found or expected, at which its measured variance has weight 1/2. With fewer, parts tend to
-/// the variance that their area and the mean of the cluster suggest: one without any would seem to be exactly black.
+/// Number of contributions to a part, found or expected, at which its measured variance has weight 1/2. With fewer
+/// contributions, the variance tends to the one that the part's area and the cluster's mean suggest. Otherwise a part
+/// without contributions would seem to be exactly black.
 constexpr double contributions_of_half_trust = 8;
-/// Contributions at which a part keeps at least half of its own mean, however it differs from its cluster; with ten
-/// times as many 99%. Most parts have this signal, and bright faces beside a lamp exceed it.
+/// Number of contributions at which a part keeps at least half of its own mean, for any difference from its cluster.
+/// With ten times as many, it keeps 99%. Bright faces beside a lamp need this, because they differ from most parts of
+/// their cluster.
 constexpr double contributions_of_own_mean = 80;
-/// In a region of the pictures that keeps its mean. Fewer would bring noise of the unreduced light back.
+/// Minimum number of camera rays in a region of the pictures that keeps its mean. Smaller regions would restore the
+/// noise of the unshrunk light.
 constexpr double fewest_camera_rays = 1024;
 constexpr std::size_t clusters_per_task = 1 << 10;
 
 struct Sums {
-    double area = 0, power = 0;  // [m^2], luminance of the received power
-    double variance = 0;         // of the power
+    double area = 0, power = 0;  // area [m^2] and luminance of the received power
+    double variance = 0;         // variance of `power`
 
     explicit Sums(double a = 0, double p = 0, double v = 0) : area(a), power(p), variance(v) {}
     Sums& operator+=(const Sums& o) {
@@ -38,7 +41,7 @@ struct Sums {
     double contributions() const { return variance > 0 ? power * power / variance : 0; }
 };
 
-/// Returns the variance of a part's mean. @param least_payload  Of the cluster's parts.
+/// Returns the variance of a part's mean. @param least_payload  Smallest payload of the cluster's parts.
 double variance_of(const Sums& part, double cluster_mean, double least_payload) {
     const bool is_known = part.power > 0 && part.variance > 0;
     const double payload = is_known ? part.payload() : least_payload;
@@ -53,9 +56,9 @@ struct Sample {
 };
 
 /// Estimates the variance of the true values (Paule and Mandel, Consensus values and weighting factors, 1982): the
-/// least with which the samples' deviations from their weighted mean are as large as expected. Precise samples decide.
+/// smallest variance with which the deviations of the samples from their weighted mean are as large as expected.
 double variance_of_true_values(std::span<const Sample> samples) {
-    constexpr double tolerance = 1e-3;  // relative; the estimate varies by a tenth or more
+    constexpr double tolerance = 1e-3;  // relative; the standard error of the estimate is at least a tenth
     constexpr int most_steps = 20;
     const double expected = static_cast<double>(samples.size() - 1);
     double signal = 0;
@@ -79,17 +82,17 @@ double variance_of_true_values(std::span<const Sample> samples) {
     return signal;
 }
 
-/// Patches that share a mean of the pictures.
+/// Patches whose mean in the pictures is preserved together.
 struct Region {
-    double share = 0, area = 0;            // of the pictures; [m^2]
-    RgbD before{0, 0, 0}, after{0, 0, 0};  // the reduction, in the pictures
-    // Uncertain light in the pictures and over the area, and weighted by visibility():
+    double share = 0, area = 0;            // share of the pictures; area of the patches [m^2]
+    RgbD before{0, 0, 0}, after{0, 0, 0};  // light in the pictures before and after shrinkage
+    // Uncertain light in the pictures and on the surfaces, without and with the weight visibility():
     RgbD shown{0, 0, 0}, shown_visible{0, 0, 0}, power{0, 0, 0}, power_visible{0, 0, 0};
 
-    /// 1 for patches that are seen at least as well as the region on average.
+    /// Returns 1 for patches that are at least as visible as the region on average, and less for other patches.
     double visibility(double seen) const { return std::min(1.0, seen * area / share); }
 
-    /// @param uncertainty  Share of the cluster's mean in the reduced light.
+    /// Adds a patch. @param uncertainty  Share of the cluster's mean in the shrunk light.
     void add(double seen, double patch_area, double uncertainty, const RgbD& unreduced, const RgbD& reduced) {
         if (!(share > 0)) return;
         before += seen * patch_area * unreduced;
@@ -101,10 +104,11 @@ struct Region {
         power_visible += visibility(seen) * uncertain;
     }
 
-    /// Returns 1 + x uncertainty (visibility - y), which keeps the power and makes `after` equal to `before`. Where
-    /// little is hidden, y = 0. No patch changes by more than its uncertain light.
+    /// Returns the factor 1 + x uncertainty (visibility - y) of a patch. The numbers x and y preserve the power and
+    /// make `after` equal to `before`. If few patches are hidden, y = 0. No patch changes by more than its uncertain
+    /// light.
     float factor(double seen, double uncertainty, int c) const {
-        constexpr double most = 0.5;  // change of hidden patches
+        constexpr double most = 0.5;  // maximum relative change of hidden patches
         const auto change = [&](double y) { return (before[c] - after[c]) / (shown_visible[c] - y * shown[c]); };
         if (!(shown_visible[c] > 0)) return 1;
         double y = power_visible[c] / power[c];
@@ -135,7 +139,8 @@ void ClusterShrinkage::measure_parts() {
                      h = luminance(irradiance_[p]);
         const double of_all =
             light.noise.variance(forest, light.solution.irradiance, p, std::max(light.history[p], 1.0f));
-        const double variance = all > 0 ? of_all * std::clamp(h / all, 0.0, 1.0) : 0;  // fewer of the same rays
+        // A part of the light consists of a part of the rays, with the same payloads.
+        const double variance = all > 0 ? of_all * std::clamp(h / all, 0.0, 1.0) : 0;
         return Sums(area, area * h, area * area * variance);
     });
     parts_[0].variance = static_cast<float>(sums[0].variance / (sums[0].area * sums[0].area));
@@ -167,17 +172,19 @@ void ClusterShrinkage::measure_parts() {
     });
 }
 
-/// Returns reduced means of the parts of a cluster in one channel, with the mean `mean` over the area. Uncertain parts
-/// change most; none changes by more than `most_errors` standard errors (limited translation: Efron and Morris,
-/// Limiting the risk of Bayes and empirical Bayes estimators, 1972).
-/// @param own  Unreduced means of the parts. @param mean  Of the reduced cluster.
-/// @param to_channel  Irradiance of the channel over luminance.
+/// Returns the shrunk means of the parts of a cluster in one channel. Their area-weighted mean is `mean`. Uncertain
+/// parts change most. No part changes by more than `most_errors` standard errors (limited translation: Efron and
+/// Morris, Limiting the risk of Bayes and empirical Bayes estimators, 1972).
+/// @param own         Unshrunk means of the parts.
+/// @param mean        Shrunk mean of the cluster.
+/// @param to_channel  Ratio of the irradiance of the channel to the luminance.
 ClusterShrinkage::Means ClusterShrinkage::reduce_parts(std::span<const Part> parts, const Means& own, float mean,
                                                        float to_channel) {
     constexpr float most_errors = 3, tolerance = 1e-6f;
     constexpr int most_steps = 10;
     Means reduced;
-    float missing = 0, shared = 0;                   // part of the mean; multiple of kept * variance
+    float missing = 0;                               // difference between `mean` and the mean of the parts
+    float shared = 0;                                // each part changes by this multiple of kept * variance
     for (int step = 0; step < most_steps; ++step) {  // Newton's method for a sum that is linear in pieces
         float slope = 0;
         missing = mean;
@@ -200,7 +207,7 @@ ClusterShrinkage::Means ClusterShrinkage::reduce_parts(std::span<const Part> par
     return reduced;
 }
 
-/// From the scene to the patches.
+/// Returns the shrunk means of the patches. Shrinks clusters from the root of the tree down to the patches.
 std::vector<Rgb> ClusterShrinkage::reduce() const {
     std::vector<Rgb> means(irradiance_.begin(), irradiance_.begin() + clusters_->patch_count());
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
@@ -232,8 +239,9 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
     return means;
 }
 
-/// Clusters preserve the mean over their area, but visible patches may be brighter than hidden ones. Scales uncertain
-/// light: of visible patches to keep the mean of the pictures, of hidden patches to keep the power.
+/// Restores the means of regions of the pictures. Shrinkage preserves the mean over the area of a cluster, but its
+/// visible patches may be brighter than its hidden patches. Scales the uncertain light of visible patches to restore
+/// the mean of the pictures, and that of hidden patches to preserve the power.
 void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vector<Rgb>& means) const {
     const ElementForest& forest = *light_->forest;
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();

@@ -10,31 +10,32 @@
 
 namespace interflect::detail {
 
-/// Reduces the differences between the parts of each cluster that are mostly noise (docs/method/method.md, Clusters).
+/// Shrinks differences between the parts of each cluster that consist mostly of noise (docs/method/method.md,
+/// Clusters).
 class ClusterShrinkage {
   public:
-    /// @param light, clusters, irradiance  Must outlive this. The irradiance is all light or a part of it, by patch;
-    /// elements may follow.
+    /// Arguments must outlive this.
+    /// @param irradiance  All light or a part of it, one value per patch; values of elements may follow.
     ClusterShrinkage(const LightState& light, const PatchClusters& clusters, std::span<const Rgb> irradiance);
 
     struct Errors {
         float noise = 0, bias = 0;
     };
-    /// Sets the errors of the reduced means of patches, as squared luminance.
-    /// @param shown  Returns the share of variance that pictures show of a node, by its index.
+    /// Computes the errors of the shrunk means of patches, as squared luminance.
+    /// @param shown  Returns the share of the variance of a node, given by its index, that pictures show.
     template <class Shown>
     void measure_errors(std::span<Errors> of_patches, const Shown& shown) const;
 
-    /// Returns the reduced means of the patches.
+    /// Returns the shrunk means of the patches.
     /// @param camera_rays  ViewImportance::rays() of the views.
     std::vector<Rgb> means(std::int64_t camera_rays) const;
 
   private:
     struct Part {
-        float share = 1;     // of its cluster's area
-        float kept = 1;      // share of its own mean; the rest is its cluster's
-        float variance = 0;  // of its own mean, as squared luminance
-        float signal = 0;    // variance of the true means in its cluster
+        float share = 1;     // share of the area of its cluster
+        float kept = 1;      // weight of its own mean in the shrunk mean; the cluster's mean has weight 1 - kept
+        float variance = 0;  // variance of its own mean, as squared luminance
+        float signal = 0;    // variance of the true means of the parts of its cluster
     };
     using Means = std::array<float, PatchClusters::most_parts>;
 
@@ -46,7 +47,7 @@ class ClusterShrinkage {
     const LightState* light_;
     const PatchClusters* clusters_;
     std::span<const Rgb> irradiance_;
-    std::vector<Part> parts_;  // by node
+    std::vector<Part> parts_;  // one for each node of the tree
 };
 
 template <class Shown>

@@ -7,9 +7,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Siblings are under-sampled below this fraction of their parent's rays.
+/// Siblings count as under-sampled until they have received this fraction of their parent's rays.
 constexpr float under_sampled = 0.125f;
-/// Expected decay of the signal per level at an edge.
+/// Expected ratio of the signal of two successive levels at an edge, which is the largest expected ratio.
 constexpr float highest_expected_decay = 0.5f;
 
 }  // namespace
@@ -24,7 +24,7 @@ float SiblingVariation::risk() const {
         const float kept = shrinkage();
         return kept * kept * noise + (1 - kept) * (1 - kept) * assumed;
     }
-    // James-Stein: y = signal + noise in d = 3 dimensions, multiplied by max(0, 1 - d sigma^2 / |y|^2).
+    // James-Stein estimator: y, which is signal + noise in d = 3 dimensions, times max(0, 1 - d sigma^2 / |y|^2).
     return spread > noise ? noise + noise * (noise / (3 * spread)) : spread - noise;
 }
 
@@ -45,7 +45,8 @@ SiblingVariation sibling_variation(const LightState& light, ElementIndex first) 
         variance += a * light.noise.variance(forest, irradiance, e, light.history[first]);
     }
     SiblingVariation variation{spread / area, variance / area};
-    // With few rays, shrinkage leaves more noise than signal. The parent's siblings bound the signal.
+    // With few rays, shrinkage by the measured signal leaves more noise than signal. The siblings of the parent bound
+    // the signal.
     const ElementIndex parent = forest.parent(first);
     if (uses_shrinkage(light) && light.history[first] < under_sampled * light.history[parent])
         variation.assumed = parent < forest.patch_count()
@@ -56,15 +57,16 @@ SiblingVariation sibling_variation(const LightState& light, ElementIndex first) 
 }
 
 AddedError added_error(const LightState& light, ElementIndex first, const SiblingVariation& variation) {
-    if (!variation.is_known()) return {};  // the siblings equal their parent
+    if (!variation.is_known()) return {};  // the siblings have the value of their parent
     if (!uses_shrinkage(light)) return {variation.noise, 0};
     const float kept = variation.shrinkage(), noise = kept * kept * variation.noise;
-    // Largest variance of four non-negative numbers; bounds rays with a large weight.
+    // The variance of four non-negative numbers is at most 3 mean^2. This bounds the effect of rays with a large
+    // weight.
     const float mean = luminance(light.solution.irradiance[light.forest->parent(first)]), most = 3 * mean * mean;
     return {noise, std::clamp(variation.risk() - noise, -most, most)};
 }
 
-/// Applies a Wiener filter (docs/method/method.md, Shrinkage).
+/// Computes the factors of a Wiener filter (docs/method/method.md, Shrinkage).
 Shrinkage shrinkage_of(const LightState& light, ElementIndex first, const SiblingVariation& variation) {
     const ElementForest& forest = *light.forest;
     Shrinkage s{{1, 1, 1, 1}, light.noise.shares(forest, light.solution.irradiance, first, light.history[first])};

@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum cosine: at grazing angles, a pixel covers a long, narrow area.
+/// Minimum cosine for the area of a pixel, which becomes long and narrow at grazing angles.
 constexpr float min_cosine = 0.1f;
 
 }  // namespace

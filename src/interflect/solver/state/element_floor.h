@@ -12,11 +12,11 @@ class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);
 
-    /// Smallest area that a pixel of any view covers [m^2]; infinite without views.
+    /// Returns the smallest area that a pixel of any view covers [m^2]; infinite without views.
     float pixel_area(const V3f& centre, const V3f& normal) const;
 
-    /// RefinementOptions::min_area if given, else pixel_area() if a view sees the element, else default_min_area()
-    /// [m^2].
+    /// Returns RefinementOptions::min_area if it is given, else pixel_area() if a view shows the element, else
+    /// default_min_area() [m^2].
     float min_area(const V3f& centre, const V3f& normal, bool is_seen) const;
 
     /// Returns default_element_size() squared, or RefinementOptions::min_area if given [m^2].
@@ -25,7 +25,7 @@ class ElementFloor {
   private:
     struct ViewPoint {
         V3f position;
-        float pixel;  // width at distance 1
+        float pixel;  // width of a pixel at distance 1
     };
     std::vector<ViewPoint> cameras_;
     float default_min_area_;

@@ -15,7 +15,7 @@
 
 namespace interflect::detail {
 
-/// 20 halvings in each chain reach from 10 km to 1 cm.
+/// Maximum number of chains of targets, and of all targets. The 20 halvings of a chain reach from 10 km to 1 cm.
 inline constexpr int max_chains = 4, max_targets = 80;
 
 /// The scene of a run. Constant, except for views and dimmed sources.
@@ -24,13 +24,13 @@ struct RunInputs {
     RunInputs(const Scene& scene, const RayCaster& caster, const SolveOptions& options);
 
     const Scene& scene;
-    const Scene* lit = &scene;  // with dimmed sources
+    const Scene* lit = &scene;  // scene with dimmed sources
     const RayCaster& ray_caster;
     const SourceGroups groups;
     Materials materials;
-    std::vector<Imath::Box3f> targets;  // of outdoor light, for the current views
+    std::vector<Imath::Box3f> targets;  // targets of outdoor light for the current views
     Emission emission;
-    ElementFloor floor;                   // for the current views
+    ElementFloor floor;                   // minimum size of elements for the current views
     std::vector<PatchClusters> clusters;  // empty if differences between patches are not shrunk
 };
 

@@ -11,22 +11,22 @@ namespace interflect::detail {
 
 namespace {
 
-/// Includes one or two seconds of new elements, since a step may create more than it keeps; at most half the free
-/// address space.
+/// Returns the capacity of the forest. It exceeds max_elements by the new elements of one or two seconds, because a
+/// step may create more elements than it keeps. It takes at most half of the free address space.
 std::size_t forest_capacity(const Scene& scene, const SolveOptions& options) {
     constexpr std::size_t largest = 0xfffffff0u, excess = std::size_t{1} << 26;
     const std::size_t groups = std::min(scene.light_groups.size() + 1, max_light_groups);
     const std::size_t per_element = ElementForest::reserved_per_element +
                                     ContributionSums::reserved_per_element(scene.light_groups.empty() ? 0 : groups);
     if (!options.method.refines) return scene.patches.size();
-    if (!options.method.is_stochastic) return options.refinement.max_elements;  // never exceeded
+    if (!options.method.is_stochastic) return options.refinement.max_elements;  // these methods never exceed it
     const std::size_t fitting = free_address_space() / 2 / per_element;
     return std::min(largest, options.refinement.max_elements +
                                  std::min(excess, fitting - std::min(fitting, options.refinement.max_elements)));
 }
 
-/// Power of the sources [lm or W], summed over the patches, so it does not depend on their elements. A resumed run,
-/// whose elements exist from the beginning, has the same bits.
+/// Returns the power of the sources [lm or W]. It is summed over patches, so it does not depend on their elements, and
+/// a resumed run, whose elements exist from the beginning, has the same bits.
 RgbD emitted_power(const RunInputs& inputs, const ElementForest& forest) {
     const auto of_patches = [&](std::size_t begin, std::size_t end) {
         RgbD sum(0);

@@ -22,18 +22,18 @@ struct LightState {
 
     const std::shared_ptr<ElementForest> forest;
     Solution solution;
-    std::vector<float> history;  // rays averaged into each element's mean
+    std::vector<float> history;  // number of rays averaged into each element's mean
     NoiseModel noise;
     RiskCheck risk_check;
-    RgbD escaped_power{0, 0, 0};    // mean, averaged like irradiance
-    double escaped_power_rays = 0;  // rays in this mean
+    RgbD escaped_power{0, 0, 0};    // mean escaped power, averaged like irradiance [lm or W]
+    double escaped_power_rays = 0;  // number of rays in this mean
     double discarded_hits = 0;      // see IterationReport
 };
 
-/// Uses the sources of `lit`, which must outlive the inputs.
+/// Replaces the sources by those of `lit`, which must outlive the inputs.
 void set_sources(RunInputs& inputs, LightState& light, const Scene& lit);
 
-/// Refers to its arguments.
+/// Returns the radiosity of each light group. It refers to the arguments.
 GroupRadiosity group_radiosity(const RunInputs& inputs, const LightState& light, const GroupLight& irradiance,
                                bool emits = true);
 
@@ -42,7 +42,7 @@ RgbD radiated_power(const RunInputs& inputs, const LightState& light);
 
 bool refines_by_variance(const SolveOptions& options);
 
-/// Evaluates ElementFloor [m^2].
+/// Evaluate ElementFloor for an element [m^2].
 float min_area(const RunInputs& inputs, const LightState& light, ElementIndex element);
 float pixel_area(const RunInputs& inputs, const LightState& light, ElementIndex element);
 

@@ -21,16 +21,16 @@ struct SamplingState {
 
     ViewImportance view;
     Neighbourhoods neighbourhoods;                // empty without a view
-    std::vector<PartImportance> part_importance;  // for the current views
+    std::vector<PartImportance> part_importance;  // importance of luminaire parts for the current views
     SampleStreams streams;
     ContributionSums contributions;
-    PayloadHistogram payloads;  // of the last iteration
+    PayloadHistogram payloads;  // payloads of the last iteration
 };
 
 /// Evaluates the view importance of every element.
 void set_view_importance(LightState& light, SamplingState& sampling);
 
-/// Also resets the importance of luminaire parts.
+/// Replaces the targets of outdoor light. Also resets the importance of luminaire parts.
 void set_targets(RunInputs& inputs, SamplingState& sampling, std::vector<Imath::Box3f> targets);
 
 }  // namespace interflect::detail

@@ -157,7 +157,7 @@ void SolverState::archive(StateArchive& archive) {
             "expected the importance of every part of the luminaires");
     require(light.solution.indirect_importance.size() == (sampling.view.empty() ? 0 : elements),
             "expected the importance of every element");
-    require(sampling.view.fits(*light.forest), "expected points of views on patches of the scene");
+    require(sampling.view.is_consistent(*light.forest), "expected points of views on patches of the scene");
     if (sampling.view.empty()) return;
     set_view_importance(light, sampling);
     require(std::all_of(light.solution.view_importance.begin(), light.solution.view_importance.end(),

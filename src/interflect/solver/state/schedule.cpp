@@ -12,9 +12,9 @@ namespace {
 
 /// Rays of an iteration relative to the rays averaged before.
 constexpr double growth = 0.5;
-/// One or two seconds, so a run can stop soon.
+/// Largest number of rays of an iteration. It takes one or two seconds, so a run can stop soon.
 constexpr std::int64_t largest_iteration = 1 << 24;
-/// Some per patch, but a small share of the budget.
+/// The first iteration has some rays per patch, but at most an eighth of the budget.
 constexpr std::int64_t first_rays_per_patch = 4, fewest_first_rays = 50'000, budget_over_first_rays = 8;
 
 }  // namespace
@@ -39,8 +39,8 @@ void Schedule::record_start(std::int64_t averaged_rays, std::int64_t other_rays)
 
 /// Returns the rays for the remaining time at the current speed; 0 if too few to be useful.
 std::int64_t Schedule::affordable_rays(double seconds) {
-    constexpr double share_of_time = 0.85;  // of the remaining time; speed varies
-    constexpr double min_share = 1.0 / 32;  // of the rays averaged before
+    constexpr double share_of_time = 0.85;  // share of the remaining time; the rest is a margin for varying speed
+    constexpr double min_share = 1.0 / 32;  // minimum size of a useful iteration, relative to the rays averaged before
     const double time_left = options_.limits.time - seconds, took = seconds - planned_at_;
     const std::int64_t traced = rays_ - planned_after_;
     planned_at_ = seconds;
@@ -67,7 +67,7 @@ IterationPlan Schedule::next(double seconds) {
         rays =
             std::clamp(static_cast<std::int64_t>(growth * static_cast<double>(averaged_rays_ - averaged_at_restart_)),
                        smallest_, largest_iteration);
-    // An interruption would lose a long iteration, so a short one comes first.
+    // An interruption would lose a long first iteration, so the first iteration is short.
     const bool counts_iterations = options_.experimental.iterations > 0 || options_.experimental.warm_up > 0;
     if (finished_ == 0 && rays > largest_iteration && !counts_iterations) rays = first_rays_;
     if (left < rays + rays / 2) rays = left;
@@ -95,7 +95,7 @@ void Schedule::archive(StateArchive& archive) {
     if (archive.reads()) require_consistent();
 }
 
-/// A run with other numbers may never end, or overflow.
+/// Checks restored numbers. With inconsistent numbers, a run may never end, or overflow.
 void Schedule::require_consistent() const {
     constexpr std::int64_t most_rays = std::int64_t{1} << 62;
     const std::int64_t given = options_.experimental.rays_per_iteration;

@@ -11,15 +11,15 @@
 
 namespace interflect::detail {
 
-/// Rays since the run began.
+/// Numbers of rays since the run began.
 struct RayTotals {
     Schedule schedule;
     std::int64_t power = 0, importance = 0, escaped = 0;
-    std::int64_t of_other_views = 0;       // averaged before the views changed
-    std::int64_t of_first_importance = 0;  // of transport_importance() for these views
+    std::int64_t of_other_views = 0;       // rays averaged before the views changed
+    std::int64_t of_first_importance = 0;  // rays of transport_importance() for the current views
 };
 
-/// Persists between iterations.
+/// State of a run that persists between iterations.
 struct SolverState {
     /// @param scene, caster  Must outlive this.
     SolverState(const Scene& scene, const RayCaster& caster, const SolveOptions& options);
@@ -35,10 +35,10 @@ struct SolverState {
     void archive(StateArchive& archive);
 };
 
-/// Resets the indirect importance.
+/// Computes the view importance of every element. Resets the indirect importance.
 void compute_view_importance(SolverState& state);
 
-/// Traces camera rays in proportion to the averaged rays.
+/// Traces more camera rays if their number is small, relative to the averaged rays.
 void refine_view_importance(SolverState& state);
 
 /// Initialises new elements (index >= first) from their parents.

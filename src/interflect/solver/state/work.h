@@ -9,12 +9,12 @@
 
 namespace interflect::detail {
 
-/// A call in progress, which alone may be shared with other ranks.
+/// The call of Solver in progress. Only the work of a call may be shared with other ranks.
 struct Work {
     Monitor monitor;
-    CommonStop stop;  // after a first estimate, also by the time limit
+    CommonStop stop;  // after a first estimate, the time limit stops the call as well
     StopRequest::Clock::time_point start_of_this_call;
-    double earlier_seconds = 0;
+    double earlier_seconds = 0;  // time of earlier calls [s]
     Ranks::Traffic reported_traffic;
 
     void begin(const Monitor& m) {
@@ -28,12 +28,12 @@ struct Work {
         monitor = {};
         stop = {};
     }
-    /// Time on the clock of rank 0 [s].
+    /// Returns the time since the start of this call, on the clock of rank 0 [s].
     double seconds_of_this_call() const {
         const std::chrono::duration<double> passed = StopRequest::Clock::now() - start_of_this_call;
         return of_first_rank(monitor.ranks, passed.count());
     }
-    /// Includes earlier calls [s].
+    /// Returns the time of all calls [s].
     double seconds() const { return earlier_seconds + seconds_of_this_call(); }
 };
 

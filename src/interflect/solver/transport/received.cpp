@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Contributions by final index of the element.
+/// Sums of contributions, indexed by the final index of an element after sorting.
 class RenumberedSums {
   public:
     RenumberedSums(ContributionSums& sums, std::uint32_t old_size, std::vector<ElementIndex> old_numbers)
@@ -59,8 +59,8 @@ std::vector<PartImportance> found_by_parts(const RayPlan& plan, const RayAllocat
     return parts;
 }
 
-/// Averages received and found importance, weighted by effective numbers of rays. Unbiased, because the weights are
-/// independent of the estimates.
+/// Averages two estimates of importance: received importance, and importance found at the hits of an element's own
+/// rays. The weights are effective numbers of rays. They do not depend on the estimates, so the average is unbiased.
 void blend(const ElementForest& forest, const TransportStep& step, const RayAllocation& allocation,
            const FoundImportance& found, const PayloadTotals& payload, std::size_t elements,
            std::vector<float>& received) {
@@ -81,7 +81,7 @@ void blend(const ElementForest& forest, const TransportStep& step, const RayAllo
 
 void convert(const ElementForest& forest, const TransportStep& step, const ContributionUnits& units,
              RenumberedSums& sums, Received& received) {
-    constexpr std::size_t at_once = std::size_t{1} << 16;  // sums fill more than a 2 MiB page
+    constexpr std::size_t at_once = std::size_t{1} << 16;  // elements whose sums fill more than a page of 2 MiB
     if (step.carries_power()) received.irradiance.resize(forest.size()), received.variance.resize(forest.size());
     if (step.carries_importance()) received.importance.resize(forest.size());
     received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));

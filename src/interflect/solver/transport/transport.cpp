@@ -30,13 +30,13 @@ std::uint64_t walk_key(const SampleStreams& streams) {
     return mix(mix(streams.seed, walk_stream), streams.allocations);
 }
 
-/// Enough to amortise the cost of a task, few enough for the second-level cache.
+/// Number of rays of a batch: enough to amortise the cost of a task, few enough for the second-level cache.
 constexpr std::size_t batch_rays = 1024;
-/// Hits between prefetch and deposit of a patch, to hide the memory latency.
+/// Number of hits between the prefetch of a patch and the deposit on it, to hide the memory latency.
 constexpr std::size_t prefetch_distance = 32;
 
-/// Returns an upper bound: the expected number, at most 1 / (1 - rho), times a margin for chance and panes. The
-/// expected sum then has 2^49 of the 2^61 units of FixedPoint.
+/// Returns an upper bound of the number of deposits: the expected number, at most 1 / (1 - rho), times a margin for
+/// random deviations and panes. The expected sum then uses 2^49 of the 2^61 units of FixedPoint.
 double max_deposits_per_particle(const Scene& scene) {
     constexpr double margin = 0x1p12;
     double rho = 0;
@@ -73,7 +73,7 @@ struct ThreadBuffers {
 };
 
 void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
-    forest.put_in_order(old_size);  // parents before children
+    forest.put_in_order(old_size);  // parents then precede their children
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
@@ -134,7 +134,8 @@ void deposit(const TransportStep& step, const StepData& data, ThreadBuffers& buf
     descent.finish_task();
 }
 
-/// @param first_ray  Of the batch; key of the random numbers.
+/// Continues the hits of a batch by random walks. @param first_ray  First ray of the batch, a key of the random
+/// numbers.
 void walk(const TransportStep& step, const StepData& data, const Walks& walks, std::uint64_t first_ray,
           ThreadBuffers& buffers) {
     Walkers& walkers = buffers.walkers;
@@ -153,13 +154,14 @@ void walk(const TransportStep& step, const StepData& data, const Walks& walks, s
     walks.follow(first_ray, walkers, buffers.descent);
 }
 
-/// Calls body(begin, end) for batches of rays. Each rank has every count-th batch, which balances the work.
+/// Calls body(begin, end) for the batches of rays of this rank. The ranks take turns, which balances the work.
 /// @throws Interrupted if `stop` is due before the last batch.
 template <class Body>
 void for_batches_of_rank(std::size_t rays, const CommonStop& stop, const Body& body) {
     const Ranks* const ranks = stop.ranks();
     if (!ranks) return parallel_for_ranges(rays, batch_rays, stop.within_process(), body);
-    constexpr std::size_t rays_of_rank = 4096 * batch_rays;  // seconds of work, between which rank 0 may stop all
+    constexpr std::size_t rays_of_rank =
+        4096 * batch_rays;  // some seconds of work, after which rank 0 may stop all ranks
     const std::size_t at_once = rays_of_rank * static_cast<std::size_t>(ranks->count());
     for (std::size_t first = 0; first < rays; first += at_once) {
         if (stop.is_due()) throw Interrupted();
@@ -168,7 +170,7 @@ void for_batches_of_rank(std::size_t rays, const CommonStop& stop, const Body& b
     }
 }
 
-/// Makes the elements from `old_size` on that other ranks have made.
+/// Adds the elements that other ranks have made in this step. Elements from `old_size` on are new.
 void make_elements_of_ranks(Ranks& ranks, ElementForest& forest, std::uint32_t old_size) {
     struct Parent {
         PatchIndex patch;
@@ -178,7 +180,7 @@ void make_elements_of_ranks(Ranks& ranks, ElementForest& forest, std::uint32_t o
     for (ElementIndex e(old_size); e < forest.size(); e += 4)
         divided.push_back({forest.patch(e), forest.path(forest.parent(e))});
     divided = gather_over_ranks<Parent>(ranks, divided);
-    // Parents have shorter, hence smaller paths.
+    // Parents have shorter and hence smaller paths than their children, so sort by path.
     std::ranges::sort(divided, {}, [](const Parent& p) { return std::pair(p.path, p.patch); });
     for (const Parent& p : divided) {
         const ElementIndex element = forest.at_path(p.patch, p.path);
@@ -241,8 +243,8 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     received.start_points = StartPoints(std::move(start_points));
     received.escaped_rays = escaped.rays;
     received.escaped_power = data.contribution_units.power.to_colour(escaped.power);
-    // Boxes of outdoor light overlap: a line is sampled from one; rays of the others miss the scene. The power of
-    // targets would count twice.
+    // The boxes of outdoor light overlap. A line is sampled from one box only; along the same line, rays of the other
+    // boxes miss the scene. Without this correction, the power of targets would count twice.
     if (step.emission) {
         received.shot_power -= step.emission->repeated_power();
         received.escaped_power -= step.emission->repeated_power();

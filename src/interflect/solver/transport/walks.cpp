@@ -46,8 +46,8 @@ void Walks::follow(std::uint64_t task, Walkers& walkers, Descent& descent) const
     descent.finish_task();
 }
 
-/// Russian roulette with survival probability p: the reflected share of its ray's power (all channels). Divides the
-/// power by p.
+/// Applies Russian roulette. The survival probability p of a particle is the reflected share of its ray's power, all
+/// channels together. Divides the power of survivors by p.
 void Walks::survive(double offset, Walkers& walkers) const {
     const std::size_t groups = step_.groups.size();
     walkers.reflected.clear();
@@ -67,7 +67,7 @@ void Walks::survive(double offset, Walkers& walkers) const {
     }
 }
 
-/// At the hit point if the leaf reflects there, else uniformly on the leaf.
+/// Samples the reflected rays. They start at the hit point if the leaf reflects there, else uniformly on the leaf.
 void Walks::shoot(std::uint64_t key, Walkers& walkers) const {
     walkers.rays.resize(walkers.reflected.size());
     for (std::size_t i = 0; i < walkers.rays.size(); ++i) {

@@ -13,16 +13,16 @@
 
 namespace interflect::detail {
 
-/// Power to be reflected by a leaf.
+/// Power that a leaf has received and will reflect.
 struct ReflectedPower {
     ElementIndex leaf;
     PatchIndex patch;
-    Parameters at;  ///< Where the leaf received it.
-    RgbD power;     ///< [lm or W]
-    double of_ray;  ///< Power of its ray before any pane, all channels.
+    Parameters at;  ///< Point at which the leaf received it.
+    RgbD power;     ///< Received power [lm or W].
+    double of_ray;  ///< Power of the ray before any pane, sum of the channels.
 };
 
-/// Particles of one task; one object per thread.
+/// Particles of one task. Each thread has its own object.
 struct Walkers {
     std::vector<ReflectedPower> received, reflected;
     std::vector<RgbD> received_groups, reflected_groups;  ///< [particle][group]
@@ -33,19 +33,19 @@ struct Walkers {
     PointBlock points;
 };
 
-/// Walks that complete a pass (TransportStep::completes_by_walks). Survival includes the transmittance of crossed
-/// panes: otherwise rays with several deposits would multiply the particles.
+/// Random walks that complete a pass (TransportStep::completes_by_walks). The survival probability includes the
+/// transmittance of crossed panes. Otherwise rays with several deposits would multiply the particles.
 class Walks {
   public:
-    /// @param elements  Size of the forest before the step; newer elements receive through their ancestors.
+    /// @param elements  Size of the forest before the step. Ancestors receive the light of newer elements.
     Walks(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes,
           const TransportStep& step, const ContributionUnits& units, std::uint32_t elements, std::uint64_t key);
 
-    /// The caller appends the particle's filtered power by light group to `received_groups`.
-    /// @param power          Before any pane.
-    /// @param transmittance  Of the panes before the hit.
+    /// Adds a received particle. The caller must append its power by light group, after panes, to `received_groups`.
+    /// @param power          Power before any pane.
+    /// @param transmittance  Transmittance of the panes before the hit.
     void add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& transmittance, Walkers& walkers) const;
-    /// @param task  Key of the random numbers.
+    /// Traces the walks to their end. @param task  Key of the random numbers.
     void follow(std::uint64_t task, Walkers& walkers, Descent& descent) const;
 
   private:

@@ -37,7 +37,7 @@ std::size_t size_of(int component_type) {
 }
 
 constexpr std::pair<const char*, int> types_of_elements[] = {
-    {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};  // all without padding
+    {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT4", 16}};  // these types have no padding
 
 constexpr char zeros[16 * sizeof(float)] = {};
 
@@ -109,7 +109,7 @@ GltfElements GltfAccessors::in_view(const GltfValue& owner, const GltfElements& 
     result.stride = view.stride > 0 ? view.stride : size;
     if (size == 0) owner.fail("its componentType is unknown");
     if (result.stride < size) owner.fail(fmt::format("byteStride {} is less than its elements' {}", view.stride, size));
-    // Divides because products may overflow.
+    // Compares quotients, because products may overflow.
     const std::uint64_t room = offset <= view.bytes.size() ? view.bytes.size() - offset : 0;
     if (shape.count > 0 && (room < size || shape.count - 1 > (room - size) / result.stride))
         owner.fail(fmt::format("{} elements of {} bytes, {} apart, from {} on end beyond its view of {} bytes",

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Bounds-checked accessor elements.
+/// Elements of an accessor, whose bounds have been checked.
 struct GltfElements {
     const char* first = nullptr;
     std::size_t stride = 0;  ///< [bytes]; 0: all elements are equal.
@@ -18,13 +18,13 @@ struct GltfElements {
     int components = 1;
     bool normalized = false;  ///< Integers are fractions of their largest value.
 
-    /// Applies `normalized`.
+    /// Returns a component; applies `normalized`.
     double number(std::uint64_t element, int component) const;
-    /// Requires an unsigned type.
+    /// Returns a component of an unsigned type.
     std::uint32_t whole_number(std::uint64_t element) const;
 };
 
-/// Supports sparse accessors and missing data (zeros).
+/// Accessors of a file. They may be sparse, or lack data, which are then zeros.
 class GltfAccessors {
   public:
     GltfAccessors(GltfAsset& asset, GltfBuffers& buffers);
@@ -32,7 +32,7 @@ class GltfAccessors {
     std::size_t count() const { return accessors_.size(); }
     /// @param types  Accepted, such as "VEC3 VEC4". @return  Valid while this object lives. @throws GltfFault
     GltfElements elements(std::uint32_t index, const std::string& types, const GltfValue& owner);
-    /// Requires unsigned scalars.
+    /// Returns the elements of an accessor of unsigned scalars.
     GltfElements indices(std::uint32_t index, const GltfValue& owner);
 
   private:

@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view data_scheme = "data:";
 
 std::uint32_t word(std::string_view bytes, std::size_t offset) {
-    std::uint32_t value = 0;  // assumes a little-endian machine
+    std::uint32_t value = 0;  // the bytes are copied, which assumes a little-endian machine
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
 }

@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// GLB chunks; a .gltf file is all JSON.
+/// The chunks of a GLB file. A .gltf file consists only of JSON.
 struct GltfParts {
     std::string_view json, binary;
     bool is_binary = false;
@@ -40,7 +40,7 @@ class GltfAsset {
     Model model;
 
   private:
-    /// @throws GltfFault unless it may be read.
+    /// Returns the file that a URI names. @throws GltfFault unless it may be read.
     std::filesystem::path file_of(const std::string& uri, const GltfValue& owner) const;
     std::string read_file(const std::string& uri, const GltfValue& owner);
 

@@ -27,7 +27,7 @@ std::optional<std::string> decode_base64(std::string_view text) {
     std::string bytes;
     bytes.reserve(text.size() / 4 * 3 + 2);
     std::uint32_t bits = 0;
-    int count = 0;  // pending bits
+    int count = 0;  // number of pending bits
     for (const char c : text) {
         const std::uint8_t digit = digits[static_cast<unsigned char>(c)];
         if (digit == no_digit) return std::nullopt;

@@ -14,10 +14,10 @@ class GltfBuffers {
   public:
     struct View {
         std::string_view bytes;
-        std::size_t stride = 0;  ///< 0: packed.
+        std::size_t stride = 0;  ///< Distance between elements [bytes]; 0 if they are packed.
     };
 
-    /// @param parts  Must outlive this.
+    /// @param parts  They must outlive this object.
     GltfBuffers(GltfAsset& asset, const GltfParts& parts);
 
     std::size_t view_count() const { return views_.size(); }

@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-/// Error with its place, without the file name.
+/// Error whose message names the place, but not the file.
 struct GltfFault : std::runtime_error {
     /// @param setting_name  As in Fault.
     explicit GltfFault(const std::string& text, std::string setting_name = {})
@@ -22,14 +22,14 @@ struct GltfFault : std::runtime_error {
     std::string setting;
 };
 
-/// JSON value with its place, such as "meshes[3] 'chair'". Absent values act as empty. Getters throw GltfFault for
-/// wrong types and ranges.
+/// JSON value with its place, such as "meshes[3] 'chair'". Absent values act as empty ones. The getters throw GltfFault
+/// for wrong types and ranges.
 class GltfValue {
   public:
-    /// Prevents overflow of sums.
+    /// Limit of integers, which prevents the overflow of sums.
     static constexpr std::uint64_t largest_integer = std::uint64_t{1} << 40;
 
-    /// @param json  Must outlive this; null: absent.
+    /// @param json  It must outlive this object; null for an absent value.
     GltfValue(const nlohmann::json* json, std::string place) : json_(json), place_(std::move(place)) {}
 
     bool exists() const { return json_ != nullptr; }
@@ -44,14 +44,14 @@ class GltfValue {
     std::optional<std::uint64_t> find_integer(const char* key) const;
     std::uint64_t integer(const char* key) const;
     std::uint64_t integer(const char* key, std::uint64_t otherwise) const;
-    /// @return  Below `count`, or `none` if absent.
+    /// Returns an index below `count`, or `none` if it is absent.
     std::uint32_t index(const char* key, std::size_t count) const;
     std::uint32_t required_index(const char* key, std::size_t count) const;
     std::vector<std::uint32_t> indices(const char* key, std::size_t count) const;
 
     double number(const char* key, double otherwise) const;
     double number(const char* key) const;
-    /// Non-negative.
+    /// Returns a number, which may not be negative.
     double amount(const char* key, double otherwise) const;
     std::vector<double> numbers(const char* key) const;
     template <std::size_t size>
@@ -63,7 +63,7 @@ class GltfValue {
         for (std::size_t i = 0; i < size; ++i) result[i] = values[i];
         return result;
     }
-    /// Linear Rec. 709, non-negative.
+    /// Returns a colour in linear Rec. 709, which may not be negative.
     Rgb colour(const char* key, const Rgb& otherwise) const;
 
     std::string text(const char* key, const std::string& otherwise = "") const;
@@ -81,7 +81,7 @@ class GltfValue {
     std::string place_;
 };
 
-/// Returns "nodes[3] 'chair'"; truncates long names.
+/// Returns a place such as "nodes[3] 'chair'". Truncates long names.
 std::string gltf_place(const std::string& list, std::size_t index, const std::string& name);
 
 }  // namespace interflect::detail

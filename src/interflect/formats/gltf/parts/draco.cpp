@@ -20,7 +20,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Bounds the decoder's memory. Only Edgebreaker stores the vertex count first (Draco 2.2 specification, section 2).
+/// Reads the counts that bound the decoder's memory. Only the Edgebreaker method stores the number of vertices first
+/// (Draco 2.2 specification, section 2).
 bool claims_at_most(draco::DecoderBuffer buffer, std::uint64_t max_triangles, std::uint64_t max_vertices) {
     constexpr int metadata_flag = 0x8000;
     draco::DracoHeader header{};

@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// Interleaved by vertex.
+/// Values of an attribute, ordered by vertex.
 struct DracoAttribute {
     int components = 0;
     std::vector<float> values;
@@ -16,12 +16,12 @@ struct DracoAttribute {
 
 struct DracoMesh {
     std::uint64_t vertex_count = 0;
-    std::vector<std::uint32_t> indices;  ///< Triangles.
+    std::vector<std::uint32_t> indices;  ///< Three vertices per triangle.
     std::vector<DracoAttribute> attributes;
 };
 
 /// @param attributes  Unique identifiers, in the order of the result.
-/// @throws GltfFault, also beyond max_triangles or max_vertices, before allocation.
+/// @throws GltfFault for invalid data, and before any allocation if they exceed max_triangles or max_vertices.
 DracoMesh decode_draco(std::string_view bytes, const std::vector<std::uint32_t>& attributes,
                        std::uint64_t max_triangles, std::uint64_t max_vertices, const GltfValue& extension);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int repeat = 10497;  // glTF constant
 
-/// Each texture decodes its images again.
+/// Limit of all decoded pixels, because each texture decodes its images again.
 constexpr std::uint64_t max_decoded = 32 * max_texels;
 
 const std::vector<float>& decoded_srgb() {
@@ -32,7 +32,7 @@ Rgb colour_at(const StoredImage& image, std::size_t pixel) {
     return {decoded[values[0]], decoded[values[1]], decoded[values[2]]};
 }
 
-/// Maps the centre of pixel (x, y) of `of` to `image`.
+/// Returns the index of the pixel of `image` at the centre of pixel (x, y) of `of`.
 std::size_t pixel_at(const StoredImage& image, std::uint32_t x, std::uint32_t y, const Texture& of) {
     const auto scaled = [](std::uint64_t i, std::uint64_t from, int to) {
         return static_cast<std::size_t>((2 * i + 1) * static_cast<std::uint64_t>(to) / (2 * from));
@@ -112,7 +112,7 @@ StoredImage GltfImages::decode(std::uint32_t image) {
 
 Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
     StoredImage colour, metallic, coverage;
-    const StoredImage* shape = nullptr;  // determines the size
+    const StoredImage* shape = nullptr;  // image that determines the size
     std::string name;
     const auto load = [&](std::uint32_t index, StoredImage& image) {
         if (index == none) return;

@@ -24,9 +24,9 @@ struct GltfCoverage {
 
 struct GltfTexels {
     std::uint32_t colour = none;    ///< sRGB; white if absent.
-    std::uint32_t metallic = none;  ///< Image with metallic in blue.
-    float metallic_factor = 0;      ///< Scales by 1 - metallic_factor * metallic.
-    Rgb factor{1, 1, 1};            ///< Scales colours before clamping to 1.
+    std::uint32_t metallic = none;  ///< Image whose blue channel is the metallic value.
+    float metallic_factor = 0;      ///< Colours are scaled by 1 - metallic_factor * metallic.
+    Rgb factor{1, 1, 1};            ///< Factor of the colours before they are clamped to 1.
     GltfCoverage coverage{};        ///< Blends the colour with `open`.
     Rgb open{0, 0, 0};
 
@@ -37,13 +37,13 @@ struct GltfTexels {
 };
 
 struct GltfImageMeans {
-    Rgb colour{1, 1, 1};  ///< Linear.
-    Rgb stored{1, 1, 1};  ///< Not decoded.
+    Rgb colour{1, 1, 1};  ///< Mean of the linear values.
+    Rgb stored{1, 1, 1};  ///< Mean of the values as stored, which may be in sRGB.
     float alpha = 1;
     float min_alpha = 1;
 };
 
-/// PNG and JPEG images.
+/// Images of a file, which are PNG or JPEG.
 class GltfImages {
   public:
     GltfImages(GltfAsset& asset, GltfBuffers& buffers);
@@ -52,9 +52,9 @@ class GltfImages {
     std::size_t texture_count() const { return textures_.size(); }
     bool repeats(std::uint32_t texture) const;
 
-    /// Returns an index into Model::textures; whether a texel was clamped.
+    /// Returns an index into Model::textures, and whether a texel was clamped.
     std::pair<std::uint32_t, bool> texture(const GltfTexels& texels);
-    /// After all textures of a material, to keep sizes equal.
+    /// Limits the size of textures. Call this after all textures of a material, which keeps their sizes equal.
     void limit_textures();
     const GltfImageMeans& means(std::uint32_t image);
 

@@ -23,7 +23,7 @@ constexpr std::size_t max_lights = 1 << 16;
 
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
-/// Lights and cameras face along -z.
+/// Returns the direction of a node's axis in the world. Lights and cameras face along -z.
 V3d axis_of(const GltfNode& node, int axis) {
     const double* row = node.to_world[axis];
     const V3d direction(row[0], row[1], row[2]);
@@ -126,7 +126,7 @@ std::shared_ptr<const PhotometricWeb> GltfLights::web(std::uint32_t profile) {
     return result;
 }
 
-/// Nadir along -z, C0 along x, C90 along y.
+/// Adds a measured luminaire, whose nadir is along -z, C0 along x and C90 along y.
 void GltfLights::add_measured(const GltfNode& node, std::uint32_t object) {
     const GltfValue use = node.value->extension(measured_lights);
     const std::uint32_t profile = use.required_index("light", profiles_.size());

@@ -43,9 +43,9 @@ struct GltfMaterials::Parts {
     GltfTextureUse metallic_texture;
     Rgb emissive{0, 0, 0};  ///< [cd/m^2]
     GltfTextureUse emissive_texture;
-    float transmission = 0;  ///< mean over its texture
+    float transmission = 0;  ///< mean over the texture
     GltfTextureUse coverage_texture;
-    float coverage = 1;  ///< opaque fraction, or factor of alpha
+    float coverage = 1;  ///< opaque fraction of the surface, or the factor of alpha
     float cutoff = 0;
     std::optional<GltfMapping> mapping;
 
@@ -202,7 +202,7 @@ void GltfMaterials::transmit(const GltfValue& owner, const Parts& parts, Materia
         asset_.warn("transmission-texture", "transmitted light has the mean colour of the surface's texture",
                     owner.place());
     constexpr float above_rounding = 1 - 0x1p-20f;
-    const Rgb through = base * (parts.transmission * (1 - metallic));  // of opaque parts
+    const Rgb through = base * (parts.transmission * (1 - metallic));  // transmitted by the opaque parts
     if (coverage.image != none) {
         material.transmittance = Rgb(1);
         material.transmittance_texture =

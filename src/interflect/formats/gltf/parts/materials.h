@@ -12,11 +12,11 @@
 namespace interflect::detail {
 
 struct GltfMapping {
-    std::uint64_t set = 0;  ///< TEXCOORD_set
+    std::uint64_t set = 0;  ///< Number in the name TEXCOORD_set.
     double xx = 1, xy = 0, x = 0, yx = 0, yy = 1, y = 0;
 
     bool operator==(const GltfMapping&) const = default;
-    /// Returns Scene coordinates, v upwards.
+    /// Returns coordinates as in Scene, where v points upwards.
     V2f apply(double u, double v) const {
         return {static_cast<float>(xx * u + xy * v + x), static_cast<float>(1 - (yx * u + yy * v + y))};
     }
@@ -24,8 +24,8 @@ struct GltfMapping {
 
 struct GltfSurface {
     std::uint32_t material = 0;
-    std::optional<GltfMapping> mapping;  ///< Shared by all textures.
-    bool repeats = true;                 ///< Beyond [0, 1].
+    std::optional<GltfMapping> mapping;  ///< Mapping that all textures share.
+    bool repeats = true;                 ///< Whether textures repeat beyond coordinates from 0 to 1.
     bool double_sided = false;
     bool is_invisible = false;
 };
@@ -41,13 +41,14 @@ class GltfMaterials {
     GltfMaterials(GltfAsset& asset, GltfImages& images);
 
     std::size_t count() const { return materials_.size(); }
-    /// @param index  In the file; `none`: default material. @param textured  Else uses means of textures.
+    /// @param index  Index in the file; `none` for the default material.
+    /// @param textured  Whether to use textures; otherwise, their means are used.
     const GltfSurface& surface(std::uint32_t index, bool textured);
 
     /// Returns the material with its diffuse reflectance multiplied by `tint`. @param material  In Model::materials.
     std::uint32_t tinted(std::uint32_t material, const Rgb& tint);
 
-    /// Call after the last surface().
+    /// Warns of reflection that materials lose. Call this after the last surface().
     void warn_of_lost();
 
   private:
@@ -69,7 +70,7 @@ class GltfMaterials {
     std::map<std::pair<std::uint32_t, bool>, GltfSurface> surfaces_;
     std::map<std::tuple<std::uint32_t, float, float, float>, std::uint32_t> tinted_;
     double lost_ = 0, all_ = 0;
-    std::vector<std::string> losing_;  // places with omitted reflection
+    std::vector<std::string> losing_;  // places of materials whose reflection is omitted
 };
 
 }  // namespace interflect::detail

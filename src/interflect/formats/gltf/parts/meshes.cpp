@@ -21,7 +21,7 @@ using Imath::V3d;
 constexpr int float_component = 5126;
 constexpr const char* lightmap_set = "TEXCOORD_1";  // by convention
 constexpr const char* normal_set = "NORMAL";
-/// Accepted rounding beyond [0, 1].
+/// Distance beyond 0 or 1 that counts as rounding.
 constexpr double lightmap_tolerance = 1e-4;
 enum Mode { triangles = 4, triangle_strip = 5, triangle_fan = 6 };
 
@@ -37,7 +37,7 @@ GltfElements elements_of(const DracoAttribute& attribute, std::uint64_t count) {
             .components = attribute.components};
 }
 
-/// Splits strips and fans; omits degenerate triangles.
+/// Returns three corners per triangle. Splits strips and fans, and omits degenerate triangles.
 std::vector<std::uint32_t> as_triangles(const std::vector<std::uint32_t>& corners, std::uint64_t mode) {
     if (mode == triangles) return corners;
     std::vector<std::uint32_t> result;
@@ -122,7 +122,7 @@ GltfElements GltfMeshes::attribute(const GltfValue& primitive, const char* key, 
     return accessors_.elements(attributes.required_index(key, accessors_.count()), types, attributes);
 }
 
-/// Returns "" for untextured materials.
+/// Returns the name of the attribute with texture coordinates, or "" for a material without textures.
 std::string GltfMeshes::texture_set_of(const GltfValue& primitive) {
     const GltfSurface& surface = materials_.surface(primitive.index("material", materials_.count()), /*textured=*/true);
     return surface.mapping ? fmt::format("TEXCOORD_{}", surface.mapping->set) : "";
@@ -140,12 +140,12 @@ void GltfMeshes::read_draco(const GltfValue& primitive, const GltfValue& extensi
     };
     const auto texture_coordinates = want(texture_set), lightmap = want(lightmap_set), normals = want(normal_set);
     const auto view = buffers_.view(extension.required_index("bufferView", buffers_.view_count()));
-    // Only the counts are used.
+    // Only the counts of these elements are used.
     const GltfElements indices =
         accessors_.elements(primitive.required_index("indices", accessors_.count()), "SCALAR", primitive);
     const GltfElements positions = attribute(primitive, "POSITION", "VEC3");
     count_triangles(indices.count / 3, primitive);
-    // Limits the decoder's memory.
+    // This check limits the decoder's memory.
     if (positions.count > indices.count) extension.fail("it has more vertices than corners");
     vertices.draco = decode_draco(view.bytes, wanted, indices.count / 3, positions.count, extension);
     const auto decoded = [&](std::size_t i) {
@@ -219,7 +219,7 @@ std::vector<std::uint32_t> GltfMeshes::corners_of(const GltfValue& primitive, Ve
     std::vector<std::uint32_t> corners;
     const std::uint64_t vertex_count = vertices.positions.count;
     if (primitive.extension("KHR_draco_mesh_compression").exists()) {
-        return std::move(vertices.draco.indices);  // counted by read_draco()
+        return std::move(vertices.draco.indices);  // read_draco() has counted them
     } else if (primitive.has("indices")) {
         const GltfElements indices = accessors_.indices(primitive.index("indices", accessors_.count()), primitive);
         check_corner_count(indices.count, "indices");
@@ -280,7 +280,7 @@ std::vector<GltfMeshes::TintedFaces> GltfMeshes::by_tint(const GltfValue& primit
         for (int c = 0; c < 3; ++c) result[c] = static_cast<float>(std::clamp(colour[c], 0.0, 1.0));
         return result;
     };
-    constexpr float steps = 16;  // of the square root of a channel: up to 6% of white apart
+    constexpr float steps = 16;  // steps of a channel's square root; colours of a group differ by up to 6% of white
     std::map<std::array<int, 3>, TintedFaces> groups;
     bool varies = false;
     for (std::size_t i = 0; i < indices.size(); i += 3) {
@@ -316,11 +316,11 @@ Mesh GltfMeshes::mesh_of(const GltfValue& primitive, const Vertices& vertices, c
     const std::vector<std::uint32_t> used = compact(mesh.indices, vertices.positions.count);
     mesh.positions.reserve(used.size());
     for (const std::uint32_t v : used) mesh.positions.push_back(vertices.position(v, primitive));
-    if (vertices.normals && vertices.targets.empty() && vertices.joints.empty())  // not deformed
+    if (vertices.normals && vertices.targets.empty() && vertices.joints.empty())  // the mesh is not deformed
         for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
     if (surface.mapping) {
-        const GltfElements& c = *vertices.texture_coordinates;  // a mapping implies them
+        const GltfElements& c = *vertices.texture_coordinates;  // which exist if there is a mapping
         mesh.texture_coordinates.reserve(used.size());
         for (const std::uint32_t v : used) {
             const V2f coordinate = surface.mapping->apply(c.number(v, 0), c.number(v, 1));

@@ -14,9 +14,9 @@
 namespace interflect::detail {
 
 struct GltfPose {
-    std::vector<double> weights;          ///< Of morph targets; empty: the mesh's own.
-    std::uint32_t skin = none;            ///< Cache key.
-    std::span<const Imath::M44d> joints;  ///< Mesh to world.
+    std::vector<double> weights;          ///< Weights of morph targets; the mesh's own if empty.
+    std::uint32_t skin = none;            ///< Index of the skin, by which poses are compared.
+    std::span<const Imath::M44d> joints;  ///< Matrices that map from the mesh to the world.
 };
 
 /// Reads each mesh once per pose.
@@ -47,7 +47,7 @@ class GltfMeshes {
     void read_lightmap_coordinates(const GltfElements& set, const std::vector<std::uint32_t>& used, Mesh& mesh);
     GltfElements attribute(const GltfValue& primitive, const char* key, const char* types);
     std::vector<std::uint32_t> corners_of(const GltfValue& primitive, Vertices& vertices);
-    /// @throws GltfFault beyond max_patches
+    /// Counts triangles of the scene. @throws GltfFault for more than max_patches.
     void count_triangles(std::uint64_t count, const GltfValue& primitive);
 
     GltfAsset& asset_;

@@ -17,7 +17,7 @@ using Imath::V3d;
 
 V3d vector_of(const std::array<double, 3>& values) { return {values[0], values[1], values[2]}; }
 
-/// glTF's columns are rows for row vectors.
+/// Returns the node's matrix for row vectors, whose rows are glTF's columns.
 M44d local_transform(const GltfValue& node) {
     if (node.has("matrix")) {
         const auto m = node.numbers<16>("matrix", {});
@@ -59,7 +59,7 @@ GltfNodes::GltfNodes(GltfAsset& asset)
     if (reached < values_.size()) throw GltfFault("nodes: some are their own ancestors");
 }
 
-/// Depth first; not recursive, since nesting is unlimited.
+/// Visits nodes depth first, without recursion, since nesting is unlimited.
 template <class Visit>
 void GltfNodes::traverse(const std::vector<std::uint32_t>& roots, const Visit& visit) const {
     std::vector<std::uint32_t> waiting(roots.rbegin(), roots.rend());

@@ -12,7 +12,7 @@ struct GltfNode {
     const GltfValue* value = nullptr;
     Imath::M44d to_world;
     std::string name;
-    std::string dotted;  ///< With ancestors: "room.desk.leg".
+    std::string dotted;  ///< Name after those of its ancestors, such as "room.desk.leg".
 };
 
 class GltfNodes {
@@ -22,7 +22,7 @@ class GltfNodes {
 
     std::size_t count() const { return values_.size(); }
     const Imath::M44d& to_world(std::uint32_t node) const { return to_world_[node]; }
-    /// Returns the nodes of the default or first scene, or all without scenes; parents first.
+    /// Returns the nodes of the default or the first scene, or all nodes of a file without scenes. Parents come first.
     std::vector<GltfNode> in_scene() const;
 
   private:
@@ -37,7 +37,8 @@ class GltfNodes {
     std::vector<Imath::M44d> to_world_;
 };
 
-/// Scales, rotates (quaternion x, y, z, w), then translates. @throws GltfFault for a zero quaternion.
+/// Returns the matrix that scales, rotates by a quaternion (x, y, z, w), then translates.
+/// @throws GltfFault for a zero quaternion.
 Imath::M44d gltf_transform(const Imath::V3d& scale, const std::array<double, 4>& rotation,
                            const Imath::V3d& translation, const GltfValue& owner);
 

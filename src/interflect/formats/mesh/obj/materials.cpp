@@ -105,7 +105,7 @@ void ObjMaterials::read_line(std::span<const std::string_view> words, Definition
     if (key == map_of_colours && words.size() > 1) definition.texture = texture_path(words.subspan(1), where);
     if (key == "map_d" && words.size() > 1) definition.mask = texture_path(words.subspan(1), where);
     if ((key == "d" || key == "Tr") && words.size() > 1) {
-        const float value = mtl_number(words.back());  // behind an option: d -halo 0.5
+        const float value = mtl_number(words.back());  // options come before the number: d -halo 0.5
         if (!(value >= 0 && value <= 1))
             throw std::invalid_argument(fmt::format("{} is {}; expected 0 to 1", key, value));
         if (key == "d" || !definition.has_dissolve) definition.opacity = key == "d" ? value : 1 - value;
@@ -172,7 +172,7 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
         const Rgb largest = largest_texel(model_.textures[result.reflectance_texture]);
         for (int c = 0; c < 3; ++c) {
             const float most =
-                static_cast<float>(largest_reflectance) / std::max(largest[c], 1e-6f);  // black needs no limit
+                static_cast<float>(largest_reflectance) / std::max(largest[c], 1e-6f);  // black has no limit
             result.reflectance[c] = std::min(result.reflectance[c], most);
         }
     }
@@ -231,7 +231,7 @@ StoredImage ObjMaterials::read_mask(const Definition& definition) {
 }
 
 void ObjMaterials::count_decoded(std::size_t pixels) {
-    constexpr std::uint64_t most = 32 * max_texels;  // bounds the work: each material decodes its image anew
+    constexpr std::uint64_t most = 32 * max_texels;  // limits the work, because each material decodes its image again
     decoded_ += pixels;
     if (decoded_ > most) throw InputError(fmt::format("the images of all materials have more than {} pixels", most));
 }

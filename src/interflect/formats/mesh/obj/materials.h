@@ -40,12 +40,12 @@ class ObjMaterials {
     std::filesystem::path texture_path(std::span<const std::string_view> words, const Location& where);
     std::uint32_t convert(const std::string& name, const Definition& definition);
     std::uint32_t texture(const Definition& definition);
-    /// White if missing.
+    /// Returns the colours of a material's texture, or white if it has no texture.
     Texture read_colours(const Definition& definition);
     StoredImage read_mask(const Definition& definition);
     bool is_readable(const std::filesystem::path& texture, std::string_view key, const Definition& definition);
     void cut_out(const Definition& definition, Material& material);
-    /// Limits the work. @throws InputError
+    /// Counts decoded pixels, to limit the work. @throws InputError
     void count_decoded(std::size_t pixels);
     std::uint32_t add_texture(Texture texture);
     void warn(const std::string& kind, const std::string& message, const Location& where) {
@@ -57,7 +57,7 @@ class ObjMaterials {
     std::unordered_map<std::string, Definition> definitions_;
     std::unordered_map<std::string, std::uint32_t> textures_;
     std::unordered_set<std::string> read_;        // paths of libraries
-    std::list<std::filesystem::path> libraries_;  // referenced by locations
+    std::list<std::filesystem::path> libraries_;  // locations refer to these paths
     std::uint64_t texels_ = 0, decoded_ = 0;
 };
 

@@ -30,14 +30,15 @@ std::optional<std::int64_t> whole_number(std::string_view text) {
     return number;
 }
 
-/// @param number  From 1, or backwards from -1. @return  `none` if out of range.
+/// Returns an index, or `none` if the number is out of range.
+/// @param number  Number from 1, or backwards from -1.
 std::uint32_t index_of(std::int64_t number, std::size_t count) {
     const std::int64_t index = number > 0 ? number - 1 : static_cast<std::int64_t>(count) + number;
     const bool exists = number != 0 && index >= 0 && index < static_cast<std::int64_t>(count);
     return exists ? static_cast<std::uint32_t>(index) : none;
 }
 
-/// Words up to a comment.
+/// Returns the words of a line before a comment.
 Words words_of(const LineReader& lines) {
     const Words all = lines.words();
     return {all.begin(), std::find_if(all.begin(), all.end(), [](auto word) { return word.starts_with('#'); })};
@@ -114,7 +115,8 @@ void ObjReader::read_ahead() {
     }
 }
 
-/// @param number  From 1, over the whole file; or backwards from -1, over the lines before this one.
+/// Returns the index of a vertex, coordinate or normal.
+/// @param text  Number in the whole file, from 1; or backwards from -1 in the lines before this one.
 std::uint32_t ObjReader::resolved(std::string_view text, std::size_t Counts::*of, std::string_view name,
                                   const Location& where) {
     const std::optional<std::int64_t> number = whole_number(text);

@@ -51,13 +51,13 @@ class ObjReader {
     std::vector<Imath::V3d> positions_;
     std::vector<V2f> coordinates_;
     std::vector<Imath::V3d> normals_;
-    std::vector<Use> uses_;  // per position
+    std::vector<Use> uses_;  // by position
     const LineReader* lines_ = nullptr;
-    Counts preceding_;               // before the current line
-    bool has_all_vertices_ = false;  // later lines included
+    Counts preceding_;               // counts of the lines before the current one
+    bool has_all_vertices_ = false;  // whether the vertices of later lines have been read
     std::string object_, group_;
     std::uint32_t material_ = 0;
-    std::uint32_t mesh_ = none;                                                // current mesh, if used
+    std::uint32_t mesh_ = none;                                                // current mesh, once it has faces
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // by object and material
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };

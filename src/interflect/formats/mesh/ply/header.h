@@ -12,7 +12,7 @@ namespace interflect::detail {
 struct PlyProperty {
     std::string name;
     PlyType type = PlyType::float32;
-    std::optional<PlyType> count_type;  ///< Of a list's length, if any.
+    std::optional<PlyType> count_type;  ///< Type of a list's length; nullopt for a single value.
 };
 
 struct PlyElement {
@@ -21,7 +21,7 @@ struct PlyElement {
     std::vector<PlyProperty> properties;
 
     std::optional<std::size_t> find(std::string_view wanted) const;
-    /// Minimum per element: lists may be empty.
+    /// Returns the least number of values of an element, whose lists may be empty.
     std::uint64_t fewest_values() const { return properties.size(); }
     std::uint64_t fewest_bytes() const;
 };

@@ -212,7 +212,7 @@ class PlyReader {
 
     /// Every vertex after the first two makes a triangle, whose orientation alternates; -1 begins a new strip.
     void read_strip(const PlyProperty& property) {
-        std::uint64_t length = 0;  // of the current strip
+        std::uint64_t length = 0;  // number of vertices in the current strip
         std::array<std::uint32_t, 2> last{};
         for (std::uint64_t left = list_length(property); left > 0; --left) {
             const double value = values_.next(property.type);
@@ -251,7 +251,7 @@ class PlyReader {
     Model& model_;
     Mesh& mesh_;
     const ReadOptions& options_;
-    std::optional<RgbD> colour_;  // of the first vertex
+    std::optional<RgbD> colour_;  // colour of the first vertex
     bool varies_ = false, has_bytes_ = false, has_vertices_ = false;
     bool has_line_each_ = false;  // text with one element a line
 };

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// [bytes], in binary form.
+/// Returns the size of a value in binary form [bytes].
 std::size_t size_of(PlyType type);
 
 class PlyValues {
@@ -18,13 +18,13 @@ class PlyValues {
 
     PlyValues(std::string_view bytes, Form form) : bytes_(bytes), rest_(bytes), form_(form) {}
 
-    /// Counts line breaks read; nullopt if binary.
+    /// Returns the number of line breaks read, or nullopt for a binary file.
     std::optional<std::int64_t> lines() const;
 
     /// Binary values may be infinite or NaN. @throws std::invalid_argument
     double next(PlyType type);
     bool is_at_end() const;
-    /// Counts the lines that are left and not blank; nullopt if binary.
+    /// Returns the number of remaining lines that are not blank, or nullopt for a binary file.
     std::optional<std::uint64_t> lines_left() const;
     /// Skips the rest of the line. Returns whether it has values.
     bool skip_line();

@@ -10,10 +10,10 @@ namespace interflect::detail {
 
 using MgfWords = std::span<const std::string_view>;
 
-/// Error without its place.
+/// Error whose message does not name the place.
 using MgfFault = std::invalid_argument;
 
-/// @throws MgfFault unless finite in single precision.
+/// @throws MgfFault unless the number is finite in single precision.
 double number_argument(std::string_view word);
 
 /// @throws MgfFault also for negative numbers.

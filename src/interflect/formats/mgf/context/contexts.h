@@ -16,11 +16,12 @@
 
 namespace interflect::detail {
 
-/// Named contexts and the current one. Context{} must be MGF's default. The input text must outlive the table.
+/// Table of named contexts, with the current one. Context{} must be MGF's default. The input text must outlive the
+/// table.
 template <class Context>
 class ContextTable {
   public:
-    /// @param kind  "vertex", for messages.
+    /// @param kind  Kind of context for messages, such as "vertex".
     ContextTable(std::string_view kind, std::size_t max_name_length) : kind_(kind), max_name_length_(max_name_length) {}
 
     Context& current() { return *current_; }
@@ -32,7 +33,10 @@ class ContextTable {
         return entry->second;
     }
 
-    /// @param words  None (new, unnamed), `name` (existing), `name =` (new) or `name = template` (copy).
+    /// Makes a context the current one.
+    /// @param words  `name` for an existing context, `name =` for a new one, `name = template` for a copy. A new
+    /// context
+    ///     without a name has no words.
     /// @throws std::invalid_argument
     void enter(std::span<const std::string_view> words) {
         if (words.empty()) {
@@ -66,13 +70,13 @@ class ContextTable {
     std::size_t max_name_length_;
     std::unordered_map<std::string_view, Context> named_;
     Context unnamed_;
-    Context* current_ = &unnamed_;  // elements do not move
+    Context* current_ = &unnamed_;  // points to an element of the table, which does not move
     std::string_view current_name_;
 };
 
 struct MgfColour {
     Chromaticity chromaticity;
-    std::uint32_t fault = none;  ///< Index in MgfFaults.
+    std::uint32_t fault = none;  ///< Index in MgfFaults, or none.
 };
 
 struct MgfTexture {
@@ -88,9 +92,9 @@ struct MgfMaterial {
     double rs_roughness = 0, ts_roughness = 0;
     MgfColour rd_colour, rs_colour, ts_colour, ed_colour;
     MgfTexture rd_texture, ts_texture, ed_texture;
-    Location defined;                  ///< Last change.
-    std::uint32_t fault = none;        ///< In MgfFaults.
-    std::uint32_t scene_index = none;  ///< Once used.
+    Location defined;                  ///< Place of the last change.
+    std::uint32_t fault = none;        ///< Index in MgfFaults, or none.
+    std::uint32_t scene_index = none;  ///< Index in the scene, once the material is used.
 
     bool is_textured() const {
         return !(rd_texture.path.empty() && ts_texture.path.empty() && ed_texture.path.empty());

@@ -12,14 +12,14 @@
 
 namespace interflect::detail {
 
-/// Open objects: `o` and array copies.
+/// Objects that are open. Each entity `o` and each array copy opens one.
 class MgfObjects {
   public:
     MgfObjects(const ReadOptions& options, MgfSceneBuilder& scene) : options_(options), scene_(scene) {}
 
     std::size_t depth() const { return open_.size(); }
 
-    /// @param is_copy  Closed by close_copy() only.
+    /// @param is_copy  Whether the object is an array copy, which only close_copy() closes.
     void open(std::string_view name, bool is_copy, const Location& where);
     /// @return  false for an array copy or a depth of at most `outer_depth`.
     bool close_innermost(std::size_t outer_depth);

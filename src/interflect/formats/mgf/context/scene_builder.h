@@ -16,7 +16,7 @@
 
 namespace interflect::detail {
 
-/// In world coordinates. Throws std::invalid_argument for invalid requests.
+/// Builds a scene from faces in world coordinates. Throws std::invalid_argument for invalid requests.
 class MgfSceneBuilder {
   public:
     MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options, const Imath::V3d& origin);
@@ -28,7 +28,7 @@ class MgfSceneBuilder {
     void require_room(double patches) const { faces_.require_room(patches); }
 
     V3f position(const Imath::V3d& world) const { return faces_.position(world); }
-    /// @param world  [m]. @param normal  Any length, or 0.
+    /// @param world  Position [m]. @param normal  Normal of any length, or 0.
     std::uint32_t vertex(const Imath::V3d& world, const std::optional<V2f>& texture_coordinate,
                          const Imath::V3d& normal = Imath::V3d(0)) {
         return weld_.vertex(position(world),
@@ -49,7 +49,7 @@ class MgfSceneBuilder {
     }
     void leave_out(const std::string& message, const Location& where) { faces_.leave_out(message, where); }
 
-    /// If it differs from Scene::origin, read the file again.
+    /// Returns an origin for the scene. If it differs from Scene::origin, read the file again.
     Imath::V3d suitable_origin() const { return faces_.suitable_origin(); }
 
     /// @throws InputError as SceneFaces::require_usable().

@@ -24,7 +24,8 @@ namespace {
 
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
-/// Average deposits per line at which a patch's sums overflow. Panes and one-sided faces cause more than one.
+/// The sums of a patch overflow at this average number of deposits per line. Panes and one-sided faces cause more than
+/// one.
 constexpr double lines_headroom = 0x1p8;
 
 struct LineDomain {
@@ -37,22 +38,22 @@ struct LineDomain {
         centre = box.center();
         float square = 0;
         for (const V3f& v : scene.vertices) square = std::max(square, (v - centre).length2());
-        constexpr float margin = 1.0001f;  // for rounding
+        constexpr float margin = 1.0001f;  // exceeds rounding errors
         radius = margin * std::sqrt(square);
     }
-    /// [m^2]
+    /// Area of the disk of lines in each direction [m^2].
     double cross_section() const {
         return std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
     }
 };
 
-/// Patch that faces a line, and the patch behind, if any.
+/// Part of a line: the patch that faces the line, and the patch at the other end of the segment, or `none`.
 struct LineSegment {
     PatchIndex front, back;
-    bool is_mutual;  ///< Whether `back` also sees `front`: false through the back of a one-sided face.
+    bool is_mutual;  ///< Whether light also travels from `back` to `front`; false through the back of a one-sided face.
 };
 
-/// One object per thread.
+/// Lines that a thread traces together.
 struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, reversed_lines;
@@ -83,7 +84,7 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
 /// Advances lines to the next patch that faces them, and traces back. Drops lines that escape or hit the same patch by
 /// rounding.
 void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
-    constexpr float offsets_apart = 4;  // of coincident patches; see RayCaster::ray_offset()
+    constexpr float offsets_apart = 4;  // distance at which patches coincide, in units of RayCaster::ray_offset()
     bundle.segments.clear();
     bundle.reversed_lines.clear();
     bundle.hits.resize(bundle.lines.size());
@@ -142,7 +143,7 @@ class LineSums {
         add_concurrently(started_[segment.back], 1);
         carry(segment.back, segment.front, Rgb(1));
     }
-    /// One direction, because a pane may be one-sided.
+    /// Adds the light behind a pane, in one direction only, because a pane may be one-sided.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
         carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
     }
@@ -157,14 +158,16 @@ class LineSums {
             r.variance.push_back(static_cast<float>(square_.to_number(squares_[i]) / (area * area)));
             r.escaped_power += lost;
             r.shot_power += arrived + lost;
-            if (channel_sum(radiosity_[i]) > 0) r.escaped_rays += escaped_rays_[i];  // without dark walls
+            if (channel_sum(radiosity_[i]) > 0) r.escaped_rays += escaped_rays_[i];  // rays of dark walls do not count
         }
         return r;
     }
     const std::vector<std::int64_t>& started() const { return started_; }
 
   private:
-    /// @param to  May be `none`. @param factor  1 for mutual exchange, else 2, times the transmittance.
+    /// Adds the power from one patch to another.
+    /// @param to      May be `none`.
+    /// @param factor  Transmittance, times 1 for a mutual exchange or 2 for an exchange in one direction.
     void carry(std::uint32_t from, std::uint32_t to, const Rgb& factor) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(factor) * power_per_radiosity_;
         if (to == none) {
@@ -199,7 +202,7 @@ class GlobalLines final : public Passes {
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.light.forest;
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
-        // Products of dependent bounces would be biased.
+        // Each bounce has a new key, because products of dependent bounces would be biased.
         const std::uint64_t key =
             mix(mix(state.light.options().seed, line_purpose), state.sampling.streams.allocations);
         PerThread<LineBundle> bundles;

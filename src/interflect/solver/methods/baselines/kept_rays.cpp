@@ -28,7 +28,7 @@ namespace {
 
 constexpr std::size_t rays_per_task = 4096;
 
-/// Parameters of a patch to 16 bits.
+/// Parameters of a point on a patch, rounded to 16 bits.
 struct Place {
     std::uint16_t u = 0, v = 0;
 
@@ -43,18 +43,18 @@ struct Place {
 };
 
 struct KeptRay {
-    std::uint32_t source;   // leaf, or luminaire part
-    ElementIndex receiver;  // leaf, or no_element if the ray escaped
+    std::uint32_t source;   // leaf or luminaire part
+    ElementIndex receiver;  // leaf; no_element if the ray escaped
     Place start, end;
 };
 
-/// Rays in the order of their shooting, those behind panes after the others of a step.
+/// Rays in the order in which they were shot. The continuations behind panes follow the other rays of a step.
 struct RaySet {
-    enum Kind : std::uint8_t { from_leaf = 0, from_part = 1, behind_pane = 2 };  // bits
+    enum Kind : std::uint8_t { from_leaf = 0, from_part = 1, behind_pane = 2 };  // bits, which may be combined
 
     std::vector<KeptRay> rays;
     std::vector<std::uint8_t> kind;
-    std::vector<Rgb> transmittance;  // of panes; empty without
+    std::vector<Rgb> transmittance;  // transmittance of panes before the hit; empty in a scene without panes
 
     std::size_t size() const { return rays.size(); }
     bool is_from_part(std::size_t i) const { return (kind[i] & from_part) != 0; }
@@ -63,14 +63,15 @@ struct RaySet {
         kind.resize(size);
         if (!transmittance.empty()) transmittance.resize(size, Rgb(1));
     }
-    /// Index of the ray's source in Quotas.
+    /// Returns the index of the ray's source in Quotas.
     std::size_t source(std::size_t i, std::size_t elements) const {
         return rays[i].source + (is_from_part(i) ? elements : 0);
     }
 };
 
-/// ContributionUnits with finer squares. Kept rays carry no importance, so its term holds the rounding errors of the
-/// squares. The squared payload of light through a small hole is 1e-19 of the sum for a landscape.
+/// ContributionUnits with more precise squares. Kept rays carry no importance, so its term stores the rounding errors
+/// of the squares. The precision is needed: the squared payload of light through a small hole is 1e-19 of the sum over
+/// a landscape.
 class PayloadUnits {
   public:
     PayloadUnits(const PayloadTotals& all, std::size_t rays)
@@ -96,10 +97,10 @@ ElementIndex leaf_within(const ElementForest& forest, ElementIndex e, Place plac
     return forest.is_leaf(e) ? e : forest.leaf_below(e, forest.cell(e), place.parameters());
 }
 
-/// Well-distributed rays with importance, the first open end of Prikryl et al. 2000. Every ray is kept as its two ends.
-/// A source with power P_s has a quota n_s of rays, each with the payload P_s / n_s, whenever it was shot (balance
-/// heuristic, Veach and Guibas 1995); parts of a divided leaf share its quota by area. When power or importance change,
-/// iterations shoot the rays that leaves lack.
+/// Well-distributed rays with importance, which Prikryl et al. 2000 propose as future work. Both ends of every ray are
+/// stored. A source of power P_s has a quota of n_s rays. Each of its rays has the payload P_s / n_s, no matter when it
+/// was shot (balance heuristic, Veach and Guibas 1995). The children of a divided leaf share its quota by area. When
+/// power or importance change, iterations shoot the missing rays.
 class KeptRays : public IterationMethod {
   public:
     void prepare(SolverState& state) override;
@@ -110,27 +111,28 @@ class KeptRays : public IterationMethod {
     void discard() override { set_.resize(merged_); }
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
-    bool fits(const SolverState& state) const override;
+    bool is_consistent(const SolverState& state) const override;
 
   private:
-    /// Numbers of rays by element (leaves count), then by luminaire part.
+    /// Number of rays of each element, of which only leaves count, then of each luminaire part.
     using Quotas = std::vector<double>;
 
     void drop_rays_of_parts(const SolverState& state);
-    /// Divides quotas with their leaves, and replaces these in rays.
+    /// Divides the quotas of divided leaves, and replaces these leaves in the rays by their descendants.
     void follow_forest(const ElementForest& forest);
     void shoot(SolverState& state, const RayPlan& plan);
-    /// Sets the light of the elements from `first` on by all rays.
+    /// Computes the light of the elements from `first` on from all rays.
     void receive_again(SolverState& state, std::uint32_t first = 0);
-    /// Light by the new rays, and by the kept rays of paused sources.
+    /// Returns the light of the new rays, and of the kept rays of sources that shoot no new rays.
     Estimate fresh_estimate(SolverState& state, const Quotas& growth) const;
     struct Range {
         std::size_t begin, end;
     };
-    /// Light by these rays of the sources with quotas, on the elements from `first` on. They carry the radiosity for
-    /// which the quotas were planned: a new one may exceed it many times on elements with few rays.
+    /// Returns the light that these rays deposit on the elements from `first` on; only sources with a quota count. The
+    /// rays carry the radiosity for which the quotas were planned, because a newer radiosity may be many times as large
+    /// on elements with few rays.
     Estimate received(SolverState& state, Range rays, const Quotas& quotas, std::uint32_t first = 0) const;
-    /// Returns the numbers of rays of the sources, which differ from quotas.
+    /// Returns the number of rays of each source, which may differ from its quota.
     std::vector<std::int64_t> count_rays(Range rays, std::size_t sources) const;
     /// Adds payloads to state.sampling.contributions; returns the escaped power.
     RgbD scatter(SolverState& state, Range rays, const std::vector<RgbD>& payload, const PayloadUnits& units,
@@ -139,16 +141,16 @@ class KeptRays : public IterationMethod {
 
     Passes passes_;
     RaySet set_;
-    std::size_t merged_ = 0;  // rays of complete iterations
+    std::size_t merged_ = 0;  // number of kept rays of complete iterations
     std::uint32_t elements_ = 0;
-    std::int64_t all_rays_ = 0;          // of complete iterations
-    Quotas quotas_, next_quotas_;        // the latter of the iteration in progress
+    std::int64_t all_rays_ = 0;          // number of rays that complete iterations have shot
+    Quotas quotas_, next_quotas_;        // quotas of complete iterations, and with the iteration in progress
     std::vector<Rgb> reflected_;         // irradiance that this iteration reflects
-    std::vector<Imath::Box3f> targets_;  // of rays from luminaire parts
+    std::vector<Imath::Box3f> targets_;  // targets of the kept rays from luminaire parts
     bool needs_importance_ = false;
 };
 
-/// Returns quotas raised to x q, with x such that their sum grows by `rays`.
+/// Returns max(quota, x q) for each source; x is chosen so that the sum of the quotas grows by `rays`.
 std::vector<double> raised(std::vector<double> quotas, const std::vector<float>& q, double rays) {
     const auto growth = [&](double x) {
         return parallel_sum(q.size(), elements_per_task, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -210,8 +212,9 @@ Estimate KeptRays::trace(SolverState& state, TracedIteration& iteration) {
     state.light.solution.non_finite += power.non_finite_leaves;
     if (!(power.power > 0)) return {};
     std::vector<float>& q = power.plan.q;
-    // Systematic sampling makes the number of rays of a source equal its quota in the mean, also below 1. To count the
-    // rays that exist would add light: sources below their quota by chance would catch up, those above could not.
+    // By systematic sampling, the expected number of rays of a source is its quota, also if that is below 1. Quotas
+    // must not be compared with the number of existing rays. This would add light, because sources with too few rays by
+    // chance would shoot more, while sources with too many rays could not shoot less.
     next_quotas_ = raised(quotas_, q, static_cast<double>(rays));
     for (std::size_t s = 0; s < q.size(); ++s) q[s] = static_cast<float>(next_quotas_[s] - quotas_[s]);
     shoot(state, power.plan);
@@ -325,7 +328,7 @@ Estimate KeptRays::received(SolverState& state, Range rays, const Quotas& quotas
     const ElementForest& forest = *state.light.forest;
     const Radiosity light(state.inputs.materials, reflected_);
     const std::vector<std::int64_t> count = count_rays(rays, quotas.size());
-    std::vector<RgbD> payload(quotas.size(), RgbD(0));  // by source
+    std::vector<RgbD> payload(quotas.size(), RgbD(0));  // payload of each source's rays
     PayloadTotals totals;
     for (std::uint32_t s = 0; s < quotas.size(); ++s) {
         const ElementIndex leaf(s);
@@ -430,7 +433,8 @@ void KeptRays::receive_again(SolverState& state, std::uint32_t first) {
 void KeptRays::refine(SolverState& state) {
     constexpr int rounds = 2;
     if (!refines_by_variance(state.light.options()) || !state.light.noise.is_known()) return;
-    // Rays give the light of new elements, too. The others keep theirs, because parts of a source have its payload.
+    // The kept rays determine the light of new elements. Other elements do not change, because the rays of the children
+    // of a source keep its payload.
     for (int i = 0; i < rounds; ++i) {
         const std::uint32_t first = elements_;
         refine_by_variance(state);
@@ -442,7 +446,8 @@ void KeptRays::refine(SolverState& state) {
 
 void KeptRays::change_views(SolverState& state) {
     IterationMethod::change_views(state);
-    const bool has_begun = !state.light.solution.iterations.empty();  // otherwise, prepare() transports importance
+    // Before the first iteration, prepare() transports importance.
+    const bool has_begun = !state.light.solution.iterations.empty();
     needs_importance_ = has_begun && importance_use(state.light.solution) == ImportanceUse::full;
 }
 
@@ -459,9 +464,9 @@ void KeptRays::archive(StateArchive& archive) {
     archive("kept_rays/needs_importance", needs_importance_);
 }
 
-bool KeptRays::fits(const SolverState& state) const {
+bool KeptRays::is_consistent(const SolverState& state) const {
     const std::size_t parts = state.inputs.emission.part_count();
-    if (!passes_.fits(state) || elements_ > state.light.forest->size() || merged_ != set_.size()) return false;
+    if (!passes_.is_consistent(state) || elements_ > state.light.forest->size() || merged_ != set_.size()) return false;
     if (set_.kind.size() != set_.size()) return false;
     if (!set_.transmittance.empty() && set_.transmittance.size() != set_.size()) return false;
     if (elements_ > 0 && targets_ == state.inputs.targets && quotas_.size() != elements_ + parts) return false;

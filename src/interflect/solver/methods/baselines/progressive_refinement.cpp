@@ -16,26 +16,29 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum weight of a shooting patch, relative to the largest.
+/// Minimum weight of a patch that shoots in a step, relative to the largest weight.
 constexpr float share_of_largest = 0.5f;
-/// The last step shoots the rest: below this unshot share or number of rays.
+/// A step shoots all the rest if the unshot share or the number of rays is below these limits.
 constexpr double negligible_rest = 0.01;
 constexpr std::int64_t fewest_rays_of_step = 16;
-/// Initial ShotBudget::expected.
+/// Initial value of ShotBudget::expected.
 constexpr double assumed_shots = 2;
 
-/// Weights are relative to the initial amount.
+/// Distributes rays over the steps of a series. Weights are amounts of power or importance, relative to the initial
+/// amount.
 struct ShotBudget {
     std::int64_t left;
-    double expected;  ///< Sum of the weights of all steps.
+    double expected;  ///< Expected sum of the weights of all steps.
     double shot = 0;
 
     double measured() const { return shot > 0 ? shot : expected; }
-    /// @param weight  Amount selected for a step. @param unshot  Total.
+    /// Returns the number of rays of a step.
+    /// @param weight  Amount that the step shoots.
+    /// @param unshot  Total unshot amount.
     std::int64_t share(double weight, double unshot) const {
         return std::llround(std::min(1.0, weight / (expected * unshot)) * static_cast<double>(left));
     }
-    /// A walk shoots its power `expected` times.
+    /// Returns the number of random walks for the remaining rays. A walk has `expected` rays on average.
     std::int64_t walks() const {
         return std::max<std::int64_t>(1, std::llround(static_cast<double>(left) / std::max(1.0, expected)));
     }
@@ -66,7 +69,7 @@ double ratio(double a, double b) { return b > 0 ? a / b : 0; }
 
 struct ImportanceSeries {
     ShotBudget budget;
-    std::vector<float> unshot, fresh;  ///< fresh: summed over the steps
+    std::vector<float> unshot, fresh;  ///< Unshot importance, and the sum of received importance over the steps.
     double first = 0;
 };
 
@@ -75,11 +78,11 @@ struct PowerSeries {
     ImportanceWeights weights;
     std::vector<Rgb> unshot;
     Estimate fresh;
-    bool emits = true;                                 ///< The next step is the first.
-    double first_power = 0, first_weighted_power = 0;  ///< Before the first step; see PowerPlan.
+    bool emits = true;  ///< Whether the next step is the first, which shoots emitted power.
+    double first_power = 0, first_weighted_power = 0;  ///< Powers of the PowerPlan of the first step.
 };
 
-/// @return  Whether another step follows.
+/// Shoots importance from the patches that have the most unshot importance. Returns whether another step follows.
 bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
     const ElementForest& forest = *state.light.forest;
     double unshot = 0;
@@ -129,7 +132,7 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     else
         choose_largest(chosen);
     double weight = unshot * sum_of(chosen) / sum_of(step.q);
-    // Unimportant power may reach important patches later.
+    // The test uses unweighted power, because unimportant power may reach important patches later.
     const bool is_last = power < negligible_rest * series.first_power || series.budget.is_last(weight, unshot);
     if (is_last) {
         chosen = step.q;
@@ -176,8 +179,8 @@ class ProgressiveRefinement final : public IterationMethod {
     void shoot_importance(SolverState& state, std::int64_t rays);
 
     struct Numbers {
-        double importance_shots = assumed_shots, power_shots = assumed_shots;  // see ShotBudget::expected
-        std::int64_t importance_history = 0;                                   // rays in the mean
+        double importance_shots = assumed_shots, power_shots = assumed_shots;  // values of ShotBudget::expected
+        std::int64_t importance_history = 0;                                   // number of rays in the mean importance
     };
     Numbers current_, before_;
 };

@@ -34,11 +34,12 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/total", total_);
 }
 
-/// Replaces plan.q by the rays that sources lack of `all`. If a leaf has shot more than its share, others of its patch
-/// shoot less.
+/// Replaces plan.q by the number of rays that each source lacks if all sources together should have `all` rays. If a
+/// leaf has shot more than its share, other leaves of its patch shoot less.
 void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const {
     struct Balance {
-        double lacks = 0, lacking = 0;  // rays, with and without the surplus of other leaves
+        double lacks = 0;    // missing rays of the patch, reduced by the surplus of some leaves
+        double lacking = 0;  // sum of the missing rays of its leaves
     };
     std::vector<Balance> patches(forest.patch_count());
     const auto lacks = [&](ElementIndex e) { return static_cast<double>(all) * plan.q[e] - shot_[e]; };
@@ -70,7 +71,7 @@ Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iterati
     TransportStep step(std::move(power.plan));
     step.equal_payloads = true;
     step.groups = group_radiosity(state.inputs, state.light, state.light.solution.groups);
-    // Without importance, the weights are shares of all power.
+    // Without importance, the probabilities q are shares of all power.
     const double all_power = channel_sum(radiated_power(state.inputs, state.light));
     keep_lacking_rays(forest, total_ + iteration.plan.rays, step);
     const std::int64_t rays = iteration.weight = iteration.rays = step.rays;
@@ -99,7 +100,8 @@ Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iterati
     estimate.variance.resize(forest.size());
     for (std::size_t e = 0; e < forest.size(); ++e) {
         estimate.irradiance[e] = payload * received.irradiance[e];
-        estimate.variance[e] = payload * (payload * received.variance[e]);  // the square may be out of range
+        // The square of the payload may be out of range.
+        estimate.variance[e] = payload * (payload * received.variance[e]);
         received_[e] += received.irradiance[e];
     }
     pull(forest, received_);

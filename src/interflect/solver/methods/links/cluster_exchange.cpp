@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Sum of the radii of two distant ends over their distance.
+/// Two ends are distant if the sum of their radii is less than this share of their distance.
 constexpr float largest_opening = 0.8f;
 constexpr std::size_t most_lines = 16;
 
@@ -25,7 +25,7 @@ bool are_distant(const Sphere& a, const Sphere& b) {
 /// Returns twice the standard deviation of the transmittance of a line, after a blocked and a free line are added to
 /// the sample (Laplace). It is positive even if all lines agree, in contrast to their range. With the range, links
 /// whose few lines are free by chance would remain, the others be divided, and light be overestimated.
-/// @param mean, mean_square  Of the sampled lines.
+/// @param mean, mean_square  Mean and mean square of the transmittance of the sampled lines.
 float likely_variation(double mean, double mean_square, std::size_t lines) {
     const auto n = static_cast<double>(lines);
     const double likely = (mean * n + 1) / (n + 2);
@@ -34,7 +34,7 @@ float likely_variation(double mean, double mean_square, std::size_t lines) {
 
 struct Choice {
     const ClusterMember* member;
-    float remainder;  // uniform in [0, 1)
+    float remainder;  // uniform number in [0, 1] within the member
 };
 
 /// Chooses members with probability w / sum, by inversion of the uniform numbers `u`.
@@ -57,7 +57,8 @@ void choose(std::span<const ClusterMember> members, const auto& weight, double s
         }
         below += w;
     }
-    for (; next < u.size(); ++next) chosen[order[next]] = {last, 0.5f};  // rounding
+    // Rounding may leave numbers beyond the last member.
+    for (; next < u.size(); ++next) chosen[order[next]] = {last, 0.5f};
 }
 
 }  // namespace
@@ -144,7 +145,7 @@ Exchange ClusterExchange::estimate(const ElementPair& pair, Effort effort, std::
         const V3f x = point_of(ends_a[k], random.coordinate[2][k]), y = point_of(ends_b[k], random.coordinate[3][k]);
         const V3d d(y - x);
         const double disk = std::max(forest_.area(p.element), forest_.area(q.element)) / static_cast<double>(lines);
-        // Exchange of the patches, each times its area.
+        // Exchange of two points times the areas of their patches
         const double cosines =
             std::max(0.0, V3d(p.area_vector).dot(d)) * std::max(0.0, -V3d(q.area_vector).dot(d)) / d.length2();
         const double ratio = cosines / (std::numbers::pi * d.length2() + disk) /
@@ -159,7 +160,7 @@ Exchange ClusterExchange::estimate(const ElementPair& pair, Effort effort, std::
     }
     exchange.transmittance = all > 0 ? Rgb(free / all) : Rgb(1);
     exchange.variation = all > 0 ? likely_variation(largest_channel(free) / all, squares / all, lines) : 0;
-    // Weights by polygon contain the variation over the element.
+    // Weights by polygon already contain the variation over the element.
     const bool is_by_points = factors.weight_a.kind == factors.weight_b.kind;
     const double spread = is_by_points ? exchange.area * (most_ratio - least_ratio) : 0;
     exchange.spread_over_a = exchange.spread_over_b = static_cast<float>(spread);

@@ -10,13 +10,13 @@
 
 namespace interflect::detail {
 
-/// Exchange of a cluster with a cluster or an element, after Smits, Arvo and Greenberg 1994. For members p and q,
-/// A_p F_pq = T s w_p w_q [m^2], so a link costs the sum of the members instead of their product. All pairs of a link
-/// share one sampled transmittance T.
+/// Exchange of a cluster with a cluster or an element, after Smits, Arvo and Greenberg 1994. For members p and q of the
+/// two ends, A_p F_pq = T s w_p w_q [m^2]. So the cost of a link is the sum of the numbers of members, not their
+/// product. All pairs of a link share one sampled transmittance T.
 ///
-/// Distant ends: w_p = A_p cos / |p - c|^2 towards the centre c of the other end, s = |c - c'|^2 / pi. The relative
-/// error is of second order in radius over distance. A near element and a cluster: w_p = A_p F_p towards the element by
-/// Lambert's formula, s w_q = 1.
+/// If the ends are distant, w_p = A_p cos / |p - c|^2, with the cosine towards the centre c of the other end, and
+/// s = |c - c'|^2 / pi with both centres. The relative error is of second order in radius over distance. If an element
+/// is near a cluster, w_p = A_p F_p with the form factor F_p to the element by Lambert's formula, and s w_q = 1.
 class ClusterExchange {
   public:
     ClusterExchange(const ElementForest& forest, const PatchTree& tree, const ExchangeEstimator& estimator,
@@ -24,15 +24,15 @@ class ClusterExchange {
         : forest_(forest), tree_(tree), estimator_(estimator), seed_(seed) {}
 
     Sphere sphere(ElementIndex end) const;
-    /// Whether the approximation holds for all members, without occlusion.
+    /// Returns whether the approximation holds for all members, apart from occlusion.
     bool is_valid(const ElementPair& pair) const;
 
-    /// Samples the transmittance. Thread-safe.
-    /// @param rays  Incremented.
+    /// Computes the exchange and samples its transmittance. Thread-safe.
+    /// @param rays  Increased by the number of traced rays.
     Exchange estimate(const ElementPair& pair, Effort effort, std::int64_t& rays) const;
 
     /// Adds the power [W or lm] that each member receives from the other end.
-    /// @param leaving   Radiosity per element.
+    /// @param leaving  Radiosity of each element.
     template <class T>
     void transport(const ElementPair& pair, const T& transmittance, const std::vector<T>& leaving,
                    std::vector<T>& received) const {
@@ -50,7 +50,7 @@ class ClusterExchange {
     struct End {
         Sphere sphere;
         ClusterMember element;
-        std::span<const ClusterMember> patches;  // of a cluster
+        std::span<const ClusterMember> patches;  // members of a cluster; empty for an element
 
         std::span<const ClusterMember> members() const { return patches.empty() ? std::span(&element, 1) : patches; }
     };

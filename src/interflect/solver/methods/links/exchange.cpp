@@ -13,7 +13,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Clips to the half-space above the plane through the origin (Sutherland and Hodgman 1974).
+/// Clips a polygon to the half-space above the plane through the origin (Sutherland and Hodgman 1974).
 ConvexPolygon clip_to_horizon(std::span<const V3d> polygon, const V3d& normal) {
     ConvexPolygon above;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -37,9 +37,9 @@ constexpr GaussRule gauss_4{{0.0694318442029737, 0.3300094782075719, 0.669990521
 struct Quadrature {
     static constexpr std::size_t capacity = 16;
 
-    double span;  // extent of the points relative to the width
+    double span;  // distance between the first and last node, relative to the side of the element
     std::array<V3f, capacity> point;
-    std::array<double, capacity> weight;  // sums to 1
+    std::array<double, capacity> weight;  // weights of the points; their sum is 1
     std::size_t count = 0;
 
     Quadrature(const ElementForest& forest, ElementIndex e, Effort effort) {
@@ -51,7 +51,7 @@ struct Quadrature {
         double sum = 0;
         for (std::size_t i = 0; i < side; ++i)
             for (std::size_t j = 0; j < side; ++j) {
-                // A triangle is a square with one collapsed side (Duffy 1982).
+                // A triangle is treated as a square with one collapsed side (Duffy 1982).
                 const double width = geometry.is_triangle() ? 1 - rule.node[i] : 1;
                 const Parameters p =
                     cell.at(static_cast<float>(rule.node[i]), static_cast<float>(width * rule.node[j]));
@@ -65,7 +65,7 @@ struct Quadrature {
 
 struct FormFactors {
     double mean = 0;
-    double spread = 0;  // largest minus smallest, extrapolated to the edges
+    double spread = 0;  // largest minus smallest form factor, extrapolated to the edges
 };
 
 FormFactors form_factors(const ElementForest& forest, const Quadrature& points, ElementIndex from, ElementIndex to) {
@@ -89,7 +89,7 @@ struct LinesOfSight {
     std::uint64_t seed;
     std::int64_t& rays;
 
-    /// Samples visibility, weighted by unoccluded light.
+    /// Samples the transmittance of lines of sight, weighted by their unoccluded light.
     void sample(ElementIndex small, ElementIndex large, const Quadrature& points, Exchange& exchange) {
         const PatchGeometry& geometry = forest.geometry(forest.patch(large));
         const V3f normal_x = forest.geometry(forest.patch(small)).normal(), normal_y = geometry.normal();
@@ -116,7 +116,8 @@ struct LinesOfSight {
             least = smaller(least, line);
             most = larger(most, line);
         }
-        exchange.transmittance = all > 0 ? Rgb(free / all) : Rgb(1);  // 1: no sampled line joins the two fronts
+        // The transmittance is 1 if no sampled line joins the two fronts.
+        exchange.transmittance = all > 0 ? Rgb(free / all) : Rgb(1);
         exchange.variation = all > 0 ? largest_channel(most - least) : 0;
     }
 };
@@ -134,7 +135,7 @@ double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V
     double sum = 0;
     for (std::size_t i = 0; i < seen.corners().size(); ++i) {
         const V3d &r = seen.corners()[i], &s = seen.corners()[(i + 1) % seen.corners().size()];
-        const V3d across = s.cross(r);  // polygons facing x are counter-clockwise from x
+        const V3d across = s.cross(r);  // a polygon that faces x is counter-clockwise as seen from x
         const double length = across.length();
         if (length > 0) sum += std::atan2(length, r.dot(s)) * normal.dot(across) / length;
     }
@@ -187,7 +188,7 @@ Exchange ExchangeEstimator::estimate(const ElementPair& pair, Effort effort, std
 }
 
 Rgb ExchangeEstimator::transmittance(const PointOfElement& x, const PointOfElement& y, std::int64_t& rays) const {
-    // Both directions: rays pass the back of a one-sided face, and hit only one of two coincident faces.
+    // Trace both directions, because rays pass the back of a one-sided face and hit only one of two coincident faces.
     const Rgb line = one_way(x, y, rays);
     return line != Rgb(0) ? smaller(line, one_way(y, x, rays)) : line;
 }

@@ -18,17 +18,17 @@ namespace interflect::detail {
 
 using V3d = Imath::V3d;
 
-/// Unoccluded form factor from a differential area at x to a convex polygon: Lambert's edge sum (1760; Baum et al.
-/// 1989), clipped to the horizon. 0 behind the polygon.
+/// Returns the unoccluded form factor from a differential area at x to a convex polygon, by Lambert's sum over edges
+/// (1760; Baum et al. 1989). The polygon is clipped to the horizon. Returns 0 if x is behind the polygon.
 /// @param normal   Unit length.
-/// @param polygon  Three to seven corners [m], counter-clockwise from the lit side.
+/// @param polygon  Three to seven corners [m], counter-clockwise as seen from the lit side.
 double form_factor_to_polygon(const V3d& x, const V3d& normal, std::span<const V3d> polygon);
 
-/// Per channel.
+/// Minimum and maximum of each channel.
 inline Rgb smaller(const Rgb& x, const Rgb& y) { return {std::min(x.x, y.x), std::min(x.y, y.y), std::min(x.z, y.z)}; }
 inline Rgb larger(const Rgb& x, const Rgb& y) { return {std::max(x.x, y.x), std::max(x.y, y.y), std::max(x.z, y.z)}; }
 
-/// Counter-clockwise from the front.
+/// An element as a polygon; its corners are counter-clockwise as seen from the front.
 class ConvexPolygon {
   public:
     ConvexPolygon() = default;
@@ -36,11 +36,11 @@ class ConvexPolygon {
 
     void add(const V3d& corner) { corner_[count_++] = corner; }
     std::span<const V3d> corners() const { return {corner_.data(), count_}; }
-    /// Unoccluded form factor from a differential area, 0 if it is behind the element.
+    /// Returns the unoccluded form factor from a differential area; 0 if the area is behind the element.
     double form_factor_from(const V3d& x, const V3d& normal) const;
 
   private:
-    static constexpr std::size_t capacity = 8;  // clipping adds one corner
+    static constexpr std::size_t capacity = 8;  // form_factor_to_polygon() takes seven corners; clipping adds one
 
     V3d normal_{0, 0, 0};
     std::array<V3d, capacity> corner_;
@@ -52,38 +52,39 @@ struct PointOfElement {
     V3f position;
 };
 
-/// Identifies an element among all that the forest may ever have.
+/// Returns a number that identifies an element among all possible elements of the forest.
 std::uint64_t place(const ElementForest& forest, ElementIndex element);
 
 struct Exchange {
-    /// Unoccluded A_a F_ab = A_b F_ba [m^2].
+    /// Unoccluded exchange A_a F_ab = A_b F_ba [m^2].
     float area = 0;
-    /// Area times the range of form factors from its points [m^2].
+    /// Area of the end, times the range of form factors from its points to the other end [m^2].
     float spread_over_a = 0, spread_over_b = 0;
-    /// Mean over lines of sight.
+    /// Mean transmittance of lines of sight.
     Rgb transmittance{0, 0, 0};
     /// Range of the transmittance over lines of sight.
     float variation = 0;
 };
 
-/// Points per side of the smaller element; lines of sight are its square.
+/// Number of points per side of the smaller element. The number of lines of sight is its square.
 enum class Effort { quick = 2, thorough = 4 };
 
-/// Thread-safe. Integrates Lambert's form factor to the larger element over the smaller (Gaussian quadrature). A line
-/// of sight is free if rays from both ends first hit the other, apart from panes.
+/// Estimates the exchange of two elements: integrates Lambert's form factor to the larger element over the smaller
+/// element by Gaussian quadrature. A line of sight is free if rays from both ends hit the other element first, apart
+/// from panes. Thread-safe.
 class ExchangeEstimator {
   public:
     ExchangeEstimator(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, std::uint64_t seed)
         : forest_(forest), ray_caster_(ray_caster), panes_(scene, ray_caster), seed_(seed) {}
 
-    /// Whether each extends above the other's plane by more than rounding.
+    /// Returns whether each element extends above the plane of the other by more than rounding errors.
     bool face_each_other(const ElementPair& pair) const;
 
-    /// @param rays  Incremented.
+    /// @param rays  Increased by the number of traced rays.
     Exchange estimate(const ElementPair& pair, Effort effort, std::int64_t& rays) const;
 
     /// Returns the transmittance of the panes between two points; 0 if another surface hides one from the other.
-    /// @param rays  Incremented.
+    /// @param rays  Increased by the number of traced rays.
     Rgb transmittance(const PointOfElement& x, const PointOfElement& y, std::int64_t& rays) const;
 
   private:

@@ -16,13 +16,13 @@ constexpr std::size_t patches_per_task = 8;
 
 bool emits(const RunInputs& inputs, PatchIndex patch) { return channel_sum(inputs.materials.exitance(patch)) > 0; }
 
-/// Upper bound for surfaces inside two spheres [m^2].
+/// Returns an upper bound of the exchange of surfaces inside two spheres [m^2].
 double largest_exchange(const Sphere& a, const Sphere& b, double area_a, double area_b) {
     const double gap = std::max(0.0f, (a.centre - b.centre).length() - a.radius - b.radius);
     return area_a * area_b / (std::numbers::pi * gap * gap);
 }
 
-/// Chooses the effort for pairs of patches.
+/// Collects pairs of patches that face each other, and chooses the effort for each pair.
 class PatchPairs {
   public:
     PatchPairs(const RunInputs& inputs, const LightState& light, const ExchangeEstimator& estimator)
@@ -42,7 +42,7 @@ class PatchPairs {
     }
 
   private:
-    /// A reflector of average brightness sends at most the threshold over this exchange.
+    /// Returns whether a reflector of average brightness sends less power than the threshold over this exchange.
     bool is_weak(PatchIndex i, PatchIndex j) const {
         return !emits(inputs_, i) && !emits(inputs_, j) &&
                largest_exchange(spheres_[i], spheres_[j], forest_.area(i), forest_.area(j)) < epsilon_ * surface_;
@@ -56,7 +56,7 @@ class PatchPairs {
     double surface_ = 0;  // [m^2]
 };
 
-/// Divides pairs until the exchange of clusters is valid.
+/// Divides pairs of clusters until the approximation of ClusterExchange is valid.
 struct PairDivision {
     const ElementForest& forest;
     const PatchTree& tree;

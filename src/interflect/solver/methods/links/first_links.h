@@ -15,8 +15,8 @@ struct LinkCandidate {
     Effort effort;
 };
 
-/// Returns the patches to group. Emitters are not grouped and keep one link to each patch, for accurate direct light.
-/// Empty without ExperimentalOptions::clusters.
+/// Returns the patches to be grouped into clusters; none without ExperimentalOptions::clusters. Emitters are not
+/// grouped and keep one link to each patch, for accurate direct light.
 std::vector<PatchIndex> patches_to_cluster(const RunInputs& inputs, const LightState& light);
 
 /// Returns all pairs of patches that face each other; stops beyond `limit`.

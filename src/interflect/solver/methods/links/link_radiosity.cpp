@@ -20,24 +20,27 @@ namespace interflect::detail {
 struct RefinementCandidate {
     std::size_t link;
     ElementIndex divided;
-    double factor;  // error bound / threshold
+    double factor;  // error bound over the threshold
 };
 
 namespace {
 
-/// Relative change of light in a sweep below which links are refined, or the run ends.
+/// Links are refined if the relative change of light in a sweep is below `settled`. If none can be refined, the run
+/// ends when the change is below `negligible_change`.
 constexpr double settled = 1e-2, negligible_change = 1e-6;
-/// Relative error bound of 16 blocked lines of sight: a 17th may be free.
+/// Relative error bound of a link whose 16 sampled lines of sight are all blocked, because one more line may be free.
 constexpr double bound_if_blocked = 1.0 / 16;
-/// Maximum rays of the four links that replace one.
+/// Maximum number of rays for the four links that replace one: 16 lines of sight in both directions.
 constexpr std::int64_t rays_per_division = std::int64_t{4} * 2 * 16;
 constexpr std::size_t pairs_per_task = 256;
-/// Rays of a quick link.
+/// Number of rays of a quick link: 4 lines of sight in both directions.
 constexpr double rays_of_quick_link = 2 * 4;
-/// Share of the rays that links between all patches may need: 707 patches at 20 million rays. 1,902 patches need 0.7 of
-/// the rays, and then have 1.6 times the error of clusters (docs/method/results.md).
+/// All patches are linked directly if their links need at most this share of the rays. At 20 million rays, this allows
+/// 707 patches. Links between 1,902 patches need 0.7 of the rays, and have 1.6 times the error of clusters
+/// (docs/method/results.md).
 constexpr double share_of_pairs = 0.1;
-/// Partial sums of light from clusters. The number of threads must not change their order.
+/// Number of partial sums of light from clusters. It is fixed, so that the number of threads does not change the order
+/// of additions.
 constexpr std::size_t cluster_sums = 8;
 
 template <class T>
@@ -58,7 +61,7 @@ void gather_from_clusters(const ElementForest& forest, const ClusterExchange& cl
     });
 }
 
-/// @param area_of  Link::area or Link::mean_area.
+/// Gathers one bounce over all links. @param area_of  Link::area or Link::mean_area.
 template <class T>
 std::vector<T> gather(const ElementForest& forest, const ClusterExchange& clusters, std::span<const Link> links,
                       const std::vector<T>& leaving, T (Link::*area_of)() const) {
@@ -77,7 +80,7 @@ std::vector<T> gather(const ElementForest& forest, const ClusterExchange& cluste
     return received;
 }
 
-/// Counts non-finite values and sets them to 0.
+/// Returns the radiosity of every element. Counts non-finite values and sets them to 0.
 std::vector<Rgb> present_radiosity(const RunInputs& inputs, LightState& light) {
     const Radiosity radiosity(inputs.materials, light.solution.irradiance);
     std::vector<Rgb> b;
@@ -90,7 +93,7 @@ std::vector<Rgb> present_radiosity(const RunInputs& inputs, LightState& light) {
     return b;
 }
 
-/// Area-weighted |new - old|, relative to the new value.
+/// Area-weighted sum of |new - old|, relative to that of the new values.
 class RelativeChange {
   public:
     void add(double area, double before, double now) {
@@ -128,7 +131,7 @@ void LinkedElements::prepare(SolverState&) {
     link_candidates();
 }
 
-/// Links all pairs of patches if that leaves most of the rays for refinement, else clusters.
+/// Links all pairs of patches if most of the rays then remain for refinement. Else links clusters.
 void LinkedElements::find_first_links() {
     const double pairs = 0.5 * forest_.patch_count() * (forest_.patch_count() - 1.0);
     const auto rays = static_cast<double>(std::min(state_.light.options().limits.rays, SolveOptions().limits.rays));
@@ -143,7 +146,7 @@ Exchange LinkedElements::estimate(const LinkCandidate& candidate, std::int64_t& 
     return has_cluster(ends) ? clusters_.estimate(ends, effort, rays) : estimator_.estimate(ends, effort, rays);
 }
 
-/// Drops pairs without unoccluded exchange.
+/// Makes links of the candidates. Omits pairs without unoccluded exchange.
 void LinkedElements::link_candidates() {
     require_room_for(candidates_.size());
     std::vector<Link> made(candidates_.size());
@@ -173,7 +176,7 @@ RgbD LinkedElements::gather_light() {
         irradiance = Rgb(received[e]);
         const RgbD power = received[e] * static_cast<double>(forest_.area(e));
         if (e < forest_.patch_count()) escaped -= power;
-        // A pane and the surface behind both receive transmitted light.
+        // Transmitted light counts twice above, because the pane and the surface behind it receive it.
         if (forest_.is_leaf(e))
             escaped += RgbD(state_.inputs.materials.surface(forest_.patch(e), e).transmittance) * power;
     }
@@ -244,7 +247,7 @@ bool is_valid(const Exchange& exchange) {
     return std::all_of(numbers.begin(), numbers.end(), [](float n) { return n >= 0 && std::isfinite(n); });
 }
 
-/// Returns [m^2], including partial occlusion.
+/// Returns the error bound of an exchange [m^2], including partial occlusion.
 double error_bound(const Exchange& exchange, float spread) {
     const float transmittance = largest_channel(exchange.transmittance);
     if (transmittance == 0 && exchange.variation == 0) return exchange.area * bound_if_blocked;
@@ -253,7 +256,8 @@ double error_bound(const Exchange& exchange, float spread) {
 
 }  // namespace
 
-/// Each end has an error bound as receiver, with the other's radiosity, and as source, with the range of its own.
+/// Returns the links whose error bound exceeds the threshold. Each end has an error bound as receiver, from the
+/// radiosity of the other end, and as source, from the range of its own radiosity.
 std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     const Solution& solution = state_.light.solution;
     const EndValues<Rgb> b =
@@ -287,7 +291,8 @@ std::vector<RefinementCandidate> LinkedElements::refinement_candidates() const {
     return candidates;
 }
 
-/// Returns the end with the larger bound; of a cluster and another end, the larger one.
+/// Returns the end with the larger error bound. If an end is a cluster and both bounds are positive, returns the larger
+/// end.
 ElementIndex LinkedElements::divided_end(const ElementPair& ends, double over_a, double over_b) const {
     if (has_cluster(ends) && over_a > 0 && over_b > 0)
         return clusters_.sphere(ends.a).radius >= clusters_.sphere(ends.b).radius ? ends.a : ends.b;
@@ -386,7 +391,7 @@ void LinkedElements::change_views(SolverState& state) {
     refines_next_ = is_settled_ = false;
 }
 
-bool LinkedElements::fits(const SolverState& state) const {
+bool LinkedElements::is_consistent(const SolverState& state) const {
     const std::uint32_t elements = state.light.forest->size();
     const auto exists = [&](ElementIndex end) {
         return is_cluster(end) ? end - first_cluster < tree_.clusters().size() : end < elements;

@@ -14,7 +14,7 @@
 
 namespace interflect::detail {
 
-/// 4.5 GiB of links.
+/// Maximum number of links, which take 4.5 GiB.
 inline constexpr std::size_t max_links = std::size_t{1} << 27;
 
 struct Link {
@@ -23,7 +23,7 @@ struct Link {
 
     /// Exchange with occlusion, A_a F_ab = A_b F_ba [m^2].
     RgbD area() const { return RgbD(exchange.transmittance) * static_cast<double>(exchange.area); }
-    /// Mean over the channels, for importance.
+    /// Returns the mean of area() over the channels, for importance.
     double mean_area() const { return channel_sum(area()) / 3; }
 };
 
@@ -51,13 +51,13 @@ class LinkedElements : public IterationMethod {
     void prepare(SolverState& state) override;
     bool is_fulfilled(const SolverState& state) const override;
     IterationPlan plan(SolverState& state) override;
-    /// Refines links if light has settled, then gathers one bounce. @throws InputError as prepare().
+    /// Refines links if the light has settled, then gathers one bounce. @throws InputError as prepare() does.
     Estimate trace(SolverState& state, TracedIteration& iteration) override;
     void merge(SolverState&, const Estimate&, const TracedIteration&) override {}  // a sweep replaces the light
     void finish(SolverState& state) const override;
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
-    bool fits(const SolverState& state) const override;
+    bool is_consistent(const SolverState& state) const override;
 
   private:
     RgbD gather_light();
@@ -82,7 +82,7 @@ class LinkedElements : public IterationMethod {
     std::size_t link_limit_;
     std::vector<Link> links_;
     std::vector<LinkCandidate> candidates_;
-    double light_change_ = 0, importance_change_ = 0;  // of the last sweep
+    double light_change_ = 0, importance_change_ = 0;  // relative changes in the last sweep
     std::int64_t rays_ = 0;
     int sweeps_ = 0;
     bool refines_ = false;

@@ -66,7 +66,7 @@ Sphere sphere_around(const ElementForest& forest, ElementIndex element) {
 PatchTree::PatchTree(const ElementForest& forest, const std::vector<PatchIndex>& patches) {
     for (const PatchIndex patch : patches) members_.push_back(member_of(forest, patch));
     if (members_.size() < 2) return;
-    std::vector<std::span<ClusterMember>> ranges{members_};  // of the clusters
+    std::vector<std::span<ClusterMember>> ranges{members_};  // members of each cluster
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const std::span<ClusterMember> range = ranges[i];
         halve(range);

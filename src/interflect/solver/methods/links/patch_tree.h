@@ -34,24 +34,25 @@ struct ClusterMember {
 };
 
 ClusterMember member_of(const ElementForest& forest, ElementIndex element);
-/// Contains the element; the centre is the mean of its corners.
+/// Returns a sphere that contains the element, around the mean of its corners.
 Sphere sphere_around(const ElementForest& forest, ElementIndex element);
 
-/// Binary tree of clusters: groups of at least two patches that are near each other, whatever they face.
+/// Binary tree of clusters. A cluster contains at least two patches that are near each other, with any normals.
 class PatchTree {
   public:
     struct Cluster {
         std::uint32_t first_member, end_member;
         std::array<ElementIndex, 2> children;  ///< Clusters or patches.
-        Sphere sphere;                         ///< Around the area-weighted mean of the patches.
+        Sphere sphere;                         ///< Contains the patches; its centre is their area-weighted mean.
         float largest_radius;                  ///< Largest radius of a patch [m].
-        float area;                            ///< [m^2]
+        float area;                            ///< Total area [m^2].
     };
 
     PatchTree() = default;
     PatchTree(const ElementForest& forest, const std::vector<PatchIndex>& patches);
 
-    /// Parents first; the first is the root. Empty for fewer than two patches.
+    /// Returns the clusters; none for fewer than two patches. The root is the first, and parents precede their
+    /// children.
     std::span<const Cluster> clusters() const { return clusters_; }
     const Cluster& cluster(ElementIndex end) const { return clusters_[end - first_cluster]; }
     std::span<const ClusterMember> members(ElementIndex end) const {
@@ -59,7 +60,7 @@ class PatchTree {
                                            cluster(end).end_member - cluster(end).first_member);
     }
 
-    /// Combines values of patches to values of clusters: combine(cluster, of_child_0, of_child_1).
+    /// Computes a value of each cluster from those of its children: combine(cluster, of_child_0, of_child_1).
     template <class T, class Combine>
     std::vector<T> pulled(const std::vector<T>& of_patch, const Combine& combine) const {
         std::vector<T> of_cluster(clusters_.size());

@@ -21,11 +21,12 @@
 
 namespace interflect::detail {
 
-/// Enough for long Embree batches.
+/// Number of paths that are traced together, enough for long batches of Embree.
 inline constexpr std::size_t paths_per_task = 4096;
-/// Maximum copies of a particle at a hit.
+/// Maximum expected number of copies of a particle at a hit.
 inline constexpr double max_copies = 8;
-/// Received over expected power at overflow; leaves 2^45 units for the expected power.
+/// Ratio of received to expected power at which a sum overflows. It leaves 2^45 fixed-point units for the expected
+/// power.
 inline constexpr double sum_headroom = 0x1p16;
 enum class WalkPurpose : std::uint64_t {
     light = 1,
@@ -42,18 +43,18 @@ constexpr std::uint64_t sub_key(std::uint64_t key, WalkPurpose purpose, std::uin
     return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
 }
 
-/// Source of particles: light, or importance (Eq. 7). Entries by element, used for leaves; `emitted` and `density`
-/// continue with luminaire parts (Emission).
+/// Source of particles, which carry light or importance (Eq. 7). The arrays have an entry for each element, of which
+/// leaves are used. In `emitted` and `density`, entries for luminaire parts follow (Emission).
 struct WalkSource {
-    std::vector<Rgb> emitted;      ///< W [lm or W], or reflected view importance rho V.
-    std::vector<Rgb> reflectance;  ///< rho, or the mean of its channels.
-    std::vector<float> density;    ///< Particles per unit of leaving power, up to a factor; >= 0.
-    bool is_grey = false;          ///< Panes transmit the mean of their channels.
-    /// Reflected particles start where they hit, else uniformly on the leaf. Also counts the hits.
+    std::vector<Rgb> emitted;      ///< Emitted power W [lm or W], or reflected view importance rho V.
+    std::vector<Rgb> reflectance;  ///< Reflectance rho, or the mean of its channels.
+    std::vector<float> density;    ///< Particles per unit of leaving power, up to a common factor; >= 0.
+    bool is_grey = false;          ///< Whether panes transmit the mean of their channels.
+    /// Whether reflected particles start at hit points, not uniformly on the leaf. If true, hits are counted.
     bool starts_at_hits = false;
 };
 
-/// Number of hits. Behind panes, a hit counts as the share of its particle's power that they transmit.
+/// Number of hits. A hit behind panes counts as the transmitted share of its particle's power.
 class HitSum {
   public:
     void add_concurrent(double share) {
@@ -66,25 +67,25 @@ class HitSum {
         return *this;
     }
     double sum() const { return static_cast<double>(sum_) * unit; }
-    /// Sum of the squares: the variance of sum().
+    /// Returns the sum of the squares, which is the variance of sum().
     double squares() const { return static_cast<double>(squares_) * unit; }
 
   private:
-    static constexpr double unit = 0x1p-16;  // fixed point, for sums independent of order
+    static constexpr double unit = 0x1p-16;  // fixed-point unit, which makes sums independent of the order
 
     std::int64_t sum_ = 0, squares_ = 0;
 };
 
-/// Sums by leaf.
+/// Sums of each leaf.
 struct PathSums {
     FixedPoint unit;
     std::vector<FixedPoint::Value> received;
     FixedPoint::Value escaped{};
-    std::vector<std::int64_t> started;  ///< Rays that left each leaf.
+    std::vector<std::int64_t> started;  ///< Number of rays that left each leaf.
     std::vector<HitSum> hits;           ///< Empty unless the source counts them.
     std::int64_t rays = 0, escaped_rays = 0;
 
-    /// @param most_hits  Maximum per ray; more than 1 with panes.
+    /// @param most_hits  Maximum number of hits per ray; more than 1 with panes.
     PathSums(const WalkSource& payload, double most_hits)
         : unit(sum_headroom * most_hits * max_expected(payload)),
           received(payload.reflectance.size()),
@@ -99,15 +100,15 @@ struct PathSums {
     }
 };
 
-/// Power about to leave a leaf or luminaire part.
+/// Power that will leave a leaf or luminaire part as one ray.
 struct Particle {
     std::uint32_t source;  ///< Leaf, or size of the forest + luminaire part.
     PatchIndex patch;      ///< Patch of the leaf; none for luminaires.
-    Parameters at;         ///< Where the patch was hit, if WalkSource::starts_at_hits.
+    Parameters at;         ///< Hit point on the patch, if WalkSource::starts_at_hits.
     Rgb power;
 };
 
-/// One object per thread.
+/// Particles that a thread traces together.
 struct Wavefront {
     std::vector<Particle> particles, reflected;
     std::vector<Ray> rays;
@@ -171,7 +172,7 @@ class PathBatch {
         }
     }
 
-    /// Identifies a source, whatever the mesh.
+    /// Returns a number of the source that does not depend on the rest of the mesh.
     std::uint64_t number_of(std::uint32_t source) const {
         if (source >= elements_) return source - elements_ + forest_.patch_count();
         if (source < forest_.patch_count()) return source;
@@ -179,7 +180,7 @@ class PathBatch {
         return static_cast<std::uint64_t>(forest_.path(leaf)) << 32 | forest_.patch(leaf);
     }
 
-    /// A path of source s carries W_s / (N q_s).
+    /// Starts paths. Each of N paths starts at source s with probability q_s and carries the power W_s / (N q_s).
     void emit(std::int64_t begin, std::int64_t end, Wavefront& w) const {
         w.particles.resize(static_cast<std::size_t>(end - begin));
         w.make_room_for_rays();
@@ -248,8 +249,8 @@ class PathBatch {
         add_concurrently(sums_.escaped_rays, escaped_rays);
     }
 
-    /// Russian roulette and splitting into n copies on average. Below the limit of n, a copy has the power of a
-    /// particle emitted there.
+    /// Applies Russian roulette and splitting: n copies of a particle continue on average. If n is below its limit, a
+    /// copy has the power that a particle emitted at its place would have.
     void survive(double offset, Wavefront& w) const {
         w.particles.clear();
         double cumulative = offset;
@@ -288,7 +289,7 @@ class PathBatch {
     std::int64_t paths_;
     std::uint64_t key_;
     PathSums sums_;
-    double unit_power_ = 0;  // power of a particle at density 1, sum of the channels
+    double unit_power_ = 0;  // power of a particle where the density is 1, sum of the channels
     std::vector<float> q_;
     std::optional<RayAllocation> allocation_;
 };

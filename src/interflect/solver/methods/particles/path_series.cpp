@@ -12,7 +12,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Paths of the pilot; minimum rays of a batch per pilot path.
+/// Maximum number of paths of the pilot batch, and minimum number of rays of a batch per pilot path.
 constexpr std::int64_t pilot_paths = 512, rays_per_pilot_path = 16;
 
 BatchResult follow_paths(SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key) {
@@ -40,7 +40,8 @@ void require_valid(const PathSeries& series, const std::string& name) {
 }
 
 BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t rays, PathSeries& series) {
-    if (series.pilot_rays == 0) {  // discarded: a batch must not choose its own size
+    // The light of the pilot is discarded, because a batch must not choose its own size.
+    if (series.pilot_rays == 0) {
         const std::int64_t paths = std::clamp<std::int64_t>(rays / rays_per_pilot_path, 1, pilot_paths);
         series.pilot_rays = follow_paths(state, payload, paths, sub_key(series.key, WalkPurpose::pilot)).rays;
         series.rays_per_path = static_cast<double>(series.pilot_rays) / static_cast<double>(paths);

@@ -21,19 +21,20 @@ namespace interflect::detail {
 
 namespace {
 
-/// The distribution of chi-squared needs five expected hits per quarter (Cochran 1954).
+/// The statistic has the distribution of chi-squared only with at least five expected hits per quarter (Cochran 1954).
 constexpr double fewest_hits_of_quarter = 5;
-/// Chi-squared of three degrees of freedom that 5% of evenly lit elements exceed.
+/// Evenly lit elements exceed this value of chi-squared, of three degrees of freedom, with a probability of 5%.
 constexpr double significant = 7.815;
-/// Root mean square difference of the quarters from their mean, relative to it, that cannot be seen (Weber).
+/// Largest invisible difference: root mean square over the quarters, relative to their mean (Weber).
 constexpr double invisible_difference = 0.02;
-/// Patches above this share of all area are divided twice at first; at most 1000 are, into 16,000 elements.
+/// Patches with more than this share of all area are divided twice at first. There are at most 1000 such patches, which
+/// have 16,000 elements.
 constexpr double large_share = 1e-3;
 
-/// Adaptive subdivision by particles (Heckbert 1990; Tobler, Wilkie, Feda and Purgathofer 1997). Particles as in
-/// RandomWalks, but a reflected one starts where it hit. The leaves of the forest are quarters of the elements of the
-/// paper: an element is divided once its quarters' hits differ, which makes the quarters elements with quarters of
-/// their own (docs/method/method.md).
+/// Adaptive subdivision by particles (Heckbert 1990; Tobler, Wilkie, Feda and Purgathofer 1997). Particles move as in
+/// RandomWalks, but reflected particles start at their hit points. The leaves of the forest are the quarters of the
+/// elements of the paper. An element is divided when the hits of its quarters differ. The quarters then become elements
+/// with quarters of their own (docs/method/method.md).
 class PhotonMesh final : public IterationMethod {
   public:
     explicit PhotonMesh(const SolverState& state)
@@ -46,7 +47,7 @@ class PhotonMesh final : public IterationMethod {
     void refine(SolverState& state) override;
     void discard() override { current_ = before_; }
     void archive(StateArchive& archive) override;
-    bool fits(const SolverState& state) const override {
+    bool is_consistent(const SolverState& state) const override {
         return hits_.size() == state.light.forest->size() &&
                std::all_of(hits_.begin(), hits_.end(),
                            [](const HitSum& hits) { return hits.sum() >= 0 && hits.squares() >= 0; });
@@ -57,13 +58,13 @@ class PhotonMesh final : public IterationMethod {
     double discarded_share(const ElementForest& forest) const;
 
     PathSeries current_, before_;
-    std::vector<HitSum> fresh_hits_;  // of the iteration, by leaf
-    /// By element, since its creation; of inner elements, before their division.
+    std::vector<HitSum> fresh_hits_;  // hits of the iteration, by leaf
+    /// Hits of each element from its creation to its division.
     std::vector<HitSum> hits_;
 };
 
-/// Divides the patches: their quarters count all hits. Symmetric light may be equal on the quarters of a large patch,
-/// so these are divided, too.
+/// Divides the patches, so that quarters count all hits. Divides the quarters of large patches as well, because
+/// symmetric light may be equal on the four quarters of a patch.
 void PhotonMesh::prepare(SolverState& state) {
     before_ = current_;
     const ElementForest& forest = *state.light.forest;
@@ -98,9 +99,10 @@ Estimate PhotonMesh::trace(SolverState& state, TracedIteration& iteration) {
     return estimate;
 }
 
-/// Weighted by planned rays, as in RandomWalks.
+/// Merges an iteration, weighted by planned rays as in RandomWalks.
 void PhotonMesh::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
-    const bool shows_error = iteration.weight >= state.rays.schedule.start_rays();  // a remainder is too small
+    // The last iteration may be too small to estimate noise.
+    const bool shows_error = iteration.weight >= state.rays.schedule.start_rays();
     if (shows_error) estimate_noise(state, estimate, iteration.weight);
     merge_independent(state.light, state.light.solution.irradiance, estimate.irradiance, iteration);
     merge_escaped_power(state.light, estimate.escaped_power, iteration);
@@ -135,8 +137,8 @@ void PhotonMesh::refine(SolverState& state) {
     state.light.discarded_hits = discarded_share(forest);
 }
 
-/// An element's hits before its division are in its mean, but not among its quarters. They are lost when the quarters
-/// become elements.
+/// Returns the share of discarded hits. The hits of an element before its division belong to none of its quarters, so
+/// they are lost when the quarters become elements.
 double PhotonMesh::discarded_share(const ElementForest& forest) const {
     double discarded = 0, all = 0;
     for (ElementIndex e{0}; e < forest.size(); ++e) {
@@ -163,7 +165,8 @@ bool quarters_differ(const std::array<HitSum, 4>& hits, const std::array<float, 
         all += hits[k];
     }
     if (!(all.sum() > 0)) return false;
-    const double effective_hits = all.sum() * all.sum() / all.squares();  // equal ones with the same relative noise
+    // Number of equal hits with the same relative noise.
+    const double effective_hits = all.sum() * all.sum() / all.squares();
     if (effective_hits * *std::min_element(areas.begin(), areas.end()) < fewest_hits_of_quarter * area) return false;
     double chi_squared = 0;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -171,7 +174,8 @@ bool quarters_differ(const std::array<HitSum, 4>& hits, const std::array<float, 
         chi_squared += difference * difference / (share * all.squares());
     }
     constexpr double degrees_of_freedom = 3;
-    const double square = (chi_squared - degrees_of_freedom) / effective_hits;  // of the relative differences
+    // Estimated mean square of the relative differences.
+    const double square = (chi_squared - degrees_of_freedom) / effective_hits;
     return chi_squared > significant && square > invisible_difference * invisible_difference;
 }
 

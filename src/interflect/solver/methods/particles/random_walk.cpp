@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Assumes equal, independent contributions.
+/// Returns the estimate of a batch, with its variance for equal, independent contributions.
 Estimate independent_contributions(const LightState& light, const BatchResult& batch) {
     const double power = luminance(integral(*light.forest, batch.irradiance));
     Estimate estimate{.irradiance = batch.irradiance, .escaped_power = batch.escaped};
@@ -24,7 +24,8 @@ Estimate independent_contributions(const LightState& light, const BatchResult& b
     return estimate;
 }
 
-/// Returns psi of Eq. 10, or of Eq. 9 on request.
+/// Returns the importance psi that controls the density of particles: that of Eq. 10 or, with total_importance, of
+/// Eq. 9.
 std::vector<float> leading_importance(const Solution& so_far) {
     switch (importance_use(so_far)) {
         case ImportanceUse::off:
@@ -37,7 +38,7 @@ std::vector<float> leading_importance(const Solution& so_far) {
     return so_far.options.experimental.total_importance ? total_importance(so_far) : so_far.indirect_importance;
 }
 
-/// Returns beta + (1 - beta) psi, psi relative to its mean over emitted power.
+/// Returns the density beta + (1 - beta) psi, where psi is relative to its mean over emitted power.
 std::vector<float> particle_density(const Solution& so_far, const std::vector<Rgb>& emitted) {
     std::vector<float> density = leading_importance(so_far);
     double power = 0, important = 0;
@@ -56,7 +57,8 @@ WalkSource particles_of_light(const RunInputs& inputs, const LightState& light) 
     WalkSource payload = light_source(inputs, light);
     const std::vector<Rgb> of_patches(payload.emitted.begin(), payload.emitted.begin() + light.forest->patch_count());
     const std::vector<float> density = particle_density(light.solution, of_patches);
-    std::copy(density.begin(), density.end(), payload.density.begin());  // parts keep the mean: importance is unknown
+    // Luminaire parts keep the mean density 1, because their importance is unknown.
+    std::copy(density.begin(), density.end(), payload.density.begin());
     return payload;
 }
 
@@ -123,13 +125,14 @@ Estimate RandomWalks::trace(SolverState& state, TracedIteration& iteration) {
         iteration.rays += batch.rays;
         estimate = independent_contributions(state.light, batch);
     }
-    if (iteration.rays == 0) iteration.rays = iteration.plan.rays;  // no visible surface reflects
+    if (iteration.rays == 0) iteration.rays = iteration.plan.rays;  // no rays were traced: no visible surface reflects
     return estimate;
 }
 
 void RandomWalks::merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) {
     if (estimate.irradiance.empty()) return;
-    const bool shows_error = iteration.weight >= state.rays.schedule.start_rays();  // a remainder is too small
+    // The last iteration may be too small to estimate noise.
+    const bool shows_error = iteration.weight >= state.rays.schedule.start_rays();
     if (shows_error) estimate_noise(state, estimate, iteration.weight);
     const double before = state.light.history[0], now = before + static_cast<double>(iteration.weight);
     const double tau = iteration.plan.warms_up ? 1 : static_cast<double>(iteration.weight) / now;  // Eq. 6

@@ -14,7 +14,7 @@ namespace interflect::detail {
 /// With importance (Pattanaik and Mudur 1993, 1995), walks from the cameras estimate psi with the share alpha of the
 /// rays. Particles then split where psi rises and end more often where it falls. Unbiased while beta > 0.
 ///
-/// Complete paths make ray counts deviate by about 1% from the plan.
+/// Paths are traced to their end, so ray counts deviate by about 1% from the plan.
 class RandomWalks : public IterationMethod {
   public:
     explicit RandomWalks(const SolverState& state);
@@ -35,7 +35,7 @@ class RandomWalks : public IterationMethod {
 
     struct Series {
         PathSeries light, importance;
-        std::int64_t importance_history = 0;  // planned rays in the mean of psi
+        std::int64_t importance_history = 0;  // number of planned rays that are averaged in psi
     };
     Series current_, before_;
 };
