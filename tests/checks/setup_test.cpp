@@ -462,5 +462,22 @@ TEST(Setup, IsSoundInTheScenesOfTheRepository) {
 #endif
 }
 
+/// A square section of 2 m through a box, in a picture of 4 m: one quarter of the picture.
+TEST(ViewCoverage, SeparatesRaysThroughBacksFromRaysBesideTheScene) {
+    const Scene scene = closed_box({2, 2, 2}, 1, {Material{"", Rgb(0.5f)}});
+    const RayCaster ray_caster(scene);
+    const View outside{.name = "", .eye = {1, -3, 1}, .look_at = {1, 0, 1}, .extent = 4};
+    const ViewCoverage from_outside = view_coverage(scene, ray_caster, outside, 1);
+    EXPECT_DOUBLE_EQ(from_outside.nothing, 0.75);
+    EXPECT_DOUBLE_EQ(from_outside.backs, 0.25);
+    View away = outside;
+    away.look_at = {1, -4, 1};
+    EXPECT_DOUBLE_EQ(view_coverage(scene, ray_caster, away, 1).nothing, 1);
+    const ViewCoverage from_inside =
+        view_coverage(scene, ray_caster, View{"", {1, 0.5, 1}, {1, 2, 1}, {0, 0, 1}, 80}, 2);
+    EXPECT_EQ(from_inside.nothing, 0);
+    EXPECT_EQ(from_inside.backs, 0);
+}
+
 }  // namespace
 }  // namespace interflect

@@ -4,10 +4,12 @@
 #include <tbb/global_control.h>
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
+#include "interflect/render.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "tests/support/scenes/scenes.h"
 
@@ -115,6 +117,28 @@ TEST(QuantityPicture, RefusesWhatDoesNotFitTogether) {
     EXPECT_THROW(half.picture({1, 2, 3, 4}), InputError) << "five elements";
     EXPECT_THROW(half.picture(values, Spacing::linear, {.width = 0, .height = 1}), InputError);
     EXPECT_THROW(half.picture(values, Spacing::linear, {.width = 1, .height = 1, .samples = 0}), InputError);
+}
+
+TEST(QuantityPicture, HasTheQuantityOfASolution) {
+    const Scene scene = HalfPicture::square();
+    const RayCaster ray_caster(scene);
+    const auto forest = std::make_shared<ElementForest>(scene, 5);
+    forest->subdivide(ElementIndex(0));
+    Solution solution;
+    solution.forest = forest;
+    solution.irradiance = {Rgb(99), Rgb(1), Rgb(2), Rgb(3), Rgb(4)};
+    solution.rays = {0, 1, 1, 1, 2};
+    PictureOptions options;
+    options.width = 4;
+    options.height = 2;
+    const auto drawn = [&](ElementQuantity quantity) {
+        return draw_quantity(scene, solution, ray_caster, view, quantity, options).values.pixels;
+    };
+    EXPECT_EQ(drawn(ElementQuantity::irradiance),
+              (std::vector{Rgb(3), Rgb(4), black, black, Rgb(1), Rgb(2), black, black}));
+    EXPECT_EQ(drawn(ElementQuantity::level), (std::vector{Rgb(1), Rgb(1), black, black, Rgb(1), Rgb(1), black, black}));
+    EXPECT_EQ(drawn(ElementQuantity::rays)[1], Rgb(2)) << "2 rays from 1 m2";
+    EXPECT_THROW(drawn(ElementQuantity::importance), InputError) << "a solution without views";
 }
 
 }  // namespace
