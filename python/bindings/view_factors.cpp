@@ -105,7 +105,7 @@ void for_each_entry(const ViewFactors& f, const Use& use) {
                 static_cast<std::size_t>(e));
 }
 
-/// (n, n), `absent` where there is no entry.
+/// Returns an array (n, n), with `absent` in place of missing entries.
 py::array_t<double> dense(const ViewFactors& f, const std::vector<float>& entries, double absent) {
     const auto n = static_cast<py::ssize_t>(f.size());
     py::array_t<double> result({n, n});

@@ -16,7 +16,7 @@ namespace {
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Integers = py::array_t<std::int64_t, py::array::c_style>;
 
-/// Checks arrays and remembers all faults, for one exception.
+/// Checks arrays and collects their faults, which one exception reports.
 class Arguments {
   public:
     void add(const Fault& fault) { faults_.push_back(fault); }
