@@ -56,7 +56,7 @@ int run(int argc, char** argv) {
     add_viewfactors(app, exit_code);
     add_bench(app);
     add_make_scene(app);
-    app.footer(footer);  // after the subcommands, which would inherit it
+    app.footer(footer);  // set after the subcommands, which would inherit it
 
     try {
         app.parse(argc, argv);

@@ -46,7 +46,7 @@ class Light {
     const std::shared_ptr<const Solution> solution;
     const std::shared_ptr<const RayCaster> ray_caster;
 
-    /// leaves(), made by the first call.
+    /// Returns the result of leaves(), which the first call computes.
     const std::vector<Leaf>& mesh() const {
         std::call_once(made_, [this] { mesh_ = leaves(*scene, *solution); });
         return mesh_;
@@ -65,7 +65,7 @@ std::shared_ptr<T> shown(std::shared_ptr<const T> object) {
 }
 
 /// Read-only array over memory that `owner` keeps alive.
-/// @param strides  [bytes]
+/// @param strides  Distances between entries along each dimension [bytes].
 template <class Number>
 py::array read_only(std::shared_ptr<const void> owner, const Number* first, const std::vector<py::ssize_t>& shape,
                     const std::vector<py::ssize_t>& strides) {
@@ -76,8 +76,8 @@ py::array read_only(std::shared_ptr<const void> owner, const Number* first, cons
     return result;
 }
 
-/// The same for a member of each structure of a vector: one row of `columns` numbers per structure; with 0 columns one
-/// number.
+/// The same for a member of each structure in a vector. The array has a row of `columns` numbers per structure, or one
+/// number if `columns` is 0.
 template <class Number, class Structure, class Member>
 py::array column(std::shared_ptr<const void> owner, const std::vector<Structure>& rows, Member Structure::*member,
                  py::ssize_t columns = 0) {
@@ -102,24 +102,24 @@ py::array rows(std::shared_ptr<const void> owner, const std::vector<T>& values) 
     return read_only(std::move(owner), start, {count, stride / inner}, {stride, inner});
 }
 
-/// Picture as a float32 array (height, width, 3), which owns the pixels.
+/// Returns a picture as a float32 array (height, width, 3), which owns the pixels.
 py::array_t<float> array_of(Image image);
-/// @param name  Of the argument, for messages.
+/// @param name  Name of the argument, for messages.
 /// @throws InputError unless the array has the shape (height, width, 3).
 Image image_of(const py::array_t<float, py::array::c_style | py::array::forcecast>& array, const std::string& name);
 
 /// Converts a number of samples for the library: None, the default number, becomes 0.
-/// @throws InputError for less than 1.
+/// @throws InputError for a number below 1.
 int samples_of(const std::optional<int>& samples);
-/// Inverse.
+/// Inverse of samples_of().
 inline std::optional<int> optional_samples(int samples) { return samples > 0 ? std::optional(samples) : std::nullopt; }
 
-/// One sentence per warning.
+/// Returns one sentence per warning.
 std::vector<std::string> sentences(const Warnings& warnings);
 /// Reports warnings by warnings.warn(). @param stack_level  1: at the caller of the C++ function.
 void warn(const Warnings& warnings, int stack_level);
 
-/// View of that name, the view itself, or for None the scene's first one.
+/// Returns the view of that name, or the given view itself, or the scene's first view for None.
 View view_of(const Scene& scene, const py::object& view);
 
 }  // namespace interflect::python

@@ -37,7 +37,7 @@ void bind_errors(py::module_&) {
         try {
             std::rethrow_exception(thrown);
         } catch (const py::builtin_exception&) {
-            throw;  // such as py::type_error; for pybind11's own translator
+            throw;  // an exception such as py::type_error, which pybind11's own translator handles
         } catch (const InputError& e) {
             raise_input_error(e);
         } catch (const Stopped& e) {

@@ -113,7 +113,7 @@ void bind_findings(py::module_& m) {
             .raises(""));
 }
 
-/// Number of a keyword, or its default. Removes it from `left`.
+/// Returns the number of a keyword, or its default. Removes the keyword from `left`.
 template <class Value>
 void take(py::dict& left, const char* name, Value& value) {
     if (!left.contains(name)) return;
@@ -121,7 +121,7 @@ void take(py::dict& left, const char* name, Value& value) {
     PyDict_DelItemString(left.ptr(), name);
 }
 
-/// Up axis as `interflect export` chooses it.
+/// Returns the up axis that `interflect export` would choose.
 V3f up_of(const Scene& scene, Warnings& warnings) {
     if (const std::optional<UpAxis> found = find_up_axis(scene)) return found->direction();
     warnings.add("up", "the up axis is unknown: taking z; the option up chooses another");

@@ -16,7 +16,7 @@ struct Measurement {
 };
 using SharedMeasurement = std::shared_ptr<Measurement>;
 
-/// Rows of three numbers; one row may stand for all. @throws InputError for another shape.
+/// Returns rows of three numbers; a single row may stand for all. @throws InputError for another shape.
 std::vector<Imath::V3d> vectors_of(const Doubles& array, const std::string& name, py::ssize_t count = -1) {
     const bool is_single = array.ndim() == 1 && array.shape(0) == 3;
     const bool is_list = array.ndim() == 2 && array.shape(1) == 3;

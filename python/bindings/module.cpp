@@ -25,7 +25,7 @@ PYBIND11_MODULE(_core, module) {
     module.attr("version") = INTERFLECT_VERSION;
     py::options options;
     options.disable_function_signatures();  // see Documented
-    // In this order messages of wrong arguments name every class as Python does.
+    // In this order, messages about wrong arguments name every class as Python does.
     bind_errors(module);
     bind_scene_parts(module);
     bind_light_sources(module);

@@ -42,7 +42,7 @@ SharedRendering draw(const py::object& lit, const py::object& view, const Pictur
     });
 }
 
-/// Image that the rendering keeps alive, without a copy.
+/// Returns an array that shares the pixels of an image, which the rendering keeps alive.
 py::array image_of_rendering(const SharedRendering& owner, const Image& image) {
     constexpr py::ssize_t number = sizeof(float);
     const auto width = static_cast<py::ssize_t>(image.width);
@@ -88,7 +88,7 @@ Tonemap curve_of(const std::string& name) {
     throw InputError(fmt::format("curve: expected {}, found '{}'", known, name));
 }
 
-/// @param exposure  [stops], or None: automatic, for operators of absolute luminance 0.
+/// @param exposure  Exposure [stops]. None means an automatic one, which is 0 for operators of absolute luminance.
 Image display_values(const Floats& picture, const std::optional<float>& exposure, const std::string& curve,
                      float display_luminance) {
     const Image image = image_of(picture, "image");

@@ -13,7 +13,7 @@ namespace {
 
 using SharedScene = std::shared_ptr<Scene>;
 
-/// None for a scene without these attributes.
+/// Returns None for a scene without these attributes.
 template <class Member>
 auto vertex_array(Member Scene::*member) {
     return [member](const SharedScene& scene) -> py::object {
@@ -28,7 +28,7 @@ auto copies(std::vector<Part> Scene::*member) {
     return [member](const Scene& scene) -> std::vector<Part> { return scene.*member; };
 }
 
-/// Index of a patch, or -1.
+/// Returns the index of each patch's other side, or -1.
 py::array_t<std::int64_t> other_sides(const Scene& scene) {
     py::array_t<std::int64_t> result(static_cast<py::ssize_t>(scene.patches.size()));
     for (std::size_t i = 0; i < scene.patches.size(); ++i) {

@@ -14,7 +14,7 @@ namespace interflect::python {
 
 namespace {
 
-/// Arrays with one row per element, inner ones included.
+/// Arrays with one row per element, including inner elements.
 struct Elements {
     SharedLight light;
 };
@@ -84,7 +84,7 @@ py::list iterations_of(const Light& light) {
     return result;
 }
 
-/// @param group  Name, or factors by name, without `factor`.
+/// @param group  Name of a group; or, without `factor`, the factors by name.
 SharedLight dimmed_light(const Light& light, const py::object& group, const std::optional<float>& factor) {
     if (py::isinstance<py::dict>(group) == factor.has_value())
         throw py::type_error("dim: expected the name of a group and a factor, or a dict of factors by name");

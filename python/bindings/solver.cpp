@@ -17,12 +17,12 @@ namespace interflect::python {
 
 namespace {
 
-/// A solver that can be closed, and that one thread uses at a time.
+/// A solver that can be closed, for one thread at a time.
 class PythonSolver {
   public:
     PythonSolver(Solver solver, int threads) : solver_(std::move(solver)), threads_(threads) {}
 
-    /// The solver for the duration of a call.
+    /// Reserves the solver for the duration of a call.
     class Use {
       public:
         explicit Use(PythonSolver& owner) : owner_(owner) {
@@ -43,7 +43,7 @@ class PythonSolver {
     };
 
     int threads() const { return threads_; }
-    /// The current solution; the same object until the solver changes.
+    /// Returns the current solution, which is the same object until the solver changes.
     SharedLight light() {
         const Use solver(*this);
         const std::shared_ptr<const Solution> now =
@@ -52,7 +52,7 @@ class PythonSolver {
             light_ = std::make_shared<Light>(solver->shared_scene(), now, solver->shared_ray_caster());
         return light_;
     }
-    /// The current solution without a copy; closes the solver.
+    /// Returns the current solution without a copy, and closes the solver.
     SharedLight take_light() {
         const Use solver(*this);
         const auto scene = solver->shared_scene();
@@ -76,7 +76,7 @@ class PythonSolver {
   private:
     std::optional<Solver> solver_;
     int threads_;
-    SharedLight light_;  // of the last request
+    SharedLight light_;  // solution of the last request
     std::atomic<bool> is_used_{false};
 };
 
@@ -90,7 +90,7 @@ Scene prepared(const Scene& scene, bool contact_cuts, const std::optional<float>
     return split_patches(result, mesh_size.value_or(default_mesh_size(result)), ReadOptions().max_patches);
 }
 
-/// Ends refinement before the memory of the machine does, as the command does.
+/// Limits the elements, and the rays of methods that keep them, to the memory of the machine, as the command does.
 SolveOptions within_memory(const Scene& scene, const RayCaster& ray_caster, SolveOptions options) {
     const MemoryNeed need = memory_need(scene, ray_caster, options);
     const std::size_t bytes = detail::usable_memory();

@@ -25,7 +25,7 @@ FaceSides sides_of(const std::string& name) {
     throw InputError(fmt::format("sides: expected both, front or back, found '{}'", name));
 }
 
-/// Indices of patches of a group: integers, or one boolean per patch.
+/// Returns the indices of a group's patches. @param value  Integers, or one boolean per patch.
 std::vector<PatchIndex> patches_of(const py::handle& value, const std::string& name, std::size_t patches) {
     const py::array array = py::array::ensure(value);
     const char kind = array ? array.dtype().kind() : 'x';
@@ -105,7 +105,7 @@ void for_each_entry(const ViewFactors& f, const Use& use) {
                 static_cast<std::size_t>(e));
 }
 
-/// (n, n), `absent` where there is no entry.
+/// Returns an array (n, n), with `absent` in place of missing entries.
 py::array_t<double> dense(const ViewFactors& f, const std::vector<float>& entries, double absent) {
     const auto n = static_cast<py::ssize_t>(f.size());
     py::array_t<double> result({n, n});
@@ -116,7 +116,7 @@ py::array_t<double> dense(const ViewFactors& f, const std::vector<float>& entrie
     return result;
 }
 
-/// Matrix of SciPy that shares the entries and the columns.
+/// Returns a matrix of SciPy that shares the entries and the columns.
 py::object sparse(const SharedFactors& f, const std::vector<float>& entries) {
     const py::tuple arrays = py::make_tuple(rows<float>(f, entries), rows<std::int32_t>(f, f->columns),
                                             rows<std::int64_t>(f, f->row_offsets));

@@ -125,7 +125,7 @@ Args:
     views: Views that define importance: a View, WeightedView or name of a view of the scene, or several.
     seed: The same seed gives the same bits for any number of threads.
     threads: Number of threads; 0: all.
-    rays: Limit of the whole run; default: 20 million unless there is another limit.
+    rays: Limit of the whole run; default: 20 million if no other limit is given.
     time: Limit of the whole run [s]; results then depend on the speed.
     until: Target of the estimated relative error, in [0, 1).
     contact_cuts: Cuts faces where others meet them, to prevent light leaks.

@@ -6,7 +6,7 @@ namespace interflect::command {
 
 enum ExitCode { done = 0, failed = 1, wrong_usage = 2, bad_input = 3, interrupted = 130 };
 
-// Each adds a subcommand, which sets `exit_code` unless it ends with `done` or an exception.
+// Each function adds a subcommand, which sets `exit_code` unless it ends with `done` or an exception.
 void add_info(CLI::App& app);
 void add_solve(CLI::App& app, int& exit_code);
 void add_resume(CLI::App& app, int& exit_code);

@@ -64,7 +64,7 @@ void print_text(const ImageDifference& d, double field_of_view) {
     if (d.non_finite_pixels > 0) fmt::print("pixels that are not finite {}\n", d.non_finite_pixels);
 }
 
-/// Returns the value of --fov, otherwise of the reference, of the image, or the default.
+/// Returns the value of --fov; without it, the field of view of the reference, else of the image, else the default.
 double field_of_view(const CompareArguments& options) {
     if (options.field_of_view) return *options.field_of_view;
     const std::optional<float> image = read_field_of_view(options.image);

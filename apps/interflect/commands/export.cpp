@@ -117,7 +117,8 @@ bool traces_rays(const std::filesystem::path& output, const ExportOptions& optio
     return (is_bake && options.bake.shading != Shading::smooth) || extension == ".json" || extension == ".exr";
 }
 
-/// Before the first rays a signal ends the process. Later it stops the rays and keeps a usable result.
+/// Writes the file. A signal before the first rays ends the process; a later signal stops the rays and keeps a usable
+/// result.
 std::vector<std::filesystem::path> write(const std::filesystem::path& path, const SolvedScene& solved,
                                          ExportOptions options) {
     LongWork work(fmt::format("exporting {}", path.string()));

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Counts luminaires by kind.
+/// Returns the number of luminaires of each kind.
 std::map<std::string, int> lights_of(const Scene& scene) {
     std::map<std::string, int> lights;
     for (const Luminaire& luminaire : scene.luminaires) ++lights[kind_name(luminaire)];
@@ -82,7 +82,7 @@ Json to_json(const Scene& scene, const SceneSummary& s, const std::vector<std::s
             {"warnings", warnings}};
 }
 
-/// Formats "-0.15 to 6" without rounding errors of a scene of this size.
+/// Returns text such as "-0.15 to 6", without the rounding errors of a scene of this size.
 std::string interval(double low, double high, double scene_size) {
     const int decimals = std::clamp(static_cast<int>(std::ceil(4 - std::log10(scene_size))), 0, 30);
     const auto rounded = [&](double x) {
@@ -94,7 +94,7 @@ std::string interval(double low, double high, double scene_size) {
     return fmt::format("{} to {}", rounded(low), rounded(high));
 }
 
-/// [MiB], rounded up.
+/// Returns the size in MiB, rounded up.
 std::size_t mebibytes(std::size_t bytes) { return (bytes + (1 << 20) - 1) >> 20; }
 
 void print_text(const Scene& scene, const SceneSummary& s, const std::vector<std::string>& outside,

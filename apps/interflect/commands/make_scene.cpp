@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 
 struct OutputOptions {
     fs::path path;
-    bool force = false;  // replaces views and images that differ
+    bool force = false;  // whether to replace views and images that differ
 };
 
-/// Writes a scene with its views and textures. Opens the files before the work.
+/// Writes a scene with its views and textures. Opens the files before it makes the scene.
 void write(const OutputOptions& output, const std::function<Scene()>& make) {
     const fs::path& path = output.path;
     if (path.extension() != ".mgf")

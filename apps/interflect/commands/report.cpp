@@ -39,7 +39,7 @@ struct ReportArguments {
     std::optional<double> exterior;
     bool ugr = false;
     std::vector<Observer> seats;
-    double eye_height = 1.2;  // of seated observers, z [m]
+    double eye_height = 1.2;  // z of the eyes of seated observers [m]
     ViewOptions view;
     Size size{640, 360};
     int samples = require_samples(Shading::gather, &DefaultSamples::point);
@@ -66,7 +66,7 @@ std::vector<MeasuringGrid> room_grids(const Scene& scene, const RayCaster& ray_c
     return open_grids(scene, ray_caster, std::move(grids));
 }
 
-/// Measures working planes of rooms, then other places.
+/// Measures first the working planes of rooms, then other places.
 std::vector<MeasuredGrid> measure_areas(const SolvedScene& solved, const RayCaster& ray_caster,
                                         const std::vector<PlanarArea>& rooms, const ReportArguments& options) {
     std::vector<MeasuringGrid> grids = room_grids(solved.scene, ray_caster, rooms, options, options.working_plane);
@@ -104,7 +104,7 @@ ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, 
     return {view.name, tone_map(light, automatic_exposure(light)), colours.draw(luminances(draw()), true)};
 }
 
-/// Returns the requested views, the scene's, or an overview.
+/// Returns the requested views, else the views of the scene, else an overview.
 std::vector<View> views_to_draw(const Scene& scene, const ReportArguments& options) {
     constexpr std::size_t most = 4;
     std::vector<View> views = options.view.views(scene);
@@ -134,14 +134,14 @@ ReportContent make_content(const SolvedScene& solved, const RayCaster& ray_caste
     content.areas = measure_areas(solved, ray_caster, content.rooms, options);
     if (options.ugr || !options.seats.empty()) content.glare = rate_rooms(solved, ray_caster, content.rooms, options);
     content.facts = facts_of(solved, ray_caster);
-    const int plan_samples = std::max(2, options.samples / 4);  // isolines are smoothed
+    const int plan_samples = std::max(2, options.samples / 4);  // few samples suffice, because isolines are smoothed
     content.plan = draw_plan(solved.scene, solved.solution, ray_caster, floor, options.working_plane,
                              {.samples = plan_samples, .seed = options.seed});
     for (const View& view : views) content.pictures.push_back(draw_view(solved, ray_caster, view, options));
     return content;
 }
 
-/// A signal ends it without output, since half a report is useless.
+/// Writes a report. A signal ends the command without output, since half a report is useless.
 void run(const ReportArguments& options) {
     const ThreadLimit threads(options.threads);
     const std::string extension = lower_case_extension(options.output);
@@ -189,7 +189,7 @@ void add_report(CLI::App& app) {
         ->type_name("HEIGHT")
         ->check(number_between(-1e15, 1e15));
     add_seats(command, options->seats);
-    options->places.whole_objects = true;  // desks have no walls
+    options->places.whole_objects = true;  // because desks have no walls
     options->places.add_to(command);
     options->view.add_to(command);
     add_parsed(command, "--size", options->size, parse_size, "Size of the pictures in pixels")

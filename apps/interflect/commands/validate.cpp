@@ -31,12 +31,12 @@ struct ValidateArguments {
 
 /// Cost of solving with default options.
 struct Prediction {
-    std::size_t memory = 0;      ///< With one element per patch [bytes].
-    double rays_per_second = 0;  ///< 0 without emitted light.
+    std::size_t memory = 0;      ///< Memory with one element per patch [bytes].
+    double rays_per_second = 0;  ///< Speed of solving; 0 for a scene without emitted light.
     double rays = 0, seconds = 0;
 };
 
-/// Solves for one second.
+/// Predicts the cost from a solution of one second.
 Prediction predict(const Scene& scene, const RayCaster& ray_caster) {
     Prediction result;
     result.memory = memory_need(scene, ray_caster).with(scene.patches.size());

@@ -25,7 +25,7 @@ using namespace detail;
 
 namespace {
 
-/// Groups whose factors fit on lines of a terminal.
+/// Largest number of groups whose factors are printed, because a row of more does not fit on a line of a terminal.
 constexpr std::size_t most_printed_groups = 12;
 
 enum class Grouping { objects, materials, facets };
@@ -34,7 +34,7 @@ struct ViewFactorArguments {
     SceneOptions scene;
     std::filesystem::path output;
     std::optional<Grouping> grouping;
-    std::vector<LightGroup> patterns;  // only NAME=PATTERN
+    std::vector<LightGroup> patterns;  // groups of the form NAME=PATTERN
     FaceSides sides = FaceSides::both;
     ViewFactorOptions estimate;
     std::optional<ReconcileOptions> enforced;

@@ -8,10 +8,10 @@
 
 namespace interflect::command {
 
-/// Shows the options that people use with --help, and all with --help-all.
+/// Shows the common options with --help, and all options with --help-all.
 class HelpFormatter : public CLI::Formatter {
   public:
-    /// @param hidden  Groups of options for --help-all alone; must outlive this.
+    /// @param hidden  Groups of options that only --help-all shows. They must outlive this object.
     explicit HelpFormatter(std::span<const std::string_view> hidden) : hidden_(hidden) {}
 
     std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;

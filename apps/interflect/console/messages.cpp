@@ -22,7 +22,7 @@ std::string escaped_lines(std::string_view text) {
     return result + detail::escaped(text);
 }
 
-/// Pattern flag for the escaped message.
+/// Flag of spdlog's pattern that inserts the escaped message.
 class EscapedMessage : public spdlog::custom_flag_formatter {
   public:
     static constexpr char flag = '*';

@@ -14,8 +14,8 @@ namespace interflect::command {
 namespace {
 
 constexpr int bar_width = 24;
-constexpr double seconds_between_lines = 2;  // if stderr is not a terminal
-constexpr double min_fraction = 1e-5;        // of the work between two reports that tell the remaining time
+constexpr double seconds_between_lines = 2;  // used if stderr is not a terminal
+constexpr double min_fraction = 1e-5;        // share of the work after which the remaining time is told
 
 }  // namespace
 

@@ -8,13 +8,13 @@
 namespace interflect::command {
 
 struct WorkDone {
-    double fraction = 0;  ///< In [0, 1].
+    double fraction = 0;  ///< Share of the work that is done, from 0 to 1.
     double seconds = 0;
     std::int64_t rays = 0;
-    std::optional<double> error;  ///< Estimated relative error, if any; infinite while unknown.
+    std::optional<double> error;  ///< Estimated relative error of work that has one; infinite while it is unknown.
 };
 
-/// Overwrites a line on a terminal; otherwise prints occasional lines and the last.
+/// Overwrites a line on a terminal. Elsewhere, prints a line now and then, and the last one.
 class ProgressBar {
   public:
     ProgressBar();
@@ -24,23 +24,24 @@ class ProgressBar {
     void show(const WorkDone& work);
 
   private:
-    /// From the speed since the first report: before it, work was prepared.
+    /// Returns the remaining time at the speed since the first report. The time before it does not count, because work
+    /// was prepared.
     std::string time_left(const WorkDone& work);
 
     bool terminal_;
     std::optional<WorkDone> first_;
     double last_shown_ = -1e9;  // [s]
-    std::string not_shown_;     // a later line
+    std::string not_shown_;     // latest line that was not printed
 };
 
 /// Returns whether lines of stderr can be overwritten.
 bool stderr_is_terminal();
-/// Flushes stderr; ignores errors.
+/// Prints to stderr and flushes it. Ignores errors.
 void print_progress(const std::string& text);
 
-/// "3.5 s", "2 min 10 s", "1 h 5 min".
+/// Returns text such as "3.5 s", "2 min 10 s" and "1 h 5 min".
 std::string duration(double seconds);
-/// "950", "1.5 k", "20.0 M".
+/// Returns text such as "950", "1.5 k" and "20.0 M".
 std::string magnitude(double number);
 
 }  // namespace interflect::command

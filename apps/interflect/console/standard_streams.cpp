@@ -15,7 +15,7 @@ namespace interflect::command {
 void open_missing_standard_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF) {
-            // Opens the lowest free number, that of the missing stream.
+            // The lowest free number, which open() takes, is the number of the missing stream.
             [[maybe_unused]] const int taken = ::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY);
         }
 }

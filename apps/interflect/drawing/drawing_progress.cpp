@@ -14,7 +14,7 @@ Monitor DrawingProgress::monitor() {
 }
 
 void DrawingProgress::show(const Progress& progress) {
-    constexpr double patience = 1;  // [s]
+    constexpr double patience = 1;  // time before the progress bar appears [s]
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     if (!bar_ && (seconds < patience || progress.fraction == 1)) return;
     if (!bar_) bar_.emplace();

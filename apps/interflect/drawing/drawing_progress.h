@@ -16,7 +16,7 @@ class DrawingProgress {
     ~DrawingProgress();
     DrawingProgress(const DrawingProgress&) = delete;
     DrawingProgress& operator=(const DrawingProgress&) = delete;
-    /// Serves one drawing at a time; refers to this.
+    /// Returns a monitor for one drawing at a time. It refers to this object.
     Monitor monitor();
 
   private:

@@ -48,9 +48,9 @@ double reduce(int& width, int& height, int reduction) {
 double seconds_of_process() { return seconds_since(process_start); }
 
 int DrawingTime::samples_within(double seconds, int most) const {
-    // Records take about half of the least time.
+    // Records take about half of the time of a picture with the fewest samples.
     constexpr double samples_per_least = 2 * least_samples;
-    constexpr int usual = 8;  // later samples depend on the noise
+    constexpr int usual = 8;  // the noise determines the number of later samples
     const int samples =
         least_samples + static_cast<int>(std::min<double>(most, samples_per_least * (seconds / least - 1)));
     return samples < usual ? std::max(least_samples, samples) : most;
@@ -58,7 +58,7 @@ int DrawingTime::samples_within(double seconds, int most) const {
 
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, bool filters) {
-    constexpr double shortest = 1e-9;  // [s]; ends after least_samples
+    constexpr double shortest = 1e-9;  // time limit that ends the picture after least_samples [s]
     SharedLight shared_light(scene, &solution);
     const double sending = seconds_of([&] { shared_light.start(); });
     Rendering traced;

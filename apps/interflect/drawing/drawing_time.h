@@ -9,8 +9,8 @@ double seconds_of_process();
 
 /// Predicted duration of drawing a picture [s].
 struct DrawingTime {
-    double least = 0;      ///< For least_samples per pixel.
-    double finishing = 0;  ///< Filtering noise and writing.
+    double least = 0;      ///< Time with least_samples per pixel.
+    double finishing = 0;  ///< Time of filtering noise and writing.
 
     static constexpr int least_samples = 4;
     double total() const { return least + finishing; }
@@ -21,7 +21,7 @@ struct DrawingTime {
 
 /// Predicts the time of a picture from a smaller one. Within 25% for hybrid shading of 960 x 540 pixels in three
 /// offices and a corridor.
-/// @param options  Of the full picture.
+/// @param options  Options of the full picture.
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, bool filters);
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,

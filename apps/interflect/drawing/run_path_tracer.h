@@ -15,7 +15,7 @@ inline constexpr const char* path_group = "Gathering and path tracing";
 
 /// Options of `render` for shading by paths.
 struct PathTracerArguments {
-    std::filesystem::path error_image;  ///< Empty: no image.
+    std::filesystem::path error_image;  ///< File of the error image; empty for no image.
     bool denoise = false;
     bool layers = false;
 
@@ -40,7 +40,7 @@ void require_memory_for_paths(Size size);
 
 /// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
 /// with a partial result, which is neither filtered nor reported if smooth shading can replace it.
-/// @param solution  Null for shading without one.
+/// @param solution  Null for shading without a solution.
 Rendering run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                           const PictureOptions& options, const PathTracerArguments& arguments);
 

@@ -7,7 +7,7 @@ namespace interflect::command {
 
 namespace {
 
-/// @param shown  is_quantity().
+/// @param shown  A quantity: is_quantity(shown) must be true.
 ElementQuantity quantity_of(Shown shown) {
     switch (shown) {
         case Shown::irradiance:

@@ -8,8 +8,8 @@
 namespace interflect::command {
 
 enum class Shown {
-    light,              ///< Radiance seen by the camera.
-    mesh,               ///< With the borders of elements.
+    light,              ///< Radiance that the camera sees.
+    mesh,               ///< Radiance with the borders of elements.
     irradiance,         ///< Luminance of H.
     importance,         ///< psi.
     direct_importance,  ///< v, the part of psi directly from the camera.

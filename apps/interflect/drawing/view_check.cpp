@@ -15,7 +15,7 @@ constexpr double all = 1;
 
 void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect) {
     const ViewCoverage met = view_coverage(scene, ray_caster, view, aspect);
-    if (view.extent > 0) {  // plans may have empty surroundings, and cut walls show backs
+    if (view.extent > 0) {  // because plans may have empty surroundings, and cut walls show backs
         if (met.nothing == all) spdlog::warn("{}: the whole scene lies in front of the cut", view.name);
         return;
     }

@@ -9,7 +9,7 @@ namespace interflect::command {
 /// rays must miss.
 void warn_of_camera_outside(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect);
 
-/// Warns that a picture is black and why: no emission, no visible surface, or unlit surfaces.
+/// Warns that a picture is black and says why: no light is emitted, no surface is visible, or surfaces are unlit.
 void warn_of_darkness(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect);
 
 }  // namespace interflect::command

@@ -18,7 +18,7 @@ using namespace detail;
 
 namespace {
 
-/// @param is_meant  Selects points by index.
+/// @param is_meant  Function that selects points by their indices.
 void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
                     const std::function<bool(std::size_t)>& is_meant) {
     std::size_t count = 0, first = 0;
@@ -33,7 +33,7 @@ void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
                  count, points.size(), what, x.x, x.y, x.z);
 }
 
-/// Points traced again for the solution's error: total, and minimum per grid.
+/// Numbers of points that are traced again to estimate the solution's error: in total, and at least in each grid.
 constexpr std::size_t max_compared = 256, min_of_grid = 8;
 
 /// Traces paths at evenly spread points of each grid, with the gathering's number of samples.

@@ -23,9 +23,9 @@ struct GridArguments {
 /// Places that `probe` measures.
 struct MeasuringPlaces {
     std::vector<std::string> tops, surfaces;
-    std::optional<V3f> facing;  ///< Orientation of ambiguous surfaces.
+    std::optional<V3f> facing;  ///< Side from which surfaces are measured, if it is ambiguous.
     std::vector<double> planes;
-    std::string over;  ///< Object below the planes; empty: the floor.
+    std::string over;  ///< Object below the planes; empty for the floor.
     std::vector<Imath::V3d> points;
     std::vector<Line> lines;
     GridArguments grid;
@@ -35,7 +35,8 @@ struct MeasuringPlaces {
     enum class Least { none, one };
     /// @throws UsageError for too few places and for options without effect.
     void check(Least least = Least::one) const;
-    /// Returns a grid per place; single points share one. @throws InputError as find_surface() and area_grid().
+    /// Returns a grid for each place; single points share a grid. @throws InputError as find_surface() and area_grid()
+    /// do.
     std::vector<MeasuringGrid> grids(const Scene& scene) const;
 };
 

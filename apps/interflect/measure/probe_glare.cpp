@@ -47,7 +47,7 @@ void warn_of_large_sources(const std::vector<RatedGrid>& grids) {
                      found->solid_angle, largest);
 }
 
-/// JSON has no infinity.
+/// Returns null for an infinite rating, because JSON has no infinity.
 Json number_or_null(double rating) { return std::isfinite(rating) ? Json(rating) : Json(nullptr); }
 
 Json to_json(const RatedGrid& g) {

@@ -29,14 +29,14 @@ struct GlarePlaces {
     std::vector<V3f> directions;  ///< Lines of sight at each point, and for the worst direction of each seat.
 };
 
-/// Both ways along x and y.
+/// Returns the directions both ways along x and y.
 std::vector<V3f> usual_directions();
 
 /// Adds `--seat` to a command.
 void add_seats(CLI::App& app, std::vector<Observer>& seats);
 
 /// Rates all places with a progress bar. Warns about sources outside the range of UGR.
-/// @param solution  As in rate_glare().
+/// @param solution  The solution, as in rate_glare().
 /// @throws Stopped if no observer was reached.
 std::vector<RatedGrid> rate_places(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                                    const GlarePlaces& places, const MeasuringOptions& options);

@@ -18,7 +18,7 @@ ColourScale scale_for(const Image& values, const FalseColourOptions& options) {
     return options.logarithmic ? fit_scale(std::move(numbers), spacing) : fit_round_scale(std::move(numbers));
 }
 
-/// Returns round values inside the scale, without its ends.
+/// Returns round values between the ends of the scale.
 std::vector<float> automatic_isolines(const ColourScale& scale) {
     constexpr int most = 10;
     std::vector<float> values = round_values(scale, most);

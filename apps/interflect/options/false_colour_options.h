@@ -16,13 +16,13 @@ enum class Measured {
 };
 
 struct FalseColourOptions {
-    std::optional<Measured> measured;  ///< Empty: natural colours.
+    std::optional<Measured> measured;  ///< Quantity that is shown; nullopt for natural colours.
     std::optional<Range> scale;
     bool logarithmic = false;
-    std::optional<std::vector<float>> isolines;  ///< If empty, round values.
+    std::optional<std::vector<float>> isolines;  ///< Values of the isolines; round values if the list is empty.
 
     void add_to(CLI::App& app);
-    /// @throws UsageError for options without effect or in conflict.
+    /// @throws UsageError for options that have no effect or contradict each other.
     void check() const;
     /// Returns the quantity with its unit.
     std::string label() const;

@@ -25,7 +25,7 @@ struct DimmingOptions {
     std::vector<Dimmed> factors;
 
     void add_to(CLI::App& app);
-    /// @throws InputError listing the groups, for an unknown group.
+    /// @throws InputError for an unknown group; the message lists the groups.
     void dim(SolvedScene& solved) const;
     /// @throws UsageError if groups are dimmed but `scene` is not a solution.
     void require_solution(const std::filesystem::path& scene) const;

@@ -15,7 +15,7 @@ namespace interflect::command {
 void refuse_options(const CLI::App& command, std::span<const std::string_view> refused, const std::string& reason,
                     std::span<const std::string_view> accepted = {});
 
-// Each calls refuse_options().
+// Each of the functions below calls refuse_options().
 
 /// Refuses options of solving and of solutions, for path tracing.
 void refuse_solver_options(const CLI::App& command);

@@ -11,7 +11,7 @@ namespace interflect::command {
 
 namespace {
 
-/// For the help, by Shading. The argument is the place where light is computed.
+/// Descriptions for the help, indexed by Shading. The argument is the place where light is computed.
 constexpr std::array<fmt::format_string<const std::string&>, shading_labels.size()> descriptions{
     "one value an element",
     "interpolated between the elements",

@@ -24,11 +24,11 @@ namespace {
 
 bool is_patch_limit(const InputError& e) { return e.fault().setting == "max_patches"; }
 
-/// Memory while a scene is read, cut and prepared for ray tracing [bytes]. Measured: up to 290, for a sphere with 200
-/// divisions and for glTF instances of one triangle.
+/// Memory while a scene is read, cut and prepared for ray tracing [bytes]. The largest measured values were 290, for a
+/// sphere with 200 divisions and for glTF instances of one triangle.
 constexpr std::size_t bytes_per_patch = 300;
 
-/// @param present  Patches already in memory.
+/// Returns the limit of patches in memory. @param present  Number of patches that are already there.
 std::uint64_t patches_in_memory(std::size_t present = 0) { return present + free_memory() / bytes_per_patch; }
 
 }  // namespace
@@ -134,7 +134,7 @@ Daylight SceneOptions::placed_daylight() const {
     return placed;
 }
 
-/// Adds one part after the other to an empty scene: an error then names its option.
+/// Checks daylight by adding one part after the other to an empty scene, so an error can name its option.
 void SceneOptions::check_daylight(const CLI::App& command) const {
     constexpr std::array<std::string_view, 1> zenith = {"--zenith"};
     if (!daylight.sun && !daylight.cie_sky && !daylight.perez_sky && !daylight.environment)
@@ -395,7 +395,7 @@ void SolverOptions::add_importance(CLI::App& app) {
 void SolverOptions::add_schedule(CLI::App& app) {
     const auto group = [](CLI::Option* option) { option->group(experimental_group); };
     ExperimentalOptions& o = given_.others.experimental;
-    // Takes effect while the command line is parsed, before the options that replace its settings.
+    // This option takes effect while the command line is parsed, before the options that replace its settings.
     group(app.add_option_function<std::string>(
                  "--preset",
                  [this](const std::string&) {

@@ -50,7 +50,7 @@ struct MeshOptions {
     /// Cuts faces where others meet them, unless switched off.
     Scene cut(Scene scene, const ReadOptions& read) const;
     /// Cuts the scene, then divides patches to the mesh size.
-    /// @param refines  The method divides patches itself; `auto` then leaves them whole.
+    /// @param refines  Whether the method divides patches itself; `auto` then leaves them whole.
     Scene divide(Scene scene, const ReadOptions& read, bool refines) const;
 };
 
@@ -92,8 +92,8 @@ inline constexpr std::array<std::string_view, 5> rare_groups = {reading_group, s
 void add_limits(CLI::App& app, GivenLimits& limits);
 
 struct SolverOptions {
-    int threads = 0;         ///< 0: all threads of the machine.
-    std::size_t memory = 0;  ///< Limit of the process [bytes]; 0: 9/10 of the machine's.
+    int threads = 0;         ///< Number of threads; 0 for all threads of the machine.
+    std::size_t memory = 0;  ///< Limit of the process's memory [bytes]; 0 for 9/10 of the machine's memory.
     std::filesystem::path stats;
 
     void add_to(CLI::App& app);
@@ -117,7 +117,7 @@ void add_method(CLI::App& app, std::optional<Method>& method);
 
 void add_threads(CLI::App& app, int& threads);
 
-/// @param omitted  A kind of warnings.
+/// @param omitted  Kind of warnings that are not logged.
 void log_warnings(const Warnings& warnings, std::string_view omitted = {});
 
 }  // namespace interflect::command

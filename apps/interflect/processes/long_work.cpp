@@ -27,7 +27,7 @@ LongWork::LongWork(std::string what) : what_(std::move(what)), start_(Clock::now
     if (addressable_memory() - memory_in_use() < min_addresses) return;
     try {
         thread_ = std::thread([this] { watch(); });
-    } catch (const std::system_error&) {  // too many threads: work without reports
+    } catch (const std::system_error&) {  // too many threads exist, so the work has no reports
     }
 }
 

@@ -13,7 +13,7 @@ namespace interflect::command {
 /// Reports long work on stderr every few seconds: name, time and memory in use.
 class LongWork {
   public:
-    /// @param what  "reading scene.obj", for example.
+    /// @param what  Name of the work, such as "reading scene.obj".
     explicit LongWork(std::string what);
     ~LongWork();
     LongWork(const LongWork&) = delete;
@@ -34,7 +34,7 @@ class LongWork {
     std::thread thread_;
 };
 
-/// Constructs the ray caster of a scene, reported by LongWork.
+/// Constructs the ray caster of a scene, while LongWork reports.
 RayCaster make_ray_caster(const Scene& scene);
 
 }  // namespace interflect::command

@@ -12,13 +12,13 @@ namespace interflect::command {
 /// Without other ranks it has no effect.
 class SharedLight {
   public:
-    /// Keeps references. @param solution  Null: light is computed from the scene alone.
+    /// Keeps references. @param solution  Null if light is computed from the scene alone.
     SharedLight(const Scene& scene, const Solution* solution) : scene_(scene), solution_(solution) {}
     ~SharedLight();
     SharedLight(const SharedLight&) = delete;
     SharedLight& operator=(const SharedLight&) = delete;
 
-    /// Sends scene and solution to the others, unless they have them.
+    /// Sends scene and solution to the other ranks, unless they have them.
     void start();
     /// Calls work(monitor with the other processes), after start(). An error other than Stopped ends all processes,
     /// since the others wait for this one.

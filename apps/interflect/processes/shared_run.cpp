@@ -35,7 +35,7 @@ std::shared_ptr<Ranks> ranks;
 /// mpirun kills all processes two seconds after one has called for the end.
 constexpr std::chrono::milliseconds time_to_end_processes{2500};
 
-/// Command of the first process to the others.
+/// Order that the first process sends to the others.
 struct Order {
     enum class Kind { solve, advance, plan, end_of_run, light, dismiss } kind;
     Limits limits = {};
@@ -68,7 +68,7 @@ std::string receive_text(std::size_t size) {
     return text;
 }
 
-/// Returns the limit of threads that --threads set, 0 without one.
+/// Returns the limit of threads that --threads set, or 0 without a limit.
 int limit_of_threads() {
     const auto threads =
         static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
@@ -178,7 +178,7 @@ AdvanceReport SharedRun::advance(const Limits& limits, Monitor monitor) try {
 }
 
 void SharedRun::set_plan(const Limits& limits) {
-    solver_.set_plan(limits);  // first: it may throw
+    solver_.set_plan(limits);  // comes first, because it may throw
     give({.kind = Order::Kind::plan, .limits = limits});
 }
 

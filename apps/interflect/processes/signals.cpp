@@ -17,11 +17,11 @@ namespace {
 
 constexpr std::array stop_signals = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
 std::atomic<bool> first_only_stops{false}, stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // required in signal handlers
+static_assert(std::atomic<bool>::is_always_lock_free);  // signal handlers require this
 
 void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }
 
-/// Ends the process as without a handler.
+/// Ends the process as the signal would without a handler.
 void end_process(int signal) {
     remove_temporary_files();
     if (::isatty(STDERR_FILENO) == 1) say("\n");  // below a progress bar

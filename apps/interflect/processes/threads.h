@@ -6,7 +6,7 @@
 
 namespace interflect::command {
 
-/// Limits concurrent threads during its lifetime; 0 sets no limit.
+/// Limits the number of concurrent threads during its lifetime. A limit of 0 has no effect.
 class ThreadLimit {
   public:
     explicit ThreadLimit(int threads) {

@@ -30,7 +30,7 @@ EmbreeRates median_rates(const std::vector<Round>& rounds) {
 
 detail::Json json_by_interface(const EmbreeRates& rates);
 
-/// @param rates  As of json_by_interface().
+/// @param rates  Result of json_by_interface().
 void print_rates(const detail::Json& rates);
 
 }  // namespace interflect::command

@@ -14,16 +14,16 @@ namespace interflect::command {
 /// All surfaces of a material. Colours are luminances.
 struct SurfaceFacts {
     std::string material;
-    double area = 0;  ///< One side of two-sided faces [m^2].
+    double area = 0;  ///< Area, of one side only for two-sided faces [m^2].
     double reflectance = 0, transmittance = 0, specular_reflectance = 0;
 };
 
 struct LightFacts {
-    std::string name;                 ///< Material, photometric file or kind of light.
-    std::string kind;                 ///< "surface", or kind_name().
-    std::size_t count = 0;            ///< Luminaires, or emitting objects.
-    bool far_away = false;            ///< Sky or sun; `flux` is that towards the scene.
-    double flux = 0;                  ///< Total [lm].
+    std::string name;       ///< Material, photometric file or kind of light.
+    std::string kind;       ///< "surface", or kind_name().
+    std::size_t count = 0;  ///< Luminaires, or emitting objects.
+    bool far_away = false;  ///< Whether it is the sky or the sun, of which `flux` is the part towards the scene.
+    double flux = 0;        ///< Total flux [lm].
     std::optional<double> luminance;  ///< [cd/m^2], if equal in all directions.
 };
 

@@ -16,12 +16,12 @@ using namespace detail;
 
 namespace {
 
-// Units of a figure: its longer side is figure_side.
+// Lengths in a figure, whose longer side is figure_side.
 constexpr double figure_side = 1000, dimension_room = 46, legend_room = 92, font_size = 15;
 
 struct Frame {
     const ReportPlan& plan;
-    double unit;  // per metre
+    double unit;  // length in the figure per metre
     double width, height;
 
     explicit Frame(const ReportPlan& p)

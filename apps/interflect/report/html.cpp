@@ -10,7 +10,7 @@ using namespace detail;
 
 namespace {
 
-/// RFC 4648.
+/// Encodes bytes in base 64 (RFC 4648).
 std::string base64(std::string_view bytes) {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;

@@ -45,7 +45,7 @@ footer { border-top: 0.5pt solid var(--line); margin-top: 8mm; padding-top: 2mm;
 
 std::string file_name(const std::string& path) { return html_text(std::filesystem::path(path).filename().string()); }
 
-/// The first cells are names, the others numbers.
+/// Returns a row of a table, whose first `names` cells are names and whose others are numbers.
 std::string row(const std::vector<std::string>& cells, std::size_t names = 1, const char* tag = "td") {
     std::string text = "<tr>";
     for (std::size_t i = 0; i < cells.size(); ++i)

@@ -15,7 +15,7 @@ namespace interflect::command {
 
 struct ReportPicture {
     std::string view;
-    Image picture, illuminance;  ///< Display values.
+    Image picture, illuminance;  ///< Images in display values.
 };
 
 struct ReportContent {

@@ -15,7 +15,7 @@ inline std::string found(const pybind11::handle& value) {
     return text.size() > longest ? text.substr(0, text.find_first_of(",\n ", longest)) + " ..." : text;
 }
 
-/// Type as in Python: "float", "Optional[View]", "tuple[float, float, float]".
+/// Returns the name of a type in Python, such as "float", "Optional[View]" or "tuple[float, float, float]".
 template <class T>
 std::string type_name() {
     namespace py = pybind11;
@@ -32,7 +32,7 @@ std::string type_name() {
     return text;
 }
 
-/// The value as a `T`. @throws TypeError with the name, the expected type and the value found.
+/// Returns the value as a `T`. @throws TypeError with the name, the expected type and the value found.
 template <class T>
 T argument(const pybind11::handle& value, const std::string& name, const std::string& expected = type_name<T>()) {
     try {

@@ -45,7 +45,8 @@ void append_wrapped(std::string& text, std::string_view paragraph) {
     }
 }
 
-/// Signature as inspect.signature() reads it: "(scene, object, facing=None)". Defaults must be literals of Python.
+/// Returns the signature as inspect.signature() reads it: "(scene, object, facing=None)". Defaults must be literals of
+/// Python.
 std::string signature_of(const py::detail::function_record& function) {
     std::string text;
     const auto add = [&](const std::string& argument) { text += (text.empty() ? "" : ", ") + argument; };

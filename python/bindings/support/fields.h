@@ -87,7 +87,7 @@ class Fields {
             },
             "replace(self, **fields)\n--\n\nCopies the object, with other values of these fields.\n\nArgs:\n"
             "    fields: Values by name.");
-        class_.def("__reduce__", [fields = fields_](const py::object& object) {  // for pickle
+        class_.def("__reduce__", [fields = fields_](const py::object& object) {  // pickle calls this
             py::tuple values(fields.size());
             for (std::size_t i = 0; i < fields.size(); ++i) values[i] = object.attr(fields[i].name.c_str());
             return py::make_tuple(py::type::of(object), values);
@@ -114,8 +114,8 @@ class Fields {
   private:
     struct Field {
         std::string name;
-        std::string type;                           ///< As in Python.
-        std::function<std::string(const T&)> text;  ///< As in repr().
+        std::string type;                           ///< Name of the type in Python.
+        std::function<std::string(const T&)> text;  ///< Returns the text for repr().
     };
 
     template <class Function>
@@ -125,7 +125,7 @@ class Fields {
         using Type = std::decay_t<Second>;
     };
 
-    /// A field as in repr(): numbers of single precision with the fewest digits that distinguish them.
+    /// Returns a field's text for repr(). Numbers of single precision have the fewest digits that distinguish them.
     template <class Member>
     static std::string text_of(const Member& member, const T& object, const char* name) {
         if constexpr (std::is_same_v<Member, float>) {

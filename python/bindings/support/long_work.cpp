@@ -20,7 +20,8 @@ namespace py = pybind11;
 
 namespace {
 
-constexpr std::chrono::milliseconds between_checks{20};  // a pause too short to notice, at little cost
+constexpr std::chrono::milliseconds between_checks{
+    20};  // a pause too short to be noticed, but long enough to cost little
 
 /// Progress of the working thread, for the thread of the interpreter.
 class LatestProgress {
@@ -28,7 +29,7 @@ class LatestProgress {
     void set(const Progress& progress) {
         const std::scoped_lock lock(mutex_);
         latest_ = progress;
-        latest_->iteration = nullptr;  // valid during the call only
+        latest_->iteration = nullptr;  // it is valid only during the call
     }
     std::optional<Progress> take() {
         const std::scoped_lock lock(mutex_);
@@ -50,7 +51,7 @@ void run_long_work(const py::object& progress, int threads, Ending ending,
     LatestProgress latest;
     const Monitor monitor{[&](const Progress& now) { latest.set(now); }, &stop};
     std::exception_ptr interruption;
-    tbb::task_group_context loops;  // parallel loops of the work
+    tbb::task_group_context loops;  // context of the work's parallel loops
     {
         const py::gil_scoped_release released;
         std::future<void> done = std::async(std::launch::async, [&] {

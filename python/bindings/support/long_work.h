@@ -12,8 +12,8 @@ namespace interflect::python {
 
 /// How an exception ends work.
 enum class Ending {
-    stopped,    ///< By its monitor, at a point that it chooses.
-    cancelled,  ///< Also in any parallel loop. Only for work without side effects.
+    stopped,    ///< The work ends by its monitor, at a point that it chooses.
+    cancelled,  ///< The work also ends in any parallel loop, so it must not have side effects.
 };
 
 /// Runs `work` on another thread, within at most `threads` threads (0: all), while this one calls progress(Progress)

@@ -16,16 +16,17 @@ namespace {
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Integers = py::array_t<std::int64_t, py::array::c_style>;
 
-/// Checks arrays and remembers all faults, for one exception.
+/// Checks arrays and collects their faults, which one exception reports.
 class Arguments {
   public:
     void add(const Fault& fault) { faults_.push_back(fault); }
-    /// @param name  Of the argument, which starts the sentence.
+    /// @param name  Name of the argument, which starts the sentence.
     void add(const char* name, const std::string& expected) {
         add(Fault{.text = fmt::format("{}: {}", name, expected), .setting = name});
     }
 
-    /// Array (count, columns); empty, with a fault, for another shape or type. @param count  -1: any.
+    /// Returns an array (count, columns). For another shape or type, adds a fault and returns an empty array.
+    /// @param count  Expected count, or -1 for any.
     Doubles numbers(const py::object& value, const char* name, py::ssize_t count, py::ssize_t columns) {
         return checked<Doubles>(value, name, "numbers", count, {columns});
     }
@@ -103,7 +104,7 @@ void place_vertices(Scene& scene, const Doubles& vertices, const Integers& faces
     for (py::ssize_t i = 0; i < points.shape(0); ++i) scene.vertices.emplace_back(V3f(at(i) - scene.origin) + V3f(0));
 }
 
-/// Index of each face, or all 0 for None.
+/// Returns an index per face. All are 0 for None.
 std::vector<std::uint32_t> indices_of_faces(const py::object& value, const char* name, py::ssize_t faces,
                                             Arguments& arguments) {
     std::vector<std::uint32_t> result(static_cast<std::size_t>(faces), 0);
@@ -158,7 +159,7 @@ void add_faces(Scene& scene, const Integers& faces, const std::vector<std::uint3
     }
 }
 
-/// Copies an attribute of the vertices. @param columns  2 or 3.
+/// Copies an attribute of the vertices. @param columns  Numbers per vertex, 2 or 3.
 template <class T>
 void set_attribute(std::vector<T>& attribute, const py::object& value, const char* name, std::size_t vertices,
                    Arguments& arguments) {

@@ -22,7 +22,7 @@ std::shared_ptr<Scene> scene_from_arrays(const py::object& vertices, const py::o
                                          const py::object& normals, const py::object& texture_coordinates,
                                          const py::object& lightmap_coordinates, const Parts& parts, std::string name);
 
-/// Copy with other parts. @throws InputError that lists every fault.
+/// Returns a copy with other parts. @throws InputError that lists every fault.
 std::shared_ptr<Scene> replaced(const std::shared_ptr<Scene>& scene, const Parts& parts);
 
 /// @param texels  (height, width, 3). @throws InputError for another shape and a texture_fault().

@@ -20,7 +20,7 @@ py::object python_of(const Json& json) {
     return py::none();
 }
 
-/// @param usual  Default value of the setting, whose type counts; null for a number.
+/// @param usual  Default value, which has the type of the setting; null for a number.
 Json setting(const std::string& name, const py::handle& value, const Json& usual) {
     const auto refuse = [&](const char* expected) {
         throw py::type_error(name + ": expected " + expected + ", found " + found(value));
@@ -38,7 +38,7 @@ Json setting(const std::string& name, const py::handle& value, const Json& usual
     return argument<double>(value, name, "a number");
 }
 
-/// ", rays, time, ...".
+/// Returns text such as ", rays, time, ...".
 std::string names_of(const Json& settings) {
     std::string names;
     for (const auto& [name, value] : settings.items())
@@ -118,7 +118,7 @@ SolveOptions solve_options(const Scene& scene, const py::object& method, const p
             json[name] = setting(name, value, json[name]);
         }
     }
-    json["views"] = Json::array();  // kept in full precision
+    json["views"] = Json::array();  // not to be read, because `options` has them in full precision
     detail::read_options(json, options, true);
     if (settings.contains("importance")) given.importance = options.method.importance;
     if (settings.contains("rays")) given.limits.rays = options.limits.rays;

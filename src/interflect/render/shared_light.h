@@ -23,7 +23,7 @@ struct LightOfGroup {
 /// @param group  Index into solution.group_names.
 LightOfGroup light_of_group(const Scene& scene, const Solution& solution, std::size_t group);
 
-/// Called by rank 0: ends share_light() in all other ranks. Does nothing if `ranks` is null.
+/// Ends share_light() in all other ranks. Only rank 0 calls this; without `ranks`, it has no effect.
 void end_shared_light(Ranks* ranks);
 
 }  // namespace interflect::detail

@@ -34,7 +34,7 @@ class UnoccludedLight {
     Rgb at(SourceKind kind, const V3f& x, const V3f& n, float u, float v) const;
 
   private:
-    /// Eight emitting patches in separate arrays of coordinates, so that compilers generate vector code.
+    /// Eight emitting patches. Each coordinate has an array of its own, which lets compilers generate vector code.
     struct PatchGroup {
         static constexpr std::size_t size = 8;
         using Numbers = std::array<float, size>;

@@ -144,7 +144,7 @@ double relative_error(const std::vector<PixelStatistics>& pixels, const PictureO
 std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target) {
     const std::vector<double> scale = error_scale(pixels, options);
-    std::vector<double> variance(pixels.size());  // variance of a mean of two samples, one of each half
+    std::vector<double> variance(pixels.size());  // variance of a mean of two samples, one from each half
     for (std::size_t i = 0; i < pixels.size(); ++i)
         variance[i] = mean_channel(pixels[i].sampling_error()) * pixels[i].samples_of_half();
     const std::vector<double> sums = sums_around(variance, options);

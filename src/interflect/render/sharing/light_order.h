@@ -26,7 +26,7 @@ struct LightOrder {
     std::size_t group = 0;         ///< Index of the light group, for Kind::group.
 };
 
-/// Sends an order to the other ranks. Does nothing if `ranks` is null or this is not rank 0.
+/// Sends an order from rank 0 to the other ranks. On other ranks, or without `ranks`, it has no effect.
 /// @param start  Start of the paths.
 void give_order(Ranks* ranks, LightOrder order, const PathStart& start = {});
 

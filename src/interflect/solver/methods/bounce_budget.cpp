@@ -32,7 +32,7 @@ BounceRays BounceBudget::next(double unshot) {
     const double ratio = last_unshot_ > 0 ? unshot / last_unshot_ : decay_at_first;
     decay_ = ratio < 1 ? std::min(highest_decay, ratio) : decay_while_it_grows;
     last_unshot_ = unshot;
-    // Unshot power of this and later bounces: that of the previous pass, or a geometric series.
+    // The unshot power of this and later bounces is predicted from the previous pass, or else as a geometric series.
     const double geometric = unshot / (1 - decay_), planned = is_measured_ ? previous_total_ - unshot_sum_ : geometric;
     // Later bounces keep at least a tenth of the rays, for light that the previous pass missed.
     const double to_come = is_measured_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;

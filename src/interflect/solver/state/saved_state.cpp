@@ -151,7 +151,7 @@ void SolverState::archive(StateArchive& archive) {
             "expected the noise of every element");
     require(rays.of_other_views <= rays.schedule.averaged_rays() || light.options().experimental.warm_up > 0,
             "expected a part of the averaged rays for other views");
-    require(sampling.streams.used.size() <= elements, "expected points of elements that there are");
+    require(sampling.streams.used.size() <= elements, "expected no more numbers of points than elements");
     require(sampling.streams.used_by_parts.size() <= inputs.emission.part_count() &&
                 sampling.part_importance.size() == inputs.emission.part_count(),
             "expected the importance of every part of the luminaires");

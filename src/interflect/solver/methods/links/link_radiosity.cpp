@@ -93,7 +93,7 @@ std::vector<Rgb> present_radiosity(const RunInputs& inputs, LightState& light) {
     return b;
 }
 
-/// Area-weighted sum of |new - old|, relative to that of the new values.
+/// Sum of area x |new - old|, relative to the sum of area x new.
 class RelativeChange {
   public:
     void add(double area, double before, double now) {
