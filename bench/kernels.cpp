@@ -119,7 +119,7 @@ void add_arrivals(benchmark::State& state) {
         const std::uint32_t payload = buffer.add_payload({1, 2, 3, 4});
         for (std::size_t i = 0; i < block; ++i) {
             random = random * 1664525u + 1013904223u;
-            buffer.add(static_cast<std::uint32_t>(std::uint64_t{random} * elements >> 32), payload,
+            buffer.add(ElementIndex(std::uint64_t{random} * elements >> 32), payload,
                        ContributionSums::ScatterBuffer::Terms::both);
         }
         buffer.release_payloads();

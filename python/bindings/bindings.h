@@ -60,7 +60,7 @@ using SharedLight = std::shared_ptr<Light>;
 
 /// pybind11 has no const objects; the bindings of `T` offer no member that changes it.
 template <class T>
-std::shared_ptr<T> shown(std::shared_ptr<const T> object) {
+std::shared_ptr<T> without_const(std::shared_ptr<const T> object) {
     return std::const_pointer_cast<T>(std::move(object));
 }
 

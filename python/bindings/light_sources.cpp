@@ -49,7 +49,7 @@ void bind_local_lights(py::module_& m) {
         .field("inner_angle", &SpotLight::inner_angle, docs::SpotLight_inner_angle)
         .field("outer_angle", &SpotLight::outer_angle, docs::SpotLight_outer_angle)
         .finish();
-    const auto web = [](const MeasuredLight& light) { return shown(light.web); };
+    const auto web = [](const MeasuredLight& light) { return without_const(light.web); };
     const auto set_web = [](MeasuredLight& light, const std::shared_ptr<PhotometricWeb>& w) { light.web = w; };
     Fields<MeasuredLight>(m, "MeasuredLight", docs::MeasuredLight)
         .field("web", web, set_web, docs::MeasuredLight_web)
@@ -86,7 +86,7 @@ void bind_distant_lights(py::module_& m) {
         .field("sun", &SkyDome::sun, docs::SkyDome_sun)
         .field("ground", &SkyDome::ground, docs::SkyDome_ground)
         .finish();
-    const auto image = [](const EnvironmentMap& map) { return shown(map.image); };
+    const auto image = [](const EnvironmentMap& map) { return without_const(map.image); };
     const auto set_image = [](EnvironmentMap& map, const std::shared_ptr<Texture>& texture) { map.image = texture; };
     Fields<EnvironmentMap>(m, "EnvironmentMap", docs::EnvironmentMap)
         .field("image", image, set_image, "Texture of radiances.")

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <vector>
+
 #include "bindings.h"
 #include "fields.h"
 #include "interflect/measure.h"
@@ -103,7 +106,10 @@ void bind_grids(py::module_& m) {
     py::class_<PlanarArea>(m, "PlanarArea", docs::PlanarArea)
         .def_readonly("name", &PlanarArea::name, docs::PlanarArea_name)
         .def_readonly("normal", &PlanarArea::normal, docs::PlanarArea_normal)
-        .def_readonly("patches", &PlanarArea::patches, docs::PlanarArea_patches)
+        .def_property_readonly(
+            "patches",
+            [](const PlanarArea& a) { return std::vector<std::uint32_t>(a.patches.begin(), a.patches.end()); },
+            docs::PlanarArea_patches)
         .def_readonly("area", &PlanarArea::area, docs::PlanarArea_area)
         .def("__repr__", [](const PlanarArea& a) {
             return fmt::format("<PlanarArea '{}': {} faces, {:.4g} m^2>", a.name, a.patches.size(), a.area);

@@ -226,17 +226,17 @@ void bind_solution(py::module_& m) {
             "elements", [](const SharedLight& light) { return Elements{light}; },
             "Arrays of all elements, inner ones included.")
         .def_property_readonly(
-            "scene", [](const Light& light) { return shown(light.scene); },
+            "scene", [](const Light& light) { return without_const(light.scene); },
             "The scene as it was solved: faces are cut where others meet them.")
         .def_property_readonly(
             "views", [](const Light& light) { return light.solution->options.views; }, "Views that defined importance.")
         .def_property_readonly(
             "options", [](const Light& light) { return settings_of(light.solution->options); },
             "Settings by name: a dict.")
-        .def_property_readonly(
-            "iterations", &iterations_of,
-            "List of a dict per iteration, with counts since the start and the luminance of powers [lm or W]. "
-            "pandas.DataFrame takes the list.")
+        .def_property_readonly("iterations", &iterations_of,
+                               "List of a dict per iteration, with counts since the start, and powers weighted to one "
+                               "number as luminance is [lm or W]. "
+                               "pandas.DataFrame takes the list.")
         .def_property_readonly(
             "group_names", [](const Light& light) { return light.solution->group_names; }, docs::SourceGroups_names)
         .def_property_readonly(

@@ -201,7 +201,8 @@ void bind_solver(py::module_& m) {
         .def("take_solution", &PythonSolver::take_light,
              Documented("Current solution without a copy. Closes the solver."))
         .def_property_readonly(
-            "scene", [](PythonSolver& self) { return shown(Use(self)->shared_scene()); }, docs::Solver_scene.text)
+            "scene", [](PythonSolver& self) { return without_const(Use(self)->shared_scene()); },
+            docs::Solver_scene.text)
         .def_property_readonly(
             "options", [](PythonSolver& self) { return settings_of(Use(self)->options()); }, "Settings by name.")
         .def_property_readonly(

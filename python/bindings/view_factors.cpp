@@ -46,7 +46,7 @@ std::vector<PatchIndex> patches_of(const py::handle& value, const std::string& n
                 Fault{.text = fmt::format("groups: '{}': face {} does not exist; expected below {}", name, i, patches),
                       .object = name,
                       .setting = "groups"});
-        result.push_back(static_cast<std::uint32_t>(i));
+        result.emplace_back(i);
     }
     return result;
 }

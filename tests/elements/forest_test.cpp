@@ -36,7 +36,7 @@ Scene three_shapes() {
 void subdivide_at_random(ElementForest& forest, int count, unsigned seed) {
     std::mt19937 random(seed);
     for (int i = 0; i < count; ++i) {
-        const std::vector<std::uint32_t> leaves = forest.leaves();
+        const std::vector<ElementIndex> leaves = forest.leaves();
         forest.subdivide(leaves[random() % leaves.size()]);
     }
 }
@@ -65,7 +65,8 @@ TEST(Forest, CellAreaIsTheShareOfPointsThatFallIntoIt) {
     constexpr int points = 100'000;
     std::array<int, 4> hits{};
     for (int i = 0; i < points; ++i)
-        ++hits[forest.leaf_at(1, forest.geometry(PatchIndex(1)).uniform_parameters(uniform(random), uniform(random))) -
+        ++hits[forest.leaf_at(PatchIndex(1),
+                              forest.geometry(PatchIndex(1)).uniform_parameters(uniform(random), uniform(random))) -
                child];
     for (std::uint32_t k = 0; k < 4; ++k) {
         const double share = forest.area(child + k) / forest.area(ElementIndex(1));
@@ -99,7 +100,7 @@ TEST(Forest, ThreadsThatSubdivideTogetherMakeTheForestThatOneMakes) {
         std::mt19937 random(seed);
         std::uniform_real_distribution<float> uniform(0, 1);
         for (int i = 0; i < 500; ++i) {
-            ElementIndex e = random() % 8;
+            ElementIndex e(random() % 8);
             const Parameters p{uniform(random), uniform(random)};
             Cell cell;
             for (int level = 0; level < 4; ++level) {
@@ -163,7 +164,8 @@ TEST(Forest, GoesFromTheRootsToTheLeavesAndBackPastNoGeneration) {
     std::mt19937 random(6);
     for (unsigned batch = 0; batch < 4; ++batch) {  // the last batch is left unsorted
         const std::uint32_t first = forest.size();
-        for (int i = 0; i < 20'000; ++i) forest.subdivide(static_cast<std::uint32_t>(random()) % forest.size());
+        for (int i = 0; i < 20'000; ++i)
+            forest.subdivide(ElementIndex(static_cast<std::uint32_t>(random()) % forest.size()));
         if (batch == 3) break;
         forest.put_in_order(first);
         if (batch == 1)

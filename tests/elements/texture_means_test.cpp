@@ -68,7 +68,7 @@ TEST_P(TextureMeansOf, CellsAreThoseOfTheirChildren) {
     for (ElementIndex e{0}; e < 85; ++e) forest.subdivide(e);  // three levels
     for (ElementIndex e{0}; e < 85; ++e) {
         const auto mean = [&](std::uint32_t i) {
-            return means.mean(0, scene.patches[0], forest.geometry(PatchIndex(0)), forest.cell(i)).x;
+            return means.mean(0, scene.patches[0], forest.geometry(PatchIndex(0)), forest.cell(ElementIndex(i))).x;
         };
         float sum = 0;
         for (std::uint32_t k = 0; k < 4; ++k)

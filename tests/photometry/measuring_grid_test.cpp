@@ -183,7 +183,7 @@ TEST(MeasuringGrid, TurnsWithTheArea) {
 TEST(MeasuringGrid, AtAHeightLiesOverTheFloor) {
     Scene scene = furnished();
     const PlanarArea floor = find_floor(scene, 0.7);
-    EXPECT_EQ(floor.patches, std::vector<std::uint32_t>{4});
+    EXPECT_EQ(floor.patches, std::vector{PatchIndex(4)});
     const MeasuringGrid grid = area_grid(scene, floor, {.spacing = 1}, 0.7);
     EXPECT_EQ(grid.points.size(), 30u);
     EXPECT_NEAR((grid.points.front() - Imath::V3d(0.5, 0.5, 0.7)).length(), 0, 1e-6);

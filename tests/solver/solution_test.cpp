@@ -65,7 +65,7 @@ TEST(Leaves, CoverEveryPatchOnce) {
     }
     EXPECT_GT(deepest, 1);
     for (std::uint32_t i = 0; i < area.size(); ++i) {
-        const double whole = solution.forest->area(i);
+        const double whole = solution.forest->area(ElementIndex(i));
         EXPECT_NEAR(area[i], whole, 1e-4 * whole);
         EXPECT_NEAR(power[i], whole * solution.irradiance[i].x, 1e-3 * whole * solution.irradiance[i].x + 1e-9);
     }

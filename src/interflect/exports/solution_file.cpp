@@ -267,12 +267,14 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
     const auto write = [&]<class T>(const char* name, const std::vector<T>& numbers, std::size_t columns) {
         return file.write(name, std::span<const T>(numbers), columns);
     };
-    std::vector<FileRange> ranges = {file.write("/description", std::span<const char>(description)),
-                                     write("/scene/vertices", flattened(scene.vertices), 3),
-                                     write("/scene/patches", patch_numbers(scene), numbers_per_patch),
-                                     write("/scene/contacts", flattened(contact_ends(scene)), 3),
-                                     write("/elements/subdivided", solution.forest->subdivided(), 1),
-                                     write("/solution/irradiance", flattened(solution.irradiance), 3)};
+    const std::vector<ElementIndex> subdivided = solution.forest->subdivided();
+    std::vector<FileRange> ranges = {
+        file.write("/description", std::span<const char>(description)),
+        write("/scene/vertices", flattened(scene.vertices), 3),
+        write("/scene/patches", patch_numbers(scene), numbers_per_patch),
+        write("/scene/contacts", flattened(contact_ends(scene)), 3),
+        write("/elements/subdivided", std::vector<std::uint32_t>(subdivided.begin(), subdivided.end()), 1),
+        write("/solution/irradiance", flattened(solution.irradiance), 3)};
     for (const ElementNumbers& n : element_numbers)
         if (!n.needs_view || !solution.view_importance.empty())
             ranges.push_back(write(n.dataset, solution.*n.values, 1));

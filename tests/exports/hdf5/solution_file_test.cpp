@@ -130,7 +130,7 @@ std::string contents(const fs::path& path) {
 
 std::vector<std::uint32_t> subdivided_elements(const Solution& solution) {
     std::vector<std::uint32_t> parents;
-    for (ElementIndex e = solution.forest->patch_count(); e < solution.forest->size(); e += 4)
+    for (ElementIndex e(solution.forest->patch_count()); e < solution.forest->size(); e += 4)
         parents.push_back(solution.forest->parent(e));
     return parents;
 }
@@ -294,7 +294,7 @@ TEST_F(SolutionFile, OpensVersion2) {
 TEST_F(SolutionFile, ReadsARefinedForestWithImportance) {
     const SolvedScene solved = refined_example();
     ASSERT_GT(solved.solution.forest->size(), solved.scene.patches.size()) << "the solver has refined";
-    ASSERT_GT(solved.solution.forest->level(solved.solution.forest->size() - 1), 1);
+    ASSERT_GT(solved.solution.forest->level(ElementIndex(solved.solution.forest->size() - 1)), 1);
     write_solution(path_, solved.scene, solved.solution);
     expect_equal(read_solution(path_), solved);
 }

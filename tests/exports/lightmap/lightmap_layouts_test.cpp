@@ -160,10 +160,10 @@ TEST(LightmapLayout, IsThatOfTheFrontWhereBothSidesAreLit) {
     const Lightmap lightmap = make_lightmap(scene, solution, options);
     EXPECT_TRUE(warnings.entries().empty());
     EXPECT_EQ(lightmap.charts.size(), 2);
-    for (std::uint32_t p = 0; p < 2; ++p)
+    for (PatchIndex p{0}; p < 2; ++p)
         for (std::uint64_t i = 0; i < 100; ++i) {
             const Parameters place = random_place(solution.forest->geometry(p), i);
-            ASSERT_NEAR(sample(lightmap, PatchIndex(p), place).x, 100.0f * static_cast<float>(1 + p), 0.1f) << p;
+            ASSERT_NEAR(sample(lightmap, p, place).x, 100.0f * static_cast<float>(1 + p), 0.1f) << p;
         }
 }
 

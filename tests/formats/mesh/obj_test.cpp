@@ -109,6 +109,17 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// A triangle 2 mm long and 3 um wide, six float steps at its position, beside a floor of 8 x 8 m. It is negligible,
 /// not a sign of too coarse coordinates. Seen to be refused when its length counts.
+TEST(ObjNames, MayBeFollowedByComments) {
+    const TemporaryFolder folder;
+    folder.write("a.mtl", "newmtl Material #25\nKd .25 .25 .25\nnewmtl red\nKd .75 0 0\n");
+    const Scene scene =
+        load_scene(folder.write("room.obj", "mtllib a.mtl  # paints\n" + square +
+                                                "usemtl Material #25\nf 1 2 3\nusemtl red\t# walls\nf 1 3 4\n"));
+    EXPECT_EQ(scene.materials[scene.patches[0].material].name, "Material #25") << "the exact name comes first";
+    EXPECT_EQ(scene.materials[scene.patches.back().material].name, "red");
+    EXPECT_TRUE(scene.warnings.entries().empty());
+}
+
 TEST(Obj, SliversThatRoundingFlattensAreLeftOut) {
     const Scene scene = read(
         "v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 7.1 7.3 2\nv 7.102 7.3 2\nv 7.101 7.300003 2\nf 1 2 3 4\nf 5 6 7\n");

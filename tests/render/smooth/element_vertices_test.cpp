@@ -171,7 +171,7 @@ TEST(VertexValues, AreWeightedByIntegrals) {
         for (int i = 0; i < steps * steps; ++i) {
             const float s = (static_cast<float>(i % steps) + 0.5f) / steps,
                         t = (static_cast<float>(i / steps) + 0.5f) / steps;
-            const Parameters x = forest.cell(1 + k).at(s, t);
+            const Parameters x = forest.cell(ElementIndex(1 + k)).at(s, t);
             const float basis = (1 - std::abs(2 * x.u - 1)) * (1 - std::abs(2 * x.v - 1));
             integral[k] += basis * forest.geometry(PatchIndex(0)).jacobian(x);
             sum += basis * forest.geometry(PatchIndex(0)).jacobian(x);

@@ -60,7 +60,7 @@ std::vector<Rgb> irradiance_of_patches(const ElementForest& forest) {
 
 void subdivide_all(ElementForest& forest, int levels) {
     for (int level = 0; level < levels; ++level)
-        for (ElementIndex e(0), n = forest.size(); e < n; ++e)
+        for (ElementIndex e(0), end(forest.size()); e < end; ++e)
             if (forest.is_leaf(e)) forest.subdivide(e);
     forest.put_in_order(forest.patch_count());
 }

@@ -60,7 +60,7 @@ TEST(Neighbourhoods, KeepTheMeanAndGiveMostToWhatIsNear) {
     EXPECT_NEAR(w.area_mean(smooth) / w.area_mean(values), 1, 0.02);  // exact if all were halved equally often
     EXPECT_GT(smooth[10], 0.7f);
     EXPECT_GT(*std::min_element(smooth.begin(), smooth.end()), 0);
-    const auto centre = [&](std::uint32_t p) { return w.forest.geometry(p).point({0.5f, 0.5f}); };
+    const auto centre = [&](std::uint32_t p) { return w.forest.geometry(PatchIndex(p)).point({0.5f, 0.5f}); };
     double near = 0, far = 0;
     for (std::uint32_t p = 0; p < 54; ++p) {
         if (p == 10) continue;

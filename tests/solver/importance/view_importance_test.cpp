@@ -22,7 +22,7 @@ using namespace testing_support;
 
 const View at_x0{"x = 0", {1, 0.5f, 0.5f}, {0, 0.5f, 0.5f}, {0, 0, 1}, 20};
 const View at_x2{"x = 2", {1, 0.5f, 0.5f}, {2, 0.5f, 0.5f}, {0, 0, 1}, 20};
-constexpr std::uint32_t wall_x0 = 0, wall_x2 = 1;  // patches
+constexpr PatchIndex wall_x0(0), wall_x2(1);
 
 struct Box {
     Scene scene = closed_box({2, 1, 1}, 1, {{"wall", Rgb(0.5f), Rgb(1)}});

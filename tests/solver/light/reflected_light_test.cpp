@@ -102,7 +102,7 @@ TEST(UpLights, AreResolvedOnHiddenSurfacesWhereNoImportanceIsFollowed) {
         options.method.importance = use;
         if (has_view) options.views = {{{"floor", {4.5f, 3.5f, 2}, {4.6f, 3.5f, 0}, {0, 1, 0}, 30}}};
         const Solution s = solve(scene, ray_caster, options);
-        const std::vector<std::uint32_t> leaves = s.forest->leaves();
+        const std::vector<ElementIndex> leaves = s.forest->leaves();
         return static_cast<double>(std::count_if(
             leaves.begin(), leaves.end(), [&](ElementIndex leaf) { return s.forest->patch(leaf) == ceiling_patch; }));
     };

@@ -83,8 +83,8 @@ TEST_P(TexturesOfMethod, OfOneValueAreAsTheMaterial) {
 double ceiling_irradiance(const Solution& s) {
     double sum = 0, area = 0;
     for (std::uint32_t i = 24; i < 32; ++i) {
-        sum += static_cast<double>(s.irradiance[i].y * s.forest->area(i));
-        area += static_cast<double>(s.forest->area(i));
+        sum += static_cast<double>(s.irradiance[i].y * s.forest->area(ElementIndex(i)));
+        area += static_cast<double>(s.forest->area(ElementIndex(i)));
     }
     return sum / area;
 }

@@ -232,11 +232,11 @@ TEST(ClusterExchange, OfDistantGroupsIsTheSumOverPairs) {
 TEST(ClusterExchange, OfAGroupAndANearWallIsTheSumOverPatches) {
     const TwoGroups scene(1.2f, true);
     const auto [first, second] = scene.groups();
-    for (const std::uint32_t group : {first, second})
+    for (const ElementIndex group : {first, second})
         for (const std::uint32_t side : {0u, 1u}) {
-            const std::uint32_t wall = static_cast<std::uint32_t>(scene.scene.patches.size()) - 2 + side;
+            const PatchIndex wall(scene.scene.patches.size() - 2 + side);
             ASSERT_TRUE(scene.clusters.is_valid({wall, group}));
-            const ClusterMember member = member_of(scene.forest, ElementIndex(wall));
+            const ClusterMember member = member_of(scene.forest, wall);
             const std::vector<double> expected =
                 scene.received_by_pairs(std::span(&member, 1), scene.tree.members(group));
             if (sum(expected) == 0) {

@@ -181,7 +181,7 @@ TEST(LinkRadiosity, CountsWhatEscapesFromAnOpenBox) {
     const std::vector<RgbD> exact = dense_irradiance(scene, f);
     RgbD escaping(0, 0, 0);
     for (std::uint32_t i = 0; i < exact.size(); ++i)
-        escaping += (RgbD(materials.exitance(i)) + RgbD(materials.reflectance(i)) * exact[i]) *
+        escaping += (RgbD(materials.exitance(PatchIndex(i))) + RgbD(materials.reflectance(PatchIndex(i))) * exact[i]) *
                     (static_cast<double>(patch_area(scene, scene.patches[i])) * (1 - f.row_sum(i)));
     const RgbD escaped = solve_scene(scene, unrefined()).iterations.back().escaped_power;
     for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(escaped[channel] / escaping[channel], 1, 2e-3);

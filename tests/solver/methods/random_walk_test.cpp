@@ -127,7 +127,8 @@ TEST_P(RandomWalks, CountsWhatLeavesAnOpenScene) {
     const std::vector<RgbD> exact = dense_irradiance(scene, f);
     RgbD escaping(0, 0, 0);
     for (std::uint32_t i = 0; i < exact.size(); ++i) {
-        const RgbD radiosity = RgbD(Materials(scene).exitance(i)) + RgbD(Materials(scene).reflectance(i)) * exact[i];
+        const RgbD radiosity = RgbD(Materials(scene).exitance(PatchIndex(i))) +
+                               RgbD(Materials(scene).reflectance(PatchIndex(i))) * exact[i];
         escaping += radiosity * (patch_area(scene, scene.patches[i]) * (1 - f.row_sum(i)));
     }
     const Runs sample(scene, [](std::uint64_t seed) { return walk_options(GetParam(), seed); });

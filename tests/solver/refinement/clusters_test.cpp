@@ -38,11 +38,11 @@ struct Box {
 
     explicit Box(float s = 1) : size(s) {}
     std::uint32_t patches() const { return state.light.forest->patch_count(); }
-    float area(std::uint32_t p) const { return state.light.forest->area(p); }
+    float area(std::uint32_t p) const { return state.light.forest->area(ElementIndex(p)); }
 
     /// Returns 0 to 5.
     int wall(std::uint32_t p) const {
-        const V3f n = state.light.forest->geometry(p).normal();
+        const V3f n = state.light.forest->geometry(PatchIndex(p)).normal();
         for (int axis = 0; axis < 3; ++axis)
             if (std::abs(n[axis]) > 0.5f) return 2 * axis + (n[axis] > 0 ? 1 : 0);
         return -1;
@@ -209,7 +209,7 @@ INSTANTIATE_TEST_SUITE_P(Contrast, ClusterRisk, testing::Values(0.0f, 0.2f, 0.5f
 TEST_P(ClusterRisk, IsAboutTheErrorThatIsLeft) {
     Box box;
     const auto truth = [&](std::uint32_t p) {  // 25 rays a patch; varies over each wall
-        const PatchGeometry& geometry = box.state.light.forest->geometry(p);
+        const PatchGeometry& geometry = box.state.light.forest->geometry(PatchIndex(p));
         return 10 *
                (1 + GetParam() * std::sin(6 * geometry.point({0.5f, 0.5f}).x + 4 * geometry.point({0.5f, 0.5f}).y));
     };

@@ -54,7 +54,7 @@ class Sample {
 
   private:
     void add(Solution solution) {
-        const std::vector<std::uint32_t> leaves = leaves_by_place(*solution.forest);
+        const std::vector<ElementIndex> leaves = leaves_by_place(*solution.forest);
         values_.resize(3 * leaves.size());
         for (std::size_t i = 0; i < values_.size(); ++i)
             values_[i].push_back(solution.irradiance.at(leaves.at(i / 3))[static_cast<int>(i % 3)]);

@@ -76,7 +76,7 @@ struct Setting {
             return std::sqrt(factor[static_cast<std::size_t>(level)] * independent(level)) * normal(random);
         };
         for (ElementIndex e{0}; e < forest.patch_count(); ++e) fresh.irradiance[e] = Rgb(1 + noise(0));
-        for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4) {
+        for (ElementIndex first(forest.patch_count()); first < forest.size(); first += 4) {
             std::array<float, 4> difference;
             float mean = 0;
             for (float& d : difference) mean += (d = noise(forest.level(first))) / 4;
@@ -112,12 +112,12 @@ TEST(NoiseModel, FindsHowMuchMoreOrLessNoiseThereIsWhereFewerRaysArrive) {
         // Three of four siblings are independent. Four iterations count, by the decay of the model's history.
         const double expected = variance * std::pow(4.0, level) * factor[level] * (level == 0 ? 1 : 0.75);
         const double freedom = 4.0 * (level == 0 ? 600 : 0.75 * (level == 1 ? 2400 : 9600));
-        const double found =
-            s.state.light.noise.variance(*s.state.light.forest, s.state.light.solution.irradiance, first[level], 1);
+        const double found = s.state.light.noise.variance(*s.state.light.forest, s.state.light.solution.irradiance,
+                                                          ElementIndex(first[level]), 1);
         EXPECT_NEAR(found / expected, 1, sure * std::sqrt(2 / freedom)) << "level " << level;
         EXPECT_GT(std::abs(found / (1.5 * expected) - 1), sure * std::sqrt(2 / freedom)) << "would notice a half more";
-        const double with_ten =
-            s.state.light.noise.variance(*s.state.light.forest, s.state.light.solution.irradiance, first[level], 10);
+        const double with_ten = s.state.light.noise.variance(*s.state.light.forest, s.state.light.solution.irradiance,
+                                                             ElementIndex(first[level]), 10);
         EXPECT_NEAR(with_ten / found, 0.1, 1e-5) << "falls with the rays";
     }
 }
@@ -127,7 +127,7 @@ template <class Signal>
 double true_risk(const Setting& s, const Signal& signal) {
     const ElementForest& forest = *s.state.light.forest;
     double sum = 0, groups = 0;
-    for (std::uint32_t first = forest.patch_count(); first < forest.size(); first += 4, ++groups)
+    for (ElementIndex first(forest.patch_count()); first < forest.size(); first += 4, ++groups)
         for (std::uint32_t k = 0; k < 4; ++k) {
             const float y = luminance(s.state.light.solution.irradiance[first + k]) -
                             luminance(s.state.light.solution.irradiance[forest.parent(first)]);
@@ -239,7 +239,7 @@ std::array<std::vector<double>, 4> lone_bright_siblings(float before, int merges
         s.state.light.noise = NoiseModel(mean.size());
         for (int k = 0; k < merges; ++k) {
             Estimate fresh{std::vector<Rgb>(mean.size(), Rgb(0)), std::vector<float>(mean.size(), 0.0f)};
-            for (std::uint32_t first = 6; first < mean.size(); first += 4) {
+            for (ElementIndex first{6}; first < mean.size(); first += 4) {
                 fresh.irradiance[first] = Rgb(hit(s.random) ? 20 : 0);
                 fresh.variance[first] = fresh.irradiance[first].x * fresh.irradiance[first].x;
             }
@@ -295,7 +295,7 @@ TEST(Shrinkage, LeavesADarkSiblingDark) {
     const TracedIteration iteration{{.rays = 100, .old_elements = s.state.light.forest->size()}};
     for (int k = 0; k < 20; ++k) {
         Estimate fresh{std::vector<Rgb>(30, Rgb(0)), std::vector<float>(30, 0.0f)};
-        for (std::uint32_t first = 6; first < 30; first += 4) {
+        for (ElementIndex first{6}; first < 30; first += 4) {
             fresh.irradiance[first] = Rgb(normal(s.random));
             fresh.variance[first] = 0.16f;
         }
@@ -320,7 +320,7 @@ TEST(InheritedTrust, DecidesWhetherALeafThatRaysMissedGoesDark) {
         mean.assign(mean.size(), Rgb(1));
         update_history(s.state.light, iteration);  // after one iteration, which created the elements below the patches
         std::vector<Rgb> received(mean.size(), Rgb(4.0f / 3));
-        for (ElementIndex e = patches; e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
+        for (ElementIndex e(patches); e < mean.size(); e += 4) received[e] = Rgb(0);  // rays missed it
         pull(*s.state.light.forest, received);
         merge(s.state.light, mean, received, iteration);
         EXPECT_NEAR(mean[0].x, 1, 1e-6) << "of light none is lost";
@@ -338,7 +338,7 @@ double share_split(const Signal& signal) {
     const auto leaves = static_cast<double>(s.state.light.forest->leaves().size());
     const std::uint32_t before = s.state.light.forest->size();
     refine_by_variance(s.state);
-    for (ElementIndex e = before; e < s.state.light.forest->size(); ++e)
+    for (ElementIndex e(before); e < s.state.light.forest->size(); ++e)
         EXPECT_EQ(s.state.light.history[e], 0) << "measured anew";
     return (s.state.light.forest->size() - before) / 4 / leaves;
 }

@@ -102,7 +102,7 @@ TEST(VisibleDifference, AdaptsToASquareDegree) {
     Setting s;
     const ElementForest& forest = *s.state.light.forest;
     const ElementIndex leaf = s.divide(ElementIndex(12), 4), parent = forest.parent(leaf);
-    const std::uint32_t degree = forest.parent(forest.parent(parent));  // 118 pixels wide; its children 59
+    const ElementIndex degree = forest.parent(forest.parent(parent));  // 118 pixels wide; its children 59
     const float before = s.threshold(leaf);
     s.set(leaf, 0.1f);
     s.set(parent, 0.1f);
@@ -163,7 +163,7 @@ TEST(VisibleDifference, IsMaskedByTexture) {
     const float threshold = textured.threshold(first + 1);
     // The texture without its neighbour: the bright half as a patch of its own.
     Setting plain(half_dark_floor_of_two_patches(Halves::reflect), perceptual({view}));
-    const float unmasked = plain.threshold(plain.state.light.forest->patch_count() - 1);
+    const float unmasked = plain.threshold(PatchIndex(plain.state.light.forest->patch_count() - 1));
     EXPECT_NEAR(threshold / unmasked, threshold_elevation(0.5f / unmasked), 0.15f * threshold / unmasked);
     EXPECT_GT(threshold, 5 * unmasked);
 }

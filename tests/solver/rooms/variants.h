@@ -45,7 +45,7 @@ void divide_everything(SolveOptions& options, double min_area);
 SolveOptions on_a_fixed_mesh(const Variant& variant, std::uint64_t seed);
 
 /// Returns the leaves ordered by patch and path, independent of the order of their creation.
-std::vector<std::uint32_t> leaves_by_place(const detail::ElementForest& forest);
+std::vector<ElementIndex> leaves_by_place(const detail::ElementForest& forest);
 
 /// Returns a scene whose patches are the leaves of a forest over rectangles, in the order of leaves_by_place.
 Scene scene_of_leaves(const Scene& scene, const detail::ElementForest& forest);

@@ -95,7 +95,7 @@ SolveOptions options_of(std::uint64_t seed, const std::string& method = "ihsrr")
 double power_on_floor(const Solution& solution) {
     double sum = 0;
     for (std::uint32_t i = 0; i < 20; ++i)
-        sum += static_cast<double>(solution.irradiance[i].x * solution.forest->area(i));
+        sum += static_cast<double>(solution.irradiance[i].x * solution.forest->area(ElementIndex(i)));
     return sum;
 }
 
@@ -195,7 +195,9 @@ TEST(KeptRays, SumTheLightOfASmallHoleInAWideLandscape) {
         mean += found.back() / runs;
         square += found.back() * found.back() / runs;
         for (std::uint32_t i = 0; i < 20; ++i)
-            reported += std::pow(solution.standard_error[i] * solution.forest->area(i) / disc.expected(), 2) / runs;
+            reported +=
+                std::pow(solution.standard_error[i] * solution.forest->area(ElementIndex(i)) / disc.expected(), 2) /
+                runs;
     }
     constexpr double integration_error = 2e-3;
     EXPECT_GT(t_test(found, 1, integration_error), false_alarm) << mean;

@@ -176,7 +176,7 @@ TEST_P(DeepFurnace, HasTheSameIrradianceEverywhere) {
         divide_everything(options, 0.03f);  // m^2; the walls have 2, 3 and 6
         const Solution solution = solve(scene, ray_caster, options);
         ASSERT_EQ(solution.forest->size(), refines ? all_elements : walls);
-        const std::vector<std::uint32_t> places = leaves_by_place(*solution.forest);
+        const std::vector<ElementIndex> places = leaves_by_place(*solution.forest);
         leaves.resize(places.size());
         for (std::size_t i = 0; i < places.size(); ++i) leaves[i].push_back(solution.irradiance[places[i]].x);
         for (std::size_t w = 0; w < walls; ++w) patches[w].push_back(solution.irradiance[w].x);

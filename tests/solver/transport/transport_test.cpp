@@ -145,7 +145,7 @@ TEST(Transport, IsUnbiasedForAnyPositiveWeights) {
     std::vector<double> p_values, p_values_off;  // of the right answer, and of one that is wrong by two per cent
     for (std::size_t i = 0; i < patches; ++i) {
         double expected = 0;  // R_i / A_i = sum_s F_si P_s / A_i = sum_s F_is B_s
-        for (std::uint32_t s = 0; s < patches; ++s) expected += f(i, s) * step.light.of(room.forest, s).y;
+        for (std::uint32_t s = 0; s < patches; ++s) expected += f(i, s) * step.light.of(room.forest, ElementIndex(s)).y;
         p_values.push_back(t_test(arrived[i], expected));
         p_values_off.push_back(t_test(arrived[i], 1.02 * expected));
     }
@@ -336,7 +336,7 @@ TEST(TransportRays, AreThoseThatTransportTraces) {
     const double payload = channel_sum(room.radiated_power()) / static_cast<double>(rays);
     const Received received = room.receive(streams);
     for (std::uint32_t i = 0; i < hit_count.size(); ++i)
-        EXPECT_NEAR(channel_sum(received.irradiance[i]) * room.forest.area(i) / payload, hit_count[i],
+        EXPECT_NEAR(channel_sum(received.irradiance[i]) * room.forest.area(ElementIndex(i)) / payload, hit_count[i],
                     1e-5 * hit_count[i] + 1e-3);
 }
 

@@ -71,7 +71,7 @@ Estimate solved(const Scene& scene, std::uint32_t first_patch, std::uint32_t pat
         const Solution solution =
             solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = rays}, .seed = seed});
         double sum = 0, area = 0;
-        for (std::uint32_t i = first_patch; i < first_patch + patches; ++i) {
+        for (PatchIndex i(first_patch); i < first_patch + patches; ++i) {
             sum += luminance(RgbD(solution.irradiance[i])) * solution.forest->area(i);
             area += solution.forest->area(i);
         }

@@ -77,7 +77,8 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
     while (forest.size() > old_size) forest.drop_last_siblings();
 }
 
-/// Returns nullopt without importance, or if it is deposited at patches and no luminaire shoots.
+/// Makes sums of the importance at the hits of each source's rays. Returns nullopt if they are not needed: without
+/// importance, or if it is deposited at patches and there are no parts of luminaires to rate.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -104,11 +105,12 @@ void trace(const StepData& data, const RayCaster& ray_caster, std::size_t begin,
 void deposit_behind_panes(const TransportStep& step, const StepData& data, std::uint32_t source,
                           std::span<const Panes::HitBehind> behind, ThreadBuffers& buffers) {
     for (const auto& [ray, transmittance, hit] : behind) {
+        const float mean_transmittance = channel_sum(transmittance) / 3;
         data.contribution_units.fill_groups(step, data.payload, source, buffers.group_terms, transmittance);
         buffers.descent.deposit(source, data.contribution_units.contribution(step, data.payload, source, transmittance),
                                 buffers.group_terms, std::span(buffers.ray_batch.rays).subspan(ray, 1),
                                 std::span(buffers.ray_batch.origins).subspan(ray, 1), std::span(&hit, 1),
-                                channel_sum(transmittance) / 3);
+                                mean_transmittance);
     }
 }
 
@@ -243,8 +245,8 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     received.start_points = StartPoints(std::move(start_points));
     received.escaped_rays = escaped.rays;
     received.escaped_power = data.contribution_units.power.to_colour(escaped.power);
-    // The boxes of outdoor light overlap. A line is sampled from one box only; along the same line, rays of the other
-    // boxes miss the scene. Without this correction, the power of targets would count twice.
+    // Skies and suns send rays through the box of the scene and through the boxes of targets within it (Emission). Each
+    // line is sampled from one box only, so the power of targets is also part of that of the scene's box.
     if (step.emission) {
         received.shot_power -= step.emission->repeated_power();
         received.escaped_power -= step.emission->repeated_power();

@@ -137,13 +137,15 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
 }
 
 std::uint32_t ObjMaterials::find(const std::string& name, const Location& where) {
-    const auto entry = definitions_.find(name);
+    // Names such as "Material #25" are more frequent than comments.
+    auto entry = definitions_.find(name);
+    if (entry == definitions_.end()) entry = definitions_.find(std::string(without_comment(name)));
     if (entry == definitions_.end()) {
         warn("missing-material", "a material that no library defines is replaced by a grey of reflectance 0.5", where);
         return 0;
     }
     Definition& definition = entry->second;
-    if (definition.material == none) definition.material = convert(name, definition);
+    if (definition.material == none) definition.material = convert(entry->first, definition);
     return definition.material;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <list>
@@ -15,6 +17,12 @@
 
 namespace interflect::detail {
 
+/// Returns a name without the comment after it, which a space and '#' begin.
+inline std::string_view without_comment(std::string_view name) {
+    const std::size_t comment = std::min(name.find(" #"), name.find("\t#"));
+    return comment == name.npos ? name : name.substr(0, name.find_last_not_of(" \t", comment) + 1);
+}
+
 class ObjMaterials {
   public:
     /// Adds a default material.
@@ -23,7 +31,7 @@ class ObjMaterials {
     /// Reads a file once. @throws InputError; std::invalid_argument if forbidden by the options.
     void read(const std::filesystem::path& path, const Location& where);
     void read_text(std::string_view text, const std::filesystem::path& path);
-    /// Returns an index into Model::materials; 0, with a warning, if unknown.
+    /// Returns an index into Model::materials; 0, with a warning, if unknown. A comment may follow the name.
     std::uint32_t find(const std::string& name, const Location& where);
 
   private:

@@ -50,7 +50,7 @@ ObjReader::ObjReader(const std::filesystem::path& path, const ReadOptions& optio
     : options_(options), materials_(model_, options_) {
     model_.file = path;
     model_.files.push_back(path.string());
-    object_index_.emplace("", 0);
+    object_index_.emplace("", 0);  // the first of Model::objects
 }
 
 void ObjReader::read(std::string_view text) {
@@ -68,7 +68,8 @@ void ObjReader::read(std::string_view text) {
 
 void ObjReader::read_line(const LineReader& line, Words words, const Location& where) {
     const std::string_view key = words[0];
-    const auto name = [&] {
+    // A new object, group or material begins a new mesh.
+    const auto begin_mesh_named = [&] {
         if (line.rest().size() > options_.max_name_length) throw std::invalid_argument("this name is too long");
         mesh_ = none;
         return std::string(line.rest());
@@ -79,20 +80,20 @@ void ObjReader::read_line(const LineReader& line, Words words, const Location& w
     } else if (key == "f") {
         face(words.subspan(1), where);
     } else if (key == "o") {
-        object_ = name();
+        object_ = begin_mesh_named();
         group_.clear();
     } else if (key == "g") {
-        group_ = name();
+        group_ = begin_mesh_named();
     } else if (key == "usemtl") {
-        material_ = materials_.find(name(), where);
+        material_ = materials_.find(begin_mesh_named(), where);
     } else if (key == "mtllib") {
         libraries(line, words, where);
     } else if (key != "s" && key != "vp") {
-        constexpr std::string_view known = "l p";
-        model_.warnings.add("unsupported-entity",
-                            known.find(key) != known.npos ? "lines and points are left out"
-                                                          : fmt::format("'{}' is left out", key.substr(0, 20)),
-                            where.text());
+        const bool is_line_or_point = key == "l" || key == "p";
+        model_.warnings.add(
+            "unsupported-entity",
+            is_line_or_point ? "lines and points are left out" : fmt::format("'{}' is left out", key.substr(0, 20)),
+            where.text());
     }
 }
 
@@ -144,7 +145,7 @@ void ObjReader::vertex(Words words) {
 /// Exporters write NaN for degenerate faces.
 void ObjReader::coordinate(Words words, const Location& where) {
     if (words.size() < 2) throw std::invalid_argument("texture coordinates need a number");
-    if (coordinates_.size() >= none) throw std::invalid_argument("more coordinates than 32 bits can count");
+    if (coordinates_.size() >= none) throw std::invalid_argument("more texture coordinates than 32 bits can count");
     const auto u = parse_number(words[1]), v = words.size() > 2 ? parse_number(words[2]) : 0;
     if (!u || !v)
         model_.warnings.add("invalid-coordinates", "texture coordinates that are no finite numbers are read as (0, 0)",
@@ -214,6 +215,7 @@ std::uint32_t ObjReader::corner(std::string_view word, const Location& where) {
     if (use.mesh == mesh_ && use.coordinate == coordinate && use.normal == normal) return use.index;
     use = {mesh_, static_cast<std::uint32_t>(target.positions.size()), coordinate, normal};
     target.positions.push_back(positions_[position]);
+    // The normals of a mesh are either none or one per vertex, 0 where the file has none.
     if (normal != none) {
         target.normals.resize(use.index, Imath::V3d(0));
         target.normals.push_back(normals_[normal]);
@@ -254,12 +256,12 @@ std::uint32_t ObjReader::object() {
     return entry->second;
 }
 
-/// A single name may contain spaces.
+/// A single name may contain spaces and '#', or be followed by a comment.
 void ObjReader::libraries(const LineReader& line, Words words, const Location& where) {
     const std::filesystem::path folder = model_.file.parent_path();
     std::error_code ignored;
-    if (words.size() == 2 || std::filesystem::exists(folder / line.rest(), ignored))
-        return materials_.read(folder / line.rest(), where);
+    if (std::filesystem::exists(folder / line.rest(), ignored)) return materials_.read(folder / line.rest(), where);
+    if (words.size() == 2) return materials_.read(folder / without_comment(line.rest()), where);
     for (const std::string_view name : words.subspan(1)) materials_.read(folder / name, where);
 }
 

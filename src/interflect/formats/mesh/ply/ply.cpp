@@ -129,15 +129,18 @@ class PlyReader {
             if (!std::isfinite(x.x + x.y + x.z)) throw std::invalid_argument(fmt::format("vertex {} is not finite", i));
             mesh_.positions.push_back(x);
             if (has_normal) mesh_.normals.emplace_back(row[*normal[0]], row[*normal[1]], row[*normal[2]]);
-            if (has_colour) add_colour({row[*tint[0]], row[*tint[1]], row[*tint[2]]});
+            if (has_colour) note_colour({row[*tint[0]], row[*tint[1]], row[*tint[2]]});
         }
         has_vertices_ = true;
-        has_bytes_ = has_colour && element.properties[*tint[0]].type == PlyType::uint8;
+        colours_are_bytes_ = has_colour && std::ranges::all_of(tint, [&](const std::optional<std::size_t>& channel) {
+                                 return element.properties[*channel].type == PlyType::uint8;
+                             });
     }
 
-    void add_colour(const RgbD& colour) {
+    /// Keeps the first colour, and notes whether another one differs.
+    void note_colour(const RgbD& colour) {
         if (!colour_) colour_ = colour;
-        varies_ |= colour != *colour_;
+        colours_vary_ |= colour != *colour_;
     }
 
     void require_vertex(double index) const {
@@ -235,7 +238,7 @@ class PlyReader {
     Material material() {
         Material result = default_material();
         if (!colour_) return result;
-        if (varies_ || !has_bytes_) {
+        if (colours_vary_ || !colours_are_bytes_) {
             model_.warnings.add("vertex-colours",
                                 "colours of vertices are left out: all faces are of a reflectance of 0.5",
                                 model_.file.string());
@@ -252,7 +255,7 @@ class PlyReader {
     Mesh& mesh_;
     const ReadOptions& options_;
     std::optional<RgbD> colour_;  // colour of the first vertex
-    bool varies_ = false, has_bytes_ = false, has_vertices_ = false;
+    bool colours_vary_ = false, colours_are_bytes_ = false, has_vertices_ = false;
     bool has_line_each_ = false;  // text with one element a line
 };
 
@@ -271,7 +274,7 @@ Scene read_ply_bytes(std::string_view bytes, const fs::path& path, const ReadOpt
     try {
         const PlyHeader header = parse_ply_header(bytes, line);
         PlyValues values(bytes.substr(header.size), header.form);
-        const std::int64_t last_of_header = std::exchange(line, 0);
+        const std::int64_t last_of_header = std::exchange(line, 0);  // binary data has no lines
         try {
             PlyReader(header, values, model, options).read();
         } catch (const std::invalid_argument&) {

@@ -24,10 +24,11 @@ namespace {
 
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
-/// The sums of a patch overflow at this average number of deposits per line. Panes and one-sided faces cause more than
-/// one.
-constexpr double lines_headroom = 0x1p8;
+/// Most deposits of a line on one patch, on average, that the fixed-point sums can hold. A line crosses a flat patch
+/// once; each pane and each one-sided face behind it adds a deposit.
+constexpr double most_deposits_per_line = 0x1p8;
 
+/// Sphere around the scene; lines are uniform in it.
 struct LineDomain {
     V3f centre;
     float radius;
@@ -47,20 +48,20 @@ struct LineDomain {
     }
 };
 
-/// Part of a line: the patch that faces the line, and the patch at the other end of the segment, or `none`.
+/// Part of a line between two patches.
 struct LineSegment {
-    PatchIndex front, back;
-    bool is_mutual;  ///< Whether light also travels from `back` to `front`; false through the back of a one-sided face.
+    PatchIndex from, to;  ///< The line arrives at `from`, whose light goes back along it to `to`; `none` if it escapes.
+    bool is_mutual;       ///< Whether `to` also sees `from`; false if a one-sided face between them faces `from` only.
 };
 
 /// Lines that a thread traces together.
 struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, reversed_lines;
-    /// Distance within which patches coincide [m]; initially infinite.
-    std::vector<float> slack;
-    std::vector<std::uint32_t> crossed;
+    std::vector<PatchIndex> crossed;  ///< The patch that each line crossed last.
+    std::vector<float> slack;         ///< Error of the distance to it [m]; infinite before the first crossing.
     std::vector<Hit> hits, reversed_hits;
+    std::vector<float> mutual_limit;  ///< A reversed hit beyond this distance has passed a one-sided face [m].
     std::vector<LineSegment> segments;
     std::vector<Panes::HitBehind> behind;
 };
@@ -68,7 +69,7 @@ struct LineBundle {
 void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::uint64_t first, LineBundle& bundle) {
     fill_points(set, key, first, bundle.lines.size(), bundle.points);
     bundle.slack.assign(bundle.lines.size(), std::numeric_limits<float>::infinity());
-    bundle.crossed.assign(bundle.lines.size(), none);
+    bundle.crossed.assign(bundle.lines.size(), no_patch);
     const auto& [a, b, c, d] = bundle.points.coordinate;
     constexpr float turn = 2 * std::numbers::pi_v<float>;
     for (std::size_t i = 0; i < bundle.lines.size(); ++i) {
@@ -84,10 +85,12 @@ void make_lines(const LineDomain& domain, PointSet set, std::uint64_t key, std::
 /// Advances lines to the next patch that faces them, and traces back. Drops lines that escape or hit the same patch by
 /// rounding.
 void find_segments(const ElementForest& forest, const RayCaster& ray_caster, const Panes& panes, LineBundle& bundle) {
-    constexpr float offsets_apart = 4;  // distance at which patches coincide, in units of RayCaster::ray_offset()
+    // Both directions of a line start a ray offset above their patches; the other factor 2 is a margin for rounding.
+    constexpr float slack_in_offsets = 4;
     bundle.segments.clear();
     bundle.reversed_lines.clear();
     bundle.hits.resize(bundle.lines.size());
+    bundle.mutual_limit.resize(bundle.lines.size());
     ray_caster.trace(bundle.lines, bundle.hits);
     for (std::size_t i = 0; i < bundle.lines.size(); ++i) {
         const auto [patch, distance] = bundle.hits[i];
@@ -100,8 +103,9 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
         const std::size_t kept = bundle.segments.size();
         bundle.reversed_lines.push_back({x + offset, -direction});
         bundle.lines[kept] = {x - offset, direction};
-        bundle.hits[kept].distance = distance + bundle.slack[i];
-        bundle.slack[kept] = offsets_apart * ray_caster.ray_offset(patch) / std::abs(geometry.normal().dot(direction));
+        bundle.mutual_limit[kept] = distance + bundle.slack[i];
+        bundle.slack[kept] =
+            slack_in_offsets * ray_caster.ray_offset(patch) / std::abs(geometry.normal().dot(direction));
         bundle.crossed[kept] = patch;
         bundle.segments.push_back({patch, no_patch, true});
     }
@@ -110,9 +114,9 @@ void find_segments(const ElementForest& forest, const RayCaster& ray_caster, con
     ray_caster.trace(bundle.reversed_lines, bundle.reversed_hits);
     panes.trace(bundle.reversed_lines, bundle.reversed_hits, bundle.behind);
     for (std::size_t i = 0; i < bundle.segments.size(); ++i) {
-        const auto [back, distance] = bundle.reversed_hits[i];
-        bundle.segments[i].back = back;
-        bundle.segments[i].is_mutual = back != none && distance <= bundle.hits[i].distance;
+        const auto [patch, distance] = bundle.reversed_hits[i];
+        bundle.segments[i].to = patch;
+        bundle.segments[i].is_mutual = patch != no_patch && distance <= bundle.mutual_limit[i];
     }
 }
 
@@ -126,7 +130,7 @@ class LineSums {
             radiosity_.push_back(light.of(forest, i));
             brightest = std::max(brightest, static_cast<double>(largest_channel(radiosity_[i])));
         }
-        const double most = lines_headroom * static_cast<double>(lines) * power_per_radiosity * brightest;
+        const double most = most_deposits_per_line * static_cast<double>(lines) * power_per_radiosity * brightest;
         power_ = FixedPoint(most);
         square_ = FixedPoint(most * power_per_radiosity * brightest);
         received_.resize(radiosity_.size());
@@ -136,16 +140,17 @@ class LineSums {
         escaped_rays_.resize(radiosity_.size(), 0);
     }
 
+    /// Lines of both directions sample a mutual exchange, lines of one direction any other. The latter counts twice.
     void add(const LineSegment& segment) {
-        add_concurrently(started_[segment.front], 1);
-        carry(segment.front, segment.back, Rgb(segment.is_mutual ? 1.0f : 2.0f));
+        add_concurrently(started_[segment.from], 1);
+        carry(segment.from, segment.to, Rgb(segment.is_mutual ? 1.0f : 2.0f));
         if (!segment.is_mutual) return;
-        add_concurrently(started_[segment.back], 1);
-        carry(segment.back, segment.front, Rgb(1));
+        add_concurrently(started_[segment.to], 1);
+        carry(segment.to, segment.from, Rgb(1));
     }
-    /// Adds the light behind a pane, in one direction only, because a pane may be one-sided.
+    /// Adds the light behind a pane in one direction, as the pane may be one-sided; so it counts twice.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
-        carry(segment.front, behind.hit.patch, 2.0f * behind.transmittance);
+        carry(segment.from, behind.hit.patch, 2.0f * behind.transmittance);
     }
 
     Received received(const ElementForest& forest) const {
@@ -168,9 +173,9 @@ class LineSums {
     /// Adds the power from one patch to another.
     /// @param to      May be `none`.
     /// @param factor  Transmittance, times 1 for a mutual exchange or 2 for an exchange in one direction.
-    void carry(std::uint32_t from, std::uint32_t to, const Rgb& factor) {
+    void carry(PatchIndex from, PatchIndex to, const Rgb& factor) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(factor) * power_per_radiosity_;
-        if (to == none) {
+        if (to == no_patch) {
             add_concurrently(escaped_[from], power_.from(power));
             add_concurrently(escaped_rays_[from], 1);
             return;
@@ -198,9 +203,13 @@ class GlobalLines final : public Passes {
 
   protected:
     Received trace_without_walks(SolverState& state, TransportStep step) override {
+        // In a sphere of cross section C, a line faces on average an area A A / (4 C) times. It traces two rays for
+        // each crossing, and a last one that escapes.
         const double rays_per_line = 1 + 2 * area_ / (4 * domain_.cross_section());
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.light.forest;
+        // A patch of area A meets A / (2 C) of the lines, from both sides, so each carries 2 C / lines of its
+        // radiosity.
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
         // Each bounce has a new key, because products of dependent bounces would be biased.
         const std::uint64_t key =
@@ -211,8 +220,8 @@ class GlobalLines final : public Passes {
             LineBundle& bundle = bundles.local();
             bundle.lines.resize(end - begin);
             make_lines(domain_, state.light.options().experimental.points, key, begin, bundle);
-            // A line crosses each flat patch at most once.
-            for (PatchIndex i{0}; i < forest.patch_count() && !bundle.lines.empty(); ++i) {
+            // A line crosses each flat patch at most once; along curved ones it might never end.
+            for (std::uint32_t crossings = 0; crossings < forest.patch_count() && !bundle.lines.empty(); ++crossings) {
                 if (is_cut_short || state.work.stop.within_process().is_due()) {
                     is_cut_short = true;
                     return;
@@ -229,7 +238,7 @@ class GlobalLines final : public Passes {
         Received received = sums.received(forest);
         state.rays.escaped += received.escaped_rays;
         state.sampling.streams.used.resize(forest.size(), 0);
-        for (ElementIndex i{0}; i < forest.size(); ++i)
+        for (PatchIndex i{0}; i < forest.patch_count(); ++i)  // the method does not divide patches
             state.sampling.streams.used[i] += static_cast<std::uint64_t>(sums.started()[i]);
         return received;
     }
