@@ -61,7 +61,7 @@ struct DenoiserLibrary {
 };
 
 /// Finds the library: the file INTERFLECT_OIDN of the environment if it is set; otherwise libOpenImageDenoise.so.2 of
-/// the system, of `scripts/setup denoiser`, or of the Python package pyoidn in the active virtual environment.
+/// the system, of scripts/setup denoiser, or of the Python package pyoidn in the active virtual environment.
 DenoiserLibrary denoiser_library();
 
 }  // namespace interflect
