@@ -1,13 +1,16 @@
 #include <malloc.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "apps/interflect/commands/commands.h"
 #include "apps/interflect/console/help_formatter.h"
 #include "apps/interflect/console/messages.h"
 #include "apps/interflect/console/standard_streams.h"
+#include "apps/interflect/drawing/denoise_option.h"
 #include "apps/interflect/options/shared_options.h"
 #include "apps/interflect/processes/shared_run.h"
 #include "apps/interflect/processes/signals.h"
@@ -59,7 +62,10 @@ int run(int argc, char** argv) {
     app.footer(footer);  // set after the subcommands, which would inherit it
 
     try {
-        app.parse(argc, argv);
+        std::vector<std::string> arguments(argv + 1, argv + argc);
+        complete_denoise(arguments);
+        std::reverse(arguments.begin(), arguments.end());  // as CLI11 expects it
+        app.parse(arguments);
     } catch (const CLI::ParseError& e) {
         if (app.exit(e) != 0) return wrong_usage;
     }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "interflect/core.h"
+#include "interflect/denoise.h"
 #include "interflect/measure.h"
 #include "interflect/scene.h"
 #include "interflect/shading.h"
@@ -25,6 +26,7 @@ struct BakeOptions {
     /// number in default_samples. Ignored by Shading::smooth.
     int samples = 0;
     std::uint64_t seed = 1;
+    std::optional<Denoiser> denoiser = Denoiser::own;  ///< Of lightmaps by Shading::hybrid; empty: none.
 };
 
 /// Triangulation for light in vertices, which is finer where direct light varies. Ignored by Shading::smooth.

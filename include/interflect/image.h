@@ -79,6 +79,7 @@ struct ImageMetadata {
     std::string version;                         ///< Version of this program.
     std::uint64_t seed = 0;
     float exposure = 0;  ///< Suggested exposure for display [stops]; see tone_map().
+    std::string filter;  ///< Filter against noise (DenoisedPicture::filter); empty: none.
 };
 
 /// An additional layer of an OpenEXR file.

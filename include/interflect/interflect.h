@@ -11,6 +11,7 @@
 ///     for (const Leaf& leaf : leaves(scene, solution)) ... // solution.h: irradiance and errors of the mesh; files
 ///     find_escapes(scene, ray_caster, solution);           // leaks.h: light that leaves the scene through gaps
 ///     render(scene, solution, ray_caster, scene.views[0]); // render.h, shading.h; image.h writes files
+///     denoise(rendering.layers).image;                     // denoise.h: filters against the noise of pictures
 ///     compare(image, reference).flip;                      // metrics.h: differences of pictures
 ///     measure_irradiance(...);                             // measure.h: lux at points and grids, glare, probes
 ///     export_solution("office.glb", scene, solution);      // export.h: lit glTF, lightmaps, other renderers
@@ -22,6 +23,7 @@
 #pragma once
 
 #include "interflect/core.h"
+#include "interflect/denoise.h"
 #include "interflect/export.h"
 #include "interflect/generate.h"
 #include "interflect/image.h"

@@ -1,5 +1,5 @@
 /// @file
-/// Pictures of a scene, and denoising.
+/// Pictures of a scene.
 #pragma once
 
 #include <array>
@@ -123,15 +123,6 @@ Rendering render(const Scene& scene, const Solution& solution, const RayCaster& 
 /// @throws InputError as above, and for a shading that needs a solution.
 Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& view, const PictureOptions& options,
                  const Monitor& monitor = {});
-
-/// Removes noise from a picture drawn by paths: pairs of pixels exchange light. Direct and indirect light are filtered
-/// separately, as irradiance, which keeps reflectances, textures and emitters sharp. Two pixels exchange light if they
-/// lie in each other's tangent plane and their light differs by no more than noise explains, which preserves shadow
-/// borders (non-local means, Buades et al. 2005, with estimated variance as in Rousselle et al. 2012). Weights of one
-/// half of the samples come from the other half. The sum of irradiance over the picture is kept exactly; details are
-/// biased where the light varies by less than its noise.
-/// @return  The picture, in the same unit.
-Image denoise(const PictureLayers& layers);
 
 /// A quantity of the elements of a solution.
 enum class ElementQuantity {

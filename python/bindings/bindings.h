@@ -104,6 +104,11 @@ py::array rows(std::shared_ptr<const void> owner, const std::vector<T>& values) 
 
 /// Returns a picture as a float32 array (height, width, 3), which owns the pixels.
 py::array_t<float> array_of(Image image);
+
+/// Returns the filter of the keyword `denoise`: False or None, True for "auto", or a label of Denoiser.
+std::optional<Denoiser> denoiser_of(const py::object& denoise);
+/// Sets INTERFLECT_OIDN to the library of the Python package pyoidn if the package is installed and it is not set.
+void name_library_of_pyoidn();
 /// @param name  Name of the argument, for messages.
 /// @throws InputError unless the array has the shape (height, width, 3).
 Image image_of(const py::array_t<float, py::array::c_style | py::array::forcecast>& array, const std::string& name);

@@ -148,6 +148,11 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
     take(left, "shading", shading);
     take(left, "samples", samples);
     take(left, "seed", options.bake.seed);
+    if (left.contains("denoise")) {
+        options.bake.denoiser = denoiser_of(left["denoise"]);
+        PyDict_DelItemString(left.ptr(), "denoise");
+    }
+    name_library_of_pyoidn();
     options.probes.seed = options.bake.seed;
     take(left, "max_error", options.vertices.max_error);
     take(left, "min_edge", options.vertices.min_edge);

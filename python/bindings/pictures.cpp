@@ -1,7 +1,12 @@
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <filesystem>
+
+#include "argument.h"
 #include "bindings.h"
 #include "fields.h"
+#include "interflect/denoise.h"
 #include "interflect/image/codecs/image_codecs.h"
 #include "interflect/image/codecs/srgb.h"
 #include "interflect/metrics.h"
@@ -178,10 +183,18 @@ void bind_rendering(py::module_& m) {
         .def_readonly("non_finite_pixels", &Rendering::non_finite_pixels, docs::Rendering_non_finite_pixels)
         .def(
             "denoise",
-            [](const SharedRendering& t) {
-                return array_of(long_work(py::none(), 0, [&](const Monitor&) { return denoise(t->layers); }));
+            [](const SharedRendering& t, const std::string& denoiser) {
+                const Denoiser chosen = find_denoiser(denoiser);
+                name_library_of_pyoidn();
+                return array_of(
+                    long_work(py::none(), 0, [&](const Monitor&) { return denoise(t->layers, chosen).image; }));
             },
-            Documented(docs::denoise).returns("The picture, float32 (height, width, 3), in the same unit."))
+            py::arg("denoiser") = label(Denoiser::automatic),
+            Documented(docs::denoise, {{"denoiser",
+                                        "'oidn', Intel Open Image Denoise, whose library is that of the "
+                                        "package pyoidn, of the system, or the file INTERFLECT_OIDN of the "
+                                        "environment; 'own'; or 'auto', the first that is found."}})
+                .returns("The picture, float32 (height, width, 3), in the same unit."))
         .def("__repr__", [](const Rendering& t) {
             return fmt::format("<Rendering: {} x {}, {} paths, relative error {:.3g}>", t.image.width, t.image.height,
                                t.paths, t.relative_error);
@@ -218,6 +231,22 @@ void bind_differences(py::module_& m) {
 }
 
 }  // namespace
+
+std::optional<Denoiser> denoiser_of(const py::object& denoise) {
+    if (denoise.is_none() || denoise.is(py::bool_(false))) return {};
+    if (denoise.is(py::bool_(true))) return Denoiser::automatic;
+    return find_denoiser(argument<std::string>(denoise, "denoise"));
+}
+
+void name_library_of_pyoidn() {
+    constexpr const char* variable = "INTERFLECT_OIDN";
+    if (std::getenv(variable)) return;
+    const py::object package = py::module_::import("importlib.util").attr("find_spec")("pyoidn");
+    if (package.is_none()) return;
+    const std::filesystem::path init = py::cast<std::string>(package.attr("origin"));
+    const std::filesystem::path library = init.parent_path() / "oidn" / "lib" / "libOpenImageDenoise.so.2";
+    if (std::filesystem::exists(library)) setenv(variable, library.c_str(), 0);
+}
 
 py::array_t<float> array_of(Image image) {
     auto* kept = new Image(std::move(image));

@@ -41,7 +41,7 @@ def _draw(lit: LitArgument, view: ViewArgument, options: _core.PictureOptions, t
 
 def render(lit: LitArgument, view: ViewArgument = None, *, width: int = PICTURE.width, height: int = PICTURE.height,
            shading: str = PICTURE.shading, samples: int | None = PICTURE.samples, quantity: str = PICTURE.quantity,
-           denoise: bool = False, crease_angle: float = PICTURE.crease_angle, seed: int = PICTURE.seed, threads: int = 0,
+           denoise: bool | str = False, crease_angle: float = PICTURE.crease_angle, seed: int = PICTURE.seed, threads: int = 0,
            progress: ProgressArgument = None, **options: Any) -> NDArray[np.float32]:
     """Draws a view of a solution: float32 (height, width, 3), radiance [cd/m^2 or W/(m^2 sr)], row 0 at the top.
 
@@ -54,7 +54,8 @@ def render(lit: LitArgument, view: ViewArgument = None, *, width: int = PICTURE.
             "gather": final gathering. "path", "instant": without the solution.
         samples: Samples per pixel; default: 16, 16, 32, 16, 64 and 64, in this order.
         quantity: "radiance", or "irradiance" [lux or W/m^2] independent of reflectance.
-        denoise: Filters the noise, not for smooth and flat shading.
+        denoise: Filters the noise, not for smooth and flat shading: "oidn" by Intel Open Image Denoise (of the package
+            pyoidn, for example), "own" by this program's filter; "auto" or True by the first that is found.
         crease_angle: Maximum angle between faces with common smooth shading [degrees].
         seed: The same seed gives the same bits for any number of threads.
         threads: Number of threads; 0: all.
@@ -72,7 +73,7 @@ def render(lit: LitArgument, view: ViewArgument = None, *, width: int = PICTURE.
         if denoise:
             raise TypeError(f"{shading} shading has no noise to filter")
     rendering = _draw(lit, view, picture, threads, progress)
-    return rendering.denoise() if denoise else rendering.image
+    return rendering.denoise("auto" if denoise is True else denoise) if denoise else rendering.image
 
 
 def trace(lit: LitArgument, view: ViewArgument = None, *, width: int = PICTURE.width, height: int = PICTURE.height,
@@ -168,8 +169,8 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         exposure: [stops], of 8-bit colours, as of tonemap().
         threads, progress: As of render().
         options: up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
-            max_triangles, and for .ply and .obj polygons. In lightmaps: texels_per_metre, max_size, gutter, image, own_charts, groups, content. For
-            probes: spacing, rays.
+            max_triangles, and for .ply and .obj polygons. In lightmaps: texels_per_metre, max_size, gutter, image,
+            own_charts, groups, content, denoise (as of render(); default: "own"). For probes: spacing, rays.
 
     Returns:
         The files that were written. Features that the format lacks are reported by warnings.warn().

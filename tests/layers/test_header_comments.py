@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 EXCEPTIONS = {
     "mathematics": r"sqrt|exp|log|log10|cos|phi|min|max|[A-Za-z]_\w+",  # F_ij, d_mean
     "the standard library": r"std::\w+|size",
-    "other programs": r"AgX|NaN|OpenEXR|SciPy|csr_matrix|oconv .*",
+    "other programs": r"AgX|NaN|OpenEXR|SciPy|csr_matrix|oconv .*|INTERFLECT_OIDN",
     "attributes and names in files": r"TEXCOORD_1|look_at",
     "variables of the example in interflect.h": r"ray_caster",
 }

@@ -11,6 +11,7 @@
 
 #include "apps/interflect/commands/commands.h"
 #include "apps/interflect/console/path_progress.h"
+#include "apps/interflect/drawing/denoise_option.h"
 #include "apps/interflect/options/light_group_options.h"
 #include "apps/interflect/options/refused_options.h"
 #include "apps/interflect/options/shading_options.h"
@@ -195,6 +196,7 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
     arguments.scene.check(command);
     arguments.view.check();
     arguments.dimming.require_solution(arguments.scene.path);
+    require_denoiser(arguments.bake.denoiser);
     if (arguments.up && !(V3f(*arguments.up).length() > 0)) throw UsageError("--up", "0,0,0 is no direction");
     const NamedFile output{"--output", arguments.output};
     require_distinct_files(input_files(arguments.scene, arguments.view), {&output, 1});
@@ -229,6 +231,9 @@ void add_bake(CLI::App& command, ExportArguments& arguments) {
                                        text_of_default_samples(&DefaultSamples::texel),
                                        text_of_default_samples(&DefaultSamples::vertex))))
         ->check(CLI::Range(2, 1 << 24));
+    group(add_denoiser(command, arguments.bake.denoiser,
+                       "Filter noise from hybrid lightmaps, as `render --denoise` does"))
+        ->default_str("own");
     group(add_parsed(command, "--seed", arguments.bake.seed, parse_seed, "Of sampling"))->default_str("1");
 }
 

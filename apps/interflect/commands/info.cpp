@@ -15,6 +15,7 @@
 #include "apps/interflect/processes/long_work.h"
 #include "apps/interflect/solving/run_solve.h"
 #include "apps/interflect/solving/solution_info.h"
+#include "interflect/denoise.h"
 #include "interflect/exports/records/solve_report.h"
 #include "interflect/measure.h"
 #include "interflect/prepare.h"
@@ -124,6 +125,13 @@ void print_text(const Scene& scene, const SceneSummary& s, const std::vector<std
     for (const std::string& file : outside) print_line("  outside   {}: not in the scene's own folder", file);
 }
 
+std::string text_of_build() {
+    const DenoiserLibrary library = denoiser_library();
+    return fmt::format("interflect {}\n  denoiser  {}", INTERFLECT_VERSION,
+                       library.fault.empty() ? fmt::format("Open Image Denoise {} ({})", library.version, library.file)
+                                             : fmt::format("own filter ({})", library.fault));
+}
+
 }  // namespace
 
 void add_info(CLI::App& app) {
@@ -135,6 +143,9 @@ void add_info(CLI::App& app) {
     CLI::App& command = *app.add_subcommand("info", "List the contents of a scene or a solution");
     options->scene.add_to(command, std::string(scene_formats) + ", or solution file (.h5)");
     command.add_flag("--json", options->json, "As JSON on stdout");
+    command.add_flag_callback(
+        "--build", [] { throw CLI::CallForVersion(text_of_build(), done); },
+        "List the version and the library of --denoise instead, without a scene");
     command.callback([options, &command] {
         options->scene.check(command);
         if (is_solution_file(options->scene.path)) return print_solution_info(options->scene.path, options->json);

@@ -98,8 +98,8 @@ struct Picture {
     std::string quantity = "radiance [cd/m^2]";
     std::optional<float> exposure;  // [stops]; empty for false colours
     std::int64_t non_finite_pixels = 0;
-    bool is_dark = false;  // whether no light is visible
-    Rendering traced{};    // result of path tracing, from which layers are written
+    bool is_dark = false;    // whether no light is visible
+    TracedPicture traced{};  // result of path tracing, from which layers are written
 };
 
 bool is_for_people(const RenderArguments& options) { return needs_tone_mapping(require_image_format(options.output)); }
@@ -144,7 +144,7 @@ Picture picture_of(const Image& light, std::int64_t non_finite_pixels, const Ren
 /// Draws the light by tracing paths. @param solution  Null for shading without a solution.
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
-    Rendering traced = run_path_tracer(scene, solution, ray_caster, view, options.picture, options.path);
+    TracedPicture traced = run_path_tracer(scene, solution, ray_caster, view, options.picture, options.path);
     Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
     picture.traced = std::move(traced);
     return picture;
@@ -189,7 +189,8 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
                    std::uint64_t seed, const RenderArguments& options) {
     const LongWork work(fmt::format("writing {}", options.output.string()));
     write_image(output, picture.image,
-                {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure.value_or(0)},
+                {view, picture.quantity, scene.name, INTERFLECT_VERSION, seed, picture.exposure.value_or(0),
+                 picture.traced.filter},
                 options.path.layers ? layers_of(picture.traced) : std::vector<ImageLayer>());
     if (picture.non_finite_pixels > 0)
         spdlog::warn("{} pixels have no valid value (overflow or NaN)", picture.non_finite_pixels);
@@ -225,9 +226,14 @@ void write_preview(const Scene& scene, const Solution& solution, const RayCaster
     if (rendering.interrupted) return;
     const Picture picture = picture_of(rendering.image, rendering.non_finite_pixels, options);
     PendingFile output(options.output);
-    write_image(
-        output, picture.image,
-        {view, picture.quantity, scene.name, INTERFLECT_VERSION, solution.options.seed, picture.exposure.value_or(0)});
+    write_image(output, picture.image,
+                {view,
+                 picture.quantity,
+                 scene.name,
+                 INTERFLECT_VERSION,
+                 solution.options.seed,
+                 picture.exposure.value_or(0),
+                 {}});
     spdlog::info("{}: picture so far; a better one will replace it", options.output.string());
 }
 
@@ -407,7 +413,8 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     options.view.check();
     if (options.view.count() > 1) throw UsageError("--view", "a picture has one view, but several were given");
     options.dimming.require_solution(options.scene.path);
-    if (uses_solution && command.get_option("--denoise")->count() == 0) options.path.denoise = is_for_people(options);
+    if (uses_solution && command.get_option("--denoise")->count() == 0 && is_for_people(options))
+        options.path.denoise = Denoiser::automatic;
     check_tone_options(options, command);
     check_false_colours(options);
     options.cut.check();

@@ -21,6 +21,7 @@
 #include "apps/interflect/values/parse.h"
 #include "interflect/base/files/pending_file.h"
 #include "interflect/core.h"
+#include "interflect/denoise.h"
 #include "interflect/image.h"
 #include "interflect/render.h"
 #include "interflect/scene.h"
@@ -93,7 +94,7 @@ ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, 
     const auto draw = [&] {
         Image image;
         with_path_progress([&](const Monitor& monitor) {
-            image = denoise(render(solved.scene, solved.solution, ray_caster, view, picture, monitor).layers);
+            image = denoise(render(solved.scene, solved.solution, ray_caster, view, picture, monitor).layers).image;
         });
         return image;
     };

@@ -57,7 +57,7 @@ int DrawingTime::samples_within(double seconds, int most) const {
 }
 
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                                  const View& view, const PictureOptions& options, bool filters) {
+                                  const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser) {
     constexpr double shortest = 1e-9;  // time limit that ends the picture after least_samples [s]
     SharedLight shared_light(scene, &solution);
     const double sending = seconds_of([&] { shared_light.start(); });
@@ -73,17 +73,21 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
     one.time = shortest;
     one.samples = DrawingTime::least_samples;
     one.width = one.height = 1;
-    const double preparation = seconds_to_draw(one);
+    if (denoiser) available_denoiser(*denoiser);  // loads its library
+    const auto seconds_to_filter = [&] {
+        return denoiser ? seconds_of([&] { denoise(traced.layers, *denoiser); }) : 0;
+    };
+    const double preparation = seconds_to_draw(one), starting_filter = seconds_to_filter();
     PictureOptions small = options;
     small.time = shortest;
     small.samples = DrawingTime::least_samples;
     const Growth& growth = options.shading == Shading::hybrid ? of_hybrid : of_gathering;
     const double ratio = reduce(small.width, small.height, growth.reduction);
     const double drawing = seconds_to_draw(small);
-    const double filtering = filters ? seconds_of([&] { denoise(traced.layers); }) : 0;
+    const double filtering = starting_filter + ratio * std::max(0.0, seconds_to_filter() - starting_filter);
     const double least =
         sending + preparation + std::max(0.0, drawing - preparation) * std::pow(ratio, growth.exponent);
-    return {least, ratio * filtering + writing * options.width * options.height};
+    return {least, filtering + writing * options.width * options.height};
 }
 
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+
+#include "interflect/denoise.h"
 #include "interflect/render.h"
 
 namespace interflect::command {
@@ -23,7 +26,7 @@ struct DrawingTime {
 /// offices and a corridor.
 /// @param options  Options of the full picture.
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                                  const View& view, const PictureOptions& options, bool filters);
+                                  const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser);
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                      const View& view, const PictureOptions& options);
 

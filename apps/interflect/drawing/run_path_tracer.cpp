@@ -9,6 +9,7 @@
 
 #include "apps/interflect/console/path_progress.h"
 #include "apps/interflect/console/progress.h"
+#include "apps/interflect/drawing/denoise_option.h"
 #include "apps/interflect/processes/long_work.h"
 #include "apps/interflect/values/parse.h"
 #include "apps/interflect/values/percent.h"
@@ -55,9 +56,10 @@ void PathTracerArguments::add_to(CLI::App& app, PictureOptions& picture) {
         ->capture_default_str()
         ->check(CLI::Range(2, 1 << 24))
         ->group(path_group);
-    app.add_flag("--denoise,!--no-denoise", denoise,
-                 "Filter noise from the light, but not from textures and edges (default: where a .png or .jpg is "
-                 "gathered)")
+    add_denoiser(app, denoise,
+                 "Filter noise from the light, but not from textures and edges: by Intel Open Image Denoise (oidn), by "
+                 "this program's filter (own), or by the first that is found (auto, the default for a solution's .png "
+                 "and .jpg). Alone it means auto; --no-denoise means off")
         ->group(path_group);
     app.add_flag("--layers", layers,
                  "Write direct and indirect light, albedo, normal, depth, variance and element level too: .exr")
@@ -72,6 +74,7 @@ void PathTracerArguments::add_to(CLI::App& app, PictureOptions& picture) {
 }
 
 void PathTracerArguments::check() const {
+    require_denoiser(denoise);
     if (error_image.empty()) return;
     const ImageFormat format = check_option("--error-image", [&] { return require_image_format(error_image); });
     if (needs_tone_mapping(format))
@@ -123,32 +126,36 @@ void require_memory_for_paths(Size size) {
                         "a smaller --size, and --shading smooth, need less");
 }
 
-Rendering run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-                          const PictureOptions& options, const PathTracerArguments& arguments) {
+TracedPicture run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
+                              const View& view, const PictureOptions& options, const PathTracerArguments& arguments) {
     require_free_memory(path_memory(scene.patches.size(), options), fmt::format("tracing paths in {}", scene.name),
                         "a smaller --size, fewer --light-walks, and a scene of fewer faces, need less");
     std::optional<PendingFile> error_image;
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
-    Rendering traced;
+    TracedPicture traced;
     stop_on_signal();
     SharedLight shared_light(scene, solution);
     const double seconds = with_path_progress(shared_light, [&](const Monitor& monitor) {
-        traced = solution ? render(scene, *solution, ray_caster, view, options, monitor)
-                          : render(scene, ray_caster, view, options, monitor);
+        static_cast<Rendering&>(traced) = solution ? render(scene, *solution, ray_caster, view, options, monitor)
+                                                   : render(scene, ray_caster, view, options, monitor);
     });
     if (solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
         spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());
     if (arguments.denoise && traced.paths > 0) {
         const LongWork work("filtering noise");
-        traced.image = denoise(traced.layers);
+        DenoisedPicture denoised = interflect::denoise(traced.layers, *arguments.denoise);
+        traced.image = std::move(denoised.image);
+        if (!denoised.standard_error.pixels.empty()) traced.standard_error = std::move(denoised.standard_error);
+        traced.filter = denoised.filter;
     }
     if (traced.interrupted) spdlog::warn("stopped early: the picture has more noise than asked for");
     log_outcome(options.shading, traced, seconds);
     if (error_image) {
         const char* unit = options.quantity == PictureQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";
         write_image(*error_image, traced.standard_error,
-                    {view, std::string("standard error of ") + unit, scene.name, INTERFLECT_VERSION, options.seed});
+                    {view, std::string("standard error of ") + unit, scene.name, INTERFLECT_VERSION, options.seed, 0,
+                     traced.filter});
     }
     return traced;
 }

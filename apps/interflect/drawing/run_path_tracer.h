@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "apps/interflect/values/parse.h"
+#include "interflect/denoise.h"
 #include "interflect/image.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"
@@ -16,7 +18,7 @@ inline constexpr const char* path_group = "Gathering and path tracing";
 /// Options of `render` for shading by paths.
 struct PathTracerArguments {
     std::filesystem::path error_image;  ///< File of the error image; empty for no image.
-    bool denoise = false;
+    std::optional<Denoiser> denoise;    ///< Empty: off.
     bool layers = false;
 
     /// @param picture  Receives the options of the library.
@@ -38,10 +40,15 @@ std::vector<ImageLayer> layers_of(const Rendering& traced);
 /// @throws std::runtime_error if a gathered or path-traced picture does not fit into memory.
 void require_memory_for_paths(Size size);
 
+/// A picture drawn by paths.
+struct TracedPicture : Rendering {
+    std::string filter;  ///< DenoisedPicture::filter; empty: none.
+};
+
 /// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
 /// with a partial result, which is neither filtered nor reported if smooth shading can replace it.
 /// @param solution  Null for shading without a solution.
-Rendering run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
-                          const PictureOptions& options, const PathTracerArguments& arguments);
+TracedPicture run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
+                              const View& view, const PictureOptions& options, const PathTracerArguments& arguments);
 
 }  // namespace interflect::command

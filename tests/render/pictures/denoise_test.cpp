@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "interflect/denoise.h"
 #include "interflect/generate.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
@@ -121,7 +122,8 @@ constexpr std::array<int, 3> block_sizes{1, 5, 9};
 using Ratios = std::array<double, block_sizes.size()>;
 
 /// Returns the ratio of root mean square errors after and before filtering, for each size of blocks.
-Ratios error_ratios(Shading shading, const Place& place, const Solution& solution, const RayCaster& ray_caster) {
+Ratios error_ratios(Denoiser denoiser, Shading shading, const Place& place, const Solution& solution,
+                    const RayCaster& ray_caster) {
     constexpr int few = 8, many = 96;
     constexpr std::uint64_t pictures = 4;
     const Rendering reference = draw(shading, place, solution, ray_caster, many, pictures);
@@ -130,7 +132,7 @@ Ratios error_ratios(Shading shading, const Place& place, const Solution& solutio
     for (std::uint64_t seed = 0; seed < pictures; ++seed) {
         const Rendering noisy = draw(shading, place, solution, ray_caster, few, seed);
         const Image light = filtered_part(noisy.image, noisy.layers);
-        const Image filtered = filtered_part(denoise(noisy.layers), noisy.layers);
+        const Image filtered = filtered_part(denoise(noisy.layers, denoiser).image, noisy.layers);
         for (std::size_t k = 0; k < block_sizes.size(); ++k) {
             before[k] += square_of_blocks(light, expected, block_sizes[k]);
             after[k] += square_of_blocks(filtered, expected, block_sizes[k]);
@@ -157,7 +159,7 @@ TEST(Denoise, DoesNotIncreaseTheErrorOfBlocks) {
         const Solution solution =
             solve(place.scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 500'000}});
         for (std::size_t t = 0; t < shadings.size(); ++t) {
-            const Ratios ratios = error_ratios(shadings[t], place, solution, ray_caster);
+            const Ratios ratios = error_ratios(Denoiser::own, shadings[t], place, solution, ray_caster);
             for (std::size_t k = 0; k < ratios.size(); ++k) {
                 EXPECT_LT(ratios[k], largest)
                     << place.name << ", " << label(shadings[t]) << ", blocks of " << block_sizes[k];

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "interflect/base/threads/parallel.h"
+#include "interflect/denoise.h"
 #include "interflect/measure.h"
 #include "interflect/render.h"
 #include "interflect/render/sharing/light_order.h"
@@ -22,33 +25,98 @@ SampledLight no_light(int width, int height) {
     return {Image(width, height), Image(width, height), std::vector<float>(count), std::vector<float>(count)};
 }
 
-/// Filters the noise of direct light in a grid.
-void filter(const PointGrid& grid, std::span<const Gauge> gauges, std::span<const GaugeLight> light,
-            std::span<Rgb> irradiance) {
-    const int width = grid.width, height = static_cast<int>(grid.points.size()) / width;
+/// A grid of a picture that shows several.
+struct PlacedGrid {
+    const PointGrid* points;
+    int left = 0, top = 0;
+
+    int width() const { return points->width; }
+    int height() const { return static_cast<int>(points->points.size()) / points->width; }
+    /// Calls visit(point, x, y) with the pixel of each point.
+    void visit_points(const auto& visit) const {
+        for (std::size_t i = 0; i < points->points.size(); ++i)
+            if (points->points[i] != none)
+                visit(points->points[i], left + static_cast<int>(i) % width(), top + static_cast<int>(i) / width());
+    }
+};
+
+/// Places grids side by side in rows of about equal height, with empty texels between them.
+std::vector<PlacedGrid> side_by_side(std::span<const PointGrid> grids) {
+    constexpr int margin = 4;
+    std::vector<PlacedGrid> placed;
+    double texels = 0;
+    for (const PointGrid& grid : grids) {
+        placed.push_back({&grid});
+        texels += static_cast<double>(grid.width + margin) * (placed.back().height() + margin);
+    }
+    std::stable_sort(placed.begin(), placed.end(),
+                     [](const PlacedGrid& a, const PlacedGrid& b) { return a.height() > b.height(); });
+    const auto row_width = static_cast<int>(std::ceil(std::sqrt(texels)));
+    int left = 0, top = 0, row_height = 0;
+    for (PlacedGrid& grid : placed) {
+        if (left > 0 && left + grid.width() > row_width) {
+            top += row_height + margin;
+            left = row_height = 0;
+        }
+        grid.left = left;
+        grid.top = top;
+        left += grid.width() + margin;
+        row_height = std::max(row_height, grid.height());
+    }
+    return placed;
+}
+
+/// A picture of grids; only direct light has noise.
+PictureLayers layers_of(std::span<const PlacedGrid> grids, std::span<const Gauge> gauges,
+                        std::span<const GaugeLight> light) {
+    int width = 0, height = 0;
+    for (const PlacedGrid& grid : grids) {
+        width = std::max(width, grid.left + grid.width());
+        height = std::max(height, grid.top + grid.height());
+    }
     PictureLayers layers;
     layers.is_indirect_interpolated = true;
     for (Image* image : {&layers.emitted, &layers.albedo, &layers.normal, &layers.position})
         *image = Image(width, height);
     for (SampledLight* l : {&layers.reflected, &layers.halves[0], &layers.halves[1]}) *l = no_light(width, height);
-    layers.depth.resize(grid.points.size());
-    for (std::size_t i = 0; i < grid.points.size(); ++i) {
-        const std::uint32_t point = grid.points[i];
-        if (point == none) continue;
-        layers.depth[i] = 1;
-        layers.pixel_size = std::max(layers.pixel_size, gauges[point].spacing());
-        layers.albedo.pixels[i] = Rgb(1);
-        layers.normal.pixels[i] = gauges[point].normal;
-        layers.position.pixels[i] = gauges[point].position;
-        layers.reflected.indirect.pixels[i] = light[point].indirect;
-        for (std::size_t h = 0; h < 2; ++h) {
-            layers.halves[h].direct.pixels[i] = light[point].halves[h].irradiance;
-            layers.halves[h].direct_variance[i] = light[point].halves[h].squared_error;
-        }
-    }
-    const Image filtered = denoise(layers);
-    for (std::size_t i = 0; i < grid.points.size(); ++i)
-        if (grid.points[i] != none) irradiance[grid.points[i]] = filtered.pixels[i];
+    layers.depth.resize(layers.albedo.pixels.size());
+    for (const PlacedGrid& grid : grids)
+        grid.visit_points([&](std::uint32_t point, int, int) {
+            layers.pixel_size = std::max(layers.pixel_size, gauges[point].spacing());
+        });
+    for (std::size_t g = 0; g < grids.size(); ++g)
+        grids[g].visit_points([&](std::uint32_t point, int x, int y) {
+            const auto i = static_cast<std::size_t>(y * width + x);
+            layers.depth[i] = 1;
+            layers.albedo.pixels[i] = Rgb(1);
+            layers.normal.pixels[i] = gauges[point].normal;
+            // Grids lie in different planes, so that they exchange no light.
+            constexpr float apart = 1000;  // [texels]
+            layers.position.pixels[i] =
+                gauges[point].position + gauges[point].normal * (apart * layers.pixel_size * static_cast<float>(g));
+            layers.reflected.direct.pixels[i] = light[point].direct.irradiance;
+            layers.reflected.indirect.pixels[i] = light[point].indirect;
+            for (std::size_t h = 0; h < 2; ++h) {
+                layers.halves[h].direct.pixels[i] = light[point].halves[h].irradiance;
+                layers.halves[h].direct_variance[i] = light[point].halves[h].squared_error;
+                layers.halves[h].indirect.pixels[i] = light[point].indirect;
+            }
+        });
+    return layers;
+}
+
+/// Removes noise of direct light in grids.
+void filter(std::span<const PointGrid> grids, std::span<const Gauge> gauges, std::span<const GaugeLight> light,
+            Denoiser denoiser, std::span<Rgb> irradiance) {
+    const auto filter_picture = [&](std::span<const PlacedGrid> placed) {
+        const Image filtered = denoise(layers_of(placed, gauges, light), denoiser).image;
+        for (const PlacedGrid& grid : placed)
+            grid.visit_points([&](std::uint32_t point, int x, int y) { irradiance[point] = filtered.at(x, y); });
+    };
+    const std::vector<PlacedGrid> placed = side_by_side(grids);
+    // A learned filter needs a large picture; the start of each takes longer than most grids.
+    if (available_denoiser(denoiser) == Denoiser::oidn) return filter_picture(placed);
+    for (const PlacedGrid& grid : placed) filter_picture(std::array{PlacedGrid{grid.points}});
 }
 
 }  // namespace
@@ -77,7 +145,7 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std:
         std::vector<Rgb> values;
         values.reserve(light.size());
         for (const GaugeLight& l : light) values.push_back(l.irradiance());
-        for (const PointGrid& grid : grids) filter(grid, places, light, values);
+        if (options_.denoiser && !grids.empty()) filter(grids, places, light, *options_.denoiser, values);
         return values;
     }
     if (options_.shading == Shading::gather) return gathered(points, spacing, monitor);

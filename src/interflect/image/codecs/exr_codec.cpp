@@ -49,6 +49,7 @@ void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     number("interflect.exposure", metadata.exposure);
     text("interflect.seed", std::to_string(metadata.seed));
     text("interflect.version", metadata.version);
+    if (!metadata.filter.empty()) text("interflect.filter", metadata.filter);
 }
 
 /// OpenEXR seeks back to complete earlier parts.

@@ -12,8 +12,6 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
-
 /// With more sources, the sum over them would take longer than tracing the shadow rays.
 constexpr std::size_t max_sources = 64;
 
@@ -117,7 +115,8 @@ UnoccludedLight::PatchGroup::Irradiance UnoccludedLight::PatchGroup::at(const V3
             const float cosine = ax[i] * bx[i] + ay[i] * by[i] + az[i] * bz[i], a = std::min(1.0f, std::abs(cosine));
             const float height = n.x * (ay[i] * bz[i] - az[i] * by[i]) + n.y * (az[i] * bx[i] - ax[i] * bz[i]) +
                                  n.z * (ax[i] * by[i] - ay[i] * bx[i]);
-            const float acute = angle_over_sine(a), obtuse = pi / std::sqrt((1 - a) * (1 + a)) - acute;
+            const float acute = angle_over_sine(a),
+                        obtuse = std::numbers::pi_v<float> / std::sqrt((1 - a) * (1 + a)) - acute;
             found.is_exact[i] &= cosine > least_cosine;
             sum[i] += height * (cosine >= 0 ? acute : obtuse);
         }
@@ -166,7 +165,8 @@ Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n) const {
             const PatchGeometry& geometry = geometry_[patch];
             if (geometry.normal().dot(x - geometry.shape().origin) <= 0) continue;
             const float of_unit_radiance = found.is_exact[i] ? found.of_unit_radiance[i] : by_patch(patch, x, n);
-            irradiance += scene_.materials[scene_.patches[patch].material].exitance * (of_unit_radiance / pi);
+            irradiance += scene_.materials[scene_.patches[patch].material].exitance *
+                          (of_unit_radiance / std::numbers::pi_v<float>);
         }
     }
     return irradiance;

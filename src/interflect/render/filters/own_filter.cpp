@@ -1,4 +1,4 @@
-#include "interflect/render.h"
+#include "interflect/render/filters/own_filter.h"
 
 #include <algorithm>
 #include <array>
@@ -9,39 +9,21 @@
 #include <vector>
 
 #include "interflect/base/threads/parallel.h"
+#include "interflect/render/filters/surfaces.h"
 
-namespace interflect {
-
-using namespace detail;
+namespace interflect::detail {
 
 namespace {
 
 constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2, mean_radius = 4;  // [pixels]
 /// The factor k^2 of the noise variance in the distance of patches (Rousselle et al. 2012).
 constexpr float noise_share = 0.45f * 0.45f;
-constexpr float min_albedo = 0.01f;
-constexpr float normal_scale = 0.1f;  // about 18 degrees
-constexpr float plane_scale = 1.5f;   // relative to the pixel spacing
-
-/// Approximates exp(-d).
-float exp_minus(float d) {
-    const float t = 1 / (1 + d * 0.125f), t2 = t * t, t4 = t2 * t2;
-    return t4 * t4;
-}
 
 /// Irradiance over pi, by pixel, and its variance.
 struct Field {
     std::array<std::vector<float>, 3> value;
     std::vector<float> grey, variance;
 };
-
-std::size_t pixel_at(int x, int y, int width) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-}
-
-Rgb floored(const Rgb& albedo) {
-    return {std::max(albedo.x, min_albedo), std::max(albedo.y, min_albedo), std::max(albedo.z, min_albedo)};
-}
 
 Field make_field(const Image& light, const std::vector<float>& variance, const Image& albedo) {
     Field field;
@@ -61,85 +43,6 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
 /// Direct light, then indirect light.
 using Fields = std::array<Field, 2>;
 std::size_t noisy_kinds(const PictureLayers& layers) { return layers.is_indirect_interpolated ? 1 : 2; }
-
-/// Distance between pixels, at least 1.
-float distance_of(int dx, int dy) { return std::max(1.0f, std::sqrt(static_cast<float>(dx * dx + dy * dy))); }
-
-using Vectors = std::array<std::vector<float>, 3>;
-
-Vectors coordinates(const Image& image) {
-    Vectors vectors;
-    for (int c = 0; c < 3; ++c)
-        for (const Rgb& v : image.pixels) vectors[static_cast<std::size_t>(c)].push_back(v[c]);
-    return vectors;
-}
-
-/// Geometry of the visible surface of each pixel.
-class Surfaces {
-  public:
-    explicit Surfaces(const PictureLayers& layers)
-        : width(layers.albedo.width),
-          height(layers.albedo.height),
-          normal_(coordinates(layers.normal)),
-          position_(coordinates(layers.position)) {
-        for (const float depth : layers.depth) {
-            footprint_.push_back(plane_scale * (depth * layers.pixel_angle + layers.pixel_size));
-            is_hit_.push_back(depth > 0 ? 1.0f : 0.0f);
-        }
-    }
-
-    /// Returns the weight of the pair of pixels i and k, `steps` apart: 1 if each lies in the tangent plane of the
-    /// other and the normals are equal, 0 without a surface.
-    float weight(std::size_t i, std::size_t k, float steps) const {
-        float turn2 = 0, above_i = 0, above_k = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const float turn = normal_[c][i] - normal_[c][k], step = position_[c][k] - position_[c][i];
-            turn2 += turn * turn;
-            above_i += step * normal_[c][i];
-            above_k += step * normal_[c][k];
-        }
-        constexpr float tiny = 1e-12f;
-        const float of_i = footprint_[i] * steps, of_k = footprint_[k] * steps;
-        const float height2 =
-            std::max(above_i * above_i / (of_i * of_i + tiny), above_k * above_k / (of_k * of_k + tiny));
-        return is_hit_[i] * is_hit_[k] * exp_minus(turn2 / normal_scale) * exp_minus(height2);
-    }
-
-    /// weight(i + n, k + n, steps) for all n below weights.size().
-    void weigh(std::size_t i, std::size_t k, float steps, std::span<float> weights) const {
-        std::array<float, 64> some;  // cannot overlap the arguments, so a compiler can use vector code
-        for (std::size_t begin = 0; begin < weights.size(); begin += some.size()) {
-            const std::size_t count = std::min(some.size(), weights.size() - begin);
-            for (std::size_t n = 0; n < count; ++n) some[n] = weight(i + begin + n, k + begin + n, steps);
-            std::copy_n(some.begin(), count, weights.begin() + static_cast<std::ptrdiff_t>(begin));
-        }
-    }
-
-    const int width, height;
-
-  private:
-    Vectors normal_, position_;
-    std::vector<float> footprint_, is_hit_;
-};
-
-/// Calls visit(k, weight) for each pixel k at most `radius` from (x, y) in both directions.
-template <class Visit>
-void visit_surface(const Surfaces& surfaces, int x, int y, int radius, const Visit& visit) {
-    const std::size_t i = pixel_at(x, y, surfaces.width);
-    for (int v = std::max(0, y - radius); v <= std::min(surfaces.height - 1, y + radius); ++v)
-        for (int u = std::max(0, x - radius); u <= std::min(surfaces.width - 1, x + radius); ++u) {
-            const std::size_t k = pixel_at(u, v, surfaces.width);
-            visit(k, surfaces.weight(i, k, distance_of(u - x, v - y)));
-        }
-}
-
-/// Calls visit(i, x, y) for all pixels.
-void for_pixels(const Surfaces& surfaces, const auto& visit) {
-    parallel_for_ranges(static_cast<std::size_t>(surfaces.height), 8, [&](std::size_t begin, std::size_t end) {
-        for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-            for (int x = 0; x < surfaces.width; ++x) visit(pixel_at(x, y, surfaces.width), x, y);
-    });
-}
 
 /// Averages each pixel over its neighbours on the same surface, so that the large variance at edges of objects does not
 /// spread.
@@ -331,7 +234,7 @@ void return_means(const Surfaces& surfaces, const Image& noisy, Image& filtered)
 
 }  // namespace
 
-Image denoise(const PictureLayers& layers) {
+Image own_filter(const PictureLayers& layers) {
     const auto height = static_cast<std::size_t>(layers.albedo.height);
     const Surfaces surfaces(layers);
     const std::array<Fields, 2> halves{make_fields(layers, surfaces, layers.halves[0]),
@@ -360,4 +263,4 @@ Image denoise(const PictureLayers& layers) {
     return picture;
 }
 
-}  // namespace interflect
+}  // namespace interflect::detail
