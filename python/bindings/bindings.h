@@ -26,7 +26,6 @@ namespace py = pybind11;
 void bind_errors(py::module_& module);
 void bind_scene_parts(py::module_& module);
 void bind_light_sources(py::module_& module);
-void bind_scene_parts(py::module_& module);
 void bind_scene(py::module_& module);
 void bind_files(py::module_& module);
 void bind_solution(py::module_& module);

@@ -203,7 +203,7 @@ TEST(MeasuringGrid, OfASurfaceFacesAsItDoes) {
     } catch (const InputError& e) {
         EXPECT_THAT(e.what(), HasSubstr("0,1,0; 0,-1,0"));
     }
-    EXPECT_EQ(find_surface(scene, "room.walls", V3f(0, -2, 0)).patches, std::vector<std::uint32_t>{3});
+    EXPECT_EQ(find_surface(scene, "room.walls", V3f(0, -2, 0)).patches, std::vector{PatchIndex(3)});
     EXPECT_THROW(find_surface(scene, "room.walls", V3f(0, 0, 1)), InputError);
     EXPECT_EQ(find_surface(scene, "room.desk").normal, V3f(0, 0, 1));
     EXPECT_EQ(find_surface(scene, "room.desk", V3f(0, 0, -1)).normal, V3f(0, 0, -1));
@@ -259,7 +259,7 @@ TEST(PlanarArea, IsDividedByObjects) {
     EXPECT_EQ(rooms[0].name, "large");
     EXPECT_NEAR(rooms[0].area, 2, 1e-6);
     EXPECT_EQ(rooms[1].name, "small.a");
-    EXPECT_EQ(rooms[1].patches, std::vector<std::uint32_t>{0});
+    EXPECT_EQ(rooms[1].patches, std::vector{PatchIndex(0)});
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     forest.subdivide(ElementIndex(7));
     std::vector<Rgb> irradiance(forest.size(), Rgb(1));
     for (PatchIndex patch(0); patch < forest.patch_count(); patch += 5) irradiance[patch] = Rgb(20);
-    const ElementIndex first = forest.first_child(EElementIndex(lementIndex)(7));
+    const ElementIndex first = forest.first_child(ElementIndex(7));
     irradiance[first + 1] = Rgb(30);
     irradiance[first + 3] = Rgb(40);
     pull(forest, irradiance);

@@ -126,9 +126,8 @@ TEST_P(RandomWalks, CountsWhatLeavesAnOpenScene) {
     const FormFactors f = exact_form_factors(scene);
     const std::vector<RgbD> exact = dense_irradiance(scene, f);
     RgbD escaping(0, 0, 0);
-    for (std::uint32_t i = 0; i < exact.size(); ++i) {
-        const RgbD radiosity = RgbD(Materials(scene).exitance(PatchIndex(i))) +
-                               RgbD(Materials(scene).reflectance(PatchIndex(i))) * exact[i];
+    for (PatchIndex i{0}; i < exact.size(); ++i) {
+        const RgbD radiosity = RgbD(Materials(scene).exitance(i)) + RgbD(Materials(scene).reflectance(i)) * exact[i];
         escaping += radiosity * (patch_area(scene, scene.patches[i]) * (1 - f.row_sum(i)));
     }
     const Runs sample(scene, [](std::uint64_t seed) { return walk_options(GetParam(), seed); });
@@ -174,10 +173,10 @@ TEST(RandomWalk, KeepsEnergy) {
         options.experimental.iterations = 1;
         const Solution s = solve(scene, RayCaster(scene), options);
         double received = 0, reflected = 0;
-        for (ElementIndex i{0}; i < s.forest->size(); ++i) {
+        for (PatchIndex i{0}; i < s.forest->patch_count(); ++i) {
             const Rgb power = s.irradiance[i] * s.forest->area(i);
             received += channel_sum(power);
-            reflected += channel_sum(Materials(scene).reflectance(PatchIndex(i)) * power);
+            reflected += channel_sum(Materials(scene).reflectance(i) * power);
         }
         const double emitted = channel_sum(s.emitted_power), escaped = channel_sum(s.iterations.back().escaped_power);
         EXPECT_NEAR((received + escaped) / (emitted + reflected), 1, 2e-3);
@@ -240,10 +239,9 @@ TEST(RandomWalk, MeasuresTheSameByLightAndByImportance) {
     const Runs sample(scene, [](std::uint64_t seed) { return walk_options(ImportanceUse::full, seed); });
     const auto ratio = [&](const Solution& s) {
         double by_light = 0, by_importance = 0;
-        for (ElementIndex i{0}; i < s.forest->size(); ++i) {
-            const double area = s.forest->area(i), v = s.view_importance[i],
-                         exitance = materials.exitance(PatchIndex(i)).x;
-            by_light += area * v * (exitance + materials.reflectance(PatchIndex(i)).x * s.irradiance[i].x);
+        for (PatchIndex i{0}; i < s.forest->patch_count(); ++i) {
+            const double area = s.forest->area(i), v = s.view_importance[i], exitance = materials.exitance(i).x;
+            by_light += area * v * (exitance + materials.reflectance(i).x * s.irradiance[i].x);
             by_importance += area * (v + s.indirect_importance[i]) * exitance;
         }
         return by_importance / by_light;
@@ -264,8 +262,8 @@ struct Picture {
     std::vector<double> luminances, shares;
 
     Picture(const Scene& scene, const Solution& s) {
-        for (ElementIndex i{0}; i < s.forest->size(); ++i) {
-            luminances.push_back(luminance(Materials(scene).reflectance(PatchIndex(i)) * s.irradiance[i]));
+        for (PatchIndex i{0}; i < s.forest->patch_count(); ++i) {
+            luminances.push_back(luminance(Materials(scene).reflectance(i) * s.irradiance[i]));
             shares.push_back(static_cast<double>(s.view_importance[i]) * s.forest->area(i));
         }
     }
