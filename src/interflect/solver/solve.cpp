@@ -99,7 +99,7 @@ void iterate_until(Run& run, const Limits& call_limits) {
 }  // namespace detail
 
 Solution solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& options, const Monitor& monitor) {
-    // The pointers own nothing, because both objects outlive the solver.
+    // The pointers do not own the objects, which outlive the solver.
     const std::shared_ptr<const Scene> shared_scene(std::shared_ptr<void>(), &scene);
     const std::shared_ptr<const RayCaster> shared_caster(std::shared_ptr<void>(), &ray_caster);
     Solver solver(shared_scene, options, shared_caster);

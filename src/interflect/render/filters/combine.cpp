@@ -17,10 +17,10 @@ namespace {
 constexpr int region_radius = 32;
 /// Half the width of the surroundings by whose light errors are divided [pixels].
 constexpr int level_radius = 4;
-/// Light that is added to that of the surroundings, relative to the picture's mean.
+/// Share of the picture's mean light that is added to the light of the surroundings.
 constexpr double least_level = 0.1;
-/// The largest is a mean with a standard deviation of 26 pixels on both axes: over 8,500 pixels, whose noise is 1.1% of
-/// that of a pixel.
+/// The largest is a mean with a standard deviation of 26 pixels on both axes: over 8,500 pixels, with 1.1% of the noise
+/// of a pixel.
 constexpr int scales = 6;
 
 /// Means of light over a pixel's neighbours on the same surface, `spacing` pixels apart: a step of an edge-avoiding

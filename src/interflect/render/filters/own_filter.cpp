@@ -44,8 +44,7 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
 using Fields = std::array<Field, 2>;
 std::size_t noisy_kinds(const PictureLayers& layers) { return layers.is_indirect_interpolated ? 1 : 2; }
 
-/// Averages each pixel over its neighbours on the same surface, so that the large variance at edges of objects does not
-/// spread.
+/// Averages each pixel over its neighbours on the same surface. The large variance at edges of objects must not spread.
 std::vector<float> surface_mean(const Surfaces& surfaces, const std::vector<float>& values) {
     std::vector<float> means(values.size());
     for_pixels(surfaces, [&](std::size_t i, int x, int y) {

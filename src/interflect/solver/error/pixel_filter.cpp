@@ -9,8 +9,8 @@ namespace interflect::detail {
 namespace {
 
 /// Return the share of the variance of a piecewise constant signal that remains after a box filter of width 1; `a` is
-/// the length of a piece. The pieces of shown_of_steps() are independent. Those of shown_of_pairs() form pairs of
-/// opposite values.
+/// the length of a piece. The pieces of shown_of_steps() are independent; shown_of_pairs() has pairs of pieces
+/// with opposite values.
 float shown_of_steps(float a) { return a > 1 ? 1 - 1 / (3 * a) : a * (1 - a / 3); }
 float shown_of_pairs(float a) {
     if (a > 1) return 1 - 1 / (2 * a);

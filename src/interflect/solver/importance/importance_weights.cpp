@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Share by which Neighbourhoods::smooth() moves the mean of a neighbourhood towards that of the next larger one.
+/// Share by which Neighbourhoods::smooth() moves the mean of a neighbourhood towards the mean of the next larger one.
 constexpr float taken_over = 0.3f;
 
 /// Importance that the rays of a box of Emission found, and the factor of the weights of its parts.

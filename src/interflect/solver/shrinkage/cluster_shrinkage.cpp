@@ -241,7 +241,7 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
 
 /// Restores the means of regions of the pictures. Shrinkage preserves the mean over the area of a cluster, but its
 /// visible patches may be brighter than its hidden patches. Scales the uncertain light of visible patches to restore
-/// the mean of the pictures, and that of hidden patches to preserve the power.
+/// the mean of the pictures, and the light of hidden patches to preserve the power.
 void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vector<Rgb>& means) const {
     const ElementForest& forest = *light_->forest;
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();

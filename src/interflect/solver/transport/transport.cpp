@@ -246,7 +246,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     received.escaped_rays = escaped.rays;
     received.escaped_power = data.contribution_units.power.to_colour(escaped.power);
     // Skies and suns send rays through the box of the scene and through the boxes of targets within it (Emission). Each
-    // line is sampled from one box only, so the power of targets is also part of that of the scene's box.
+    // line is sampled from one box only, so the power of the scene's box includes the power of targets.
     if (step.emission) {
         received.shot_power -= step.emission->repeated_power();
         received.escaped_power -= step.emission->repeated_power();

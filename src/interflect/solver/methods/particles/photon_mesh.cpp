@@ -137,8 +137,8 @@ void PhotonMesh::refine(SolverState& state) {
     state.light.discarded_hits = discarded_share(forest);
 }
 
-/// Returns the share of discarded hits. The hits of an element before its division belong to none of its quarters, so
-/// they are lost when the quarters become elements.
+/// Returns the share of discarded hits. The hits of an element before its division are not divided among its
+/// quarters. They are lost when the quarters become elements.
 double PhotonMesh::discarded_share(const ElementForest& forest) const {
     double discarded = 0, all = 0;
     for (ElementIndex e{0}; e < forest.size(); ++e) {

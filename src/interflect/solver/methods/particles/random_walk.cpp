@@ -24,8 +24,7 @@ Estimate independent_contributions(const LightState& light, const BatchResult& b
     return estimate;
 }
 
-/// Returns the importance psi that controls the density of particles: that of Eq. 10 or, with total_importance, of
-/// Eq. 9.
+/// Returns the importance that controls the density of particles: psi of Eq. 10 or, with total_importance, of Eq. 9.
 std::vector<float> leading_importance(const Solution& so_far) {
     switch (importance_use(so_far)) {
         case ImportanceUse::off:
