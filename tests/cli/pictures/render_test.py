@@ -1,9 +1,11 @@
 """Pictures: reproducible, of the requested view, and labelled with their origin."""
 
 import math
+import os
 import re
 import struct
 import unittest
+import unittest.mock
 
 from command import BAD_INPUT, LARGE, PAINT, SMALL, SOLVED, VIEW, WRONG_USAGE, CommandTest, RenderTest, room, vertices
 
@@ -384,6 +386,15 @@ class SampledLight(RenderTest):
                 pictures[option] = self.bytes(f"out.{kind}")
             self.assertEqual(pictures[""], pictures["--denoise" if filtered else "--no-denoise"])
             self.assertNotEqual(pictures["--denoise"], pictures["--no-denoise"])
+
+    def test_the_own_filter_replaces_a_library_that_cannot_be_loaded(self):
+        self.enterContext(unittest.mock.patch.dict(os.environ, INTERFLECT_OIDN="none"))
+        options = ("render", "room.h5", *SMALL, *VIEW)
+        refused = self.interflect(*options, "-o", "no.png", "--denoise=oidn", exit_code=WRONG_USAGE)
+        self.assertIn("INTERFLECT_OIDN: cannot load", refused.stderr)
+        for filter_name in ("auto", "own"):
+            self.interflect(*options, "-o", f"{filter_name}.png", f"--denoise={filter_name}")
+        self.assertEqual(self.bytes("auto.png"), self.bytes("own.png"))
 
     def test_layers_lie_beside_the_picture(self):
         self.gathered("out.exr", "--layers")

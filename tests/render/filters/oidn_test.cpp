@@ -88,6 +88,11 @@ TEST_F(WithOidn, GivesTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(images[0].pixels, images[1].pixels);
 }
 
+TEST_F(WithOidn, LeavesDarknessBlack) {
+    const PictureLayers layers = wall(64);
+    EXPECT_EQ(denoise(layers, Denoiser::oidn).image.pixels, layers.emitted.pixels);
+}
+
 /// Emitters and the sky are not filtered.
 TEST_F(WithOidn, LeavesEmittedLight) {
     PictureLayers layers = noisy_wall(32);

@@ -131,6 +131,7 @@ TEST(QuantityPicture, HasTheQuantityOfASolution) {
     PictureOptions options;
     options.width = 4;
     options.height = 2;
+    options.samples = 1;
     const auto drawn = [&](ElementQuantity quantity) {
         return draw_quantity(scene, solution, ray_caster, view, quantity, options).values.pixels;
     };

@@ -56,6 +56,11 @@ Image white_surfaces(const PictureLayers& layers) {
     return white;
 }
 
+/// The library would add a little light, which an automatic exposure shows.
+bool is_black(const Image& light) {
+    return std::all_of(light.pixels.begin(), light.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0); });
+}
+
 DenoisedPicture denoise_by_oidn(const PictureLayers& layers, const std::shared_ptr<const Oidn>& library) {
     constexpr float largest = std::numeric_limits<float>::max();
     const Image albedo = clamped(layers.albedo, least_albedo, 1);
@@ -63,7 +68,7 @@ DenoisedPicture denoise_by_oidn(const PictureLayers& layers, const std::shared_p
     std::array<Image, 2> noisy, filtered;
     for (std::size_t h = 0; h < 2; ++h) {
         noisy[h] = quotients(reflected_light(layers.halves[h]), albedo);
-        filtered[h] = filter(clamped(noisy[h], 0, largest));
+        filtered[h] = is_black(noisy[h]) ? noisy[h] : filter(clamped(noisy[h], 0, largest));
     }
     const CombinedLight combined = combine(Surfaces(layers), albedo, noisy, filtered);
 
