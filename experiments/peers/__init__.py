@@ -29,5 +29,7 @@ def main(
         for name in names:
             bench.measure(name, all_series())
     figures = out / "figures" if out else program.ROOT / "docs/figures"
+    if not table.is_file():
+        raise program.ExperimentError(f"{table} is missing: no picture was measured")
     page.write(table, figures)
     print((figures / "peers-times.md").read_text(), end="")

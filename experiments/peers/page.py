@@ -20,8 +20,6 @@ CAPTION = """Pictures of {size} pixels: relative root mean square error of the l
 
 def write(table: Path, folder: Path) -> None:
     rows = results.read_csv(table, TEXTS)
-    if not rows:
-        return
     small = min((row["size"] for row in rows), key=lambda size: int(size.partition("x")[0]))
     draw_curves([row for row in rows if row["size"] == small and row["scene"] in SCENES], folder, small)
     write_rows(rows, folder / "peers.md", small)
@@ -47,8 +45,9 @@ def draw_curves(rows: list[dict], folder: Path, size: str) -> None:
         for row in (row for row in found if (row["series"], row["settings"]) == (OURS, DEFAULT)):
             style = {"markersize": 11, "markerfacecolor": "none", "markeredgecolor": "#333333", "linestyle": "none"}
             axes.plot([row["seconds"]], [100 * max(row["pixels"], SMALLEST)], marker="o", **style)
+        axes.set_yscale("log")
         axes.set_ylim(top=min(LARGEST, axes.get_ylim()[1]))
-        drawing.logarithmic(axes, "seconds", "relative RMS error of pixels [%]")
+        drawing.logarithmic(axes, "time of the whole process [s]", "relative RMS error of pixels [%]")
         axes.set_title(name)
     most = max(range(len(scenes)), key=lambda k: len(panels[k].get_lines()))
     drawing.shared_legend(figure, panels[most], 5)
