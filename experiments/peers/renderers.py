@@ -19,7 +19,8 @@ RENDERPARK = "RENDERPARK"  # environment variable: the program rpk
 HERE = Path(__file__).parent
 RADIANCE_SIDE = 2  # camera rays per pixel along each axis
 RENDERPARK_SIDE = 2  # it draws the centre of each pixel, so a larger picture is reduced
-RENDERPARK_EFFICACY = 179  # [lm/W], by which it divides the light of MGF files
+# Exitance of white lamps in MGF files over the one that RenderPark prints for them [lm/W], in two scenes.
+RENDERPARK_EFFICACY = 183.07
 
 
 @dataclass(frozen=True)

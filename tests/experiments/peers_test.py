@@ -196,7 +196,7 @@ class Programs(CommandTest):
         self.check(renderers.by_radiance, f"{bench.CACHES[0]} {bench.ACCURATE}", 0.05)
 
     def test_renderpark(self):
-        self.check(renderers.by_renderpark, f"{bench.STOCHASTIC_JACOBI} -srr-ray-units 100 -srr-epsilon 1e-4", 0.05)
+        self.check(renderers.by_renderpark, f"{bench.STOCHASTIC_JACOBI} -srr-ray-units 30 -srr-epsilon 5e-4", 0.05)
 
 
 class SmallBench(CommandTest):
