@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -95,21 +96,33 @@ def run(program: Program, arguments: list[str]) -> Finished:
 
     Raises ExperimentError with the command and the end of its messages on failure, KeyboardInterrupt on interruption.
     """
+    command = [program.path, *(prepared(program, argument) for argument in arguments)]
+    exit_code, finished = launch(command)
+    if exit_code in (INTERRUPTED, -signal.SIGINT):
+        raise KeyboardInterrupt
+    if exit_code != 0:
+        said = "\n".join(finished.messages.splitlines()[-5:])
+        raise ExperimentError(f"interflect {' '.join(arguments)}\nended with exit code {exit_code}:\n{said}")
+    return finished
+
+
+def launch(command: Sequence[str | Path], environment: Mapping[str, str] | None = None) -> tuple[int, Finished]:
+    """Runs a command, whose first word is a path, in the repository's root. Returns its exit code and its cost.
+
+    @param environment  Variables that are added to those of this process.
+    """
     with tempfile.NamedTemporaryFile("r") as report:
-        launch = [sys.executable, "-I", "-S", Path(__file__).with_name("launch.py"), report.name]
-        command = [*launch, program.path, *(prepared(program, argument) for argument in arguments)]
-        process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        launcher = [sys.executable, "-I", "-S", Path(__file__).with_name("launch.py"), report.name]
+        variables = os.environ | (environment or {})
+        process = subprocess.Popen(
+            [*launcher, *command], cwd=ROOT, env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
         try:
             output, messages = process.communicate()
         finally:
             process.wait()  # on Ctrl-C the command ends by itself, and removes its temporary files
         cost = json.loads(report.read())
-    if cost["exit_code"] in (INTERRUPTED, -signal.SIGINT):
-        raise KeyboardInterrupt
-    if cost["exit_code"] != 0:
-        said = "\n".join(messages.splitlines()[-5:])
-        raise ExperimentError(f"interflect {' '.join(arguments)}\nended with exit code {cost['exit_code']}:\n{said}")
-    return Finished(output, messages, cost["seconds"], cost["processor_seconds"], cost["peak_mib"])
+    return cost["exit_code"], Finished(output, messages, cost["seconds"], cost["processor_seconds"], cost["peak_mib"])
 
 
 def read_stats(path: Path) -> tuple[dict, dict]:
