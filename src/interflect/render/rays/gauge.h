@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "interflect/core.h"
-#include "interflect/scene.h"
+#include "interflect/indices.h"
 
 namespace interflect::detail {
 
