@@ -86,7 +86,7 @@ PictureLayers layers_of(std::span<const PlacedGrid> grids, std::span<const Gauge
         });
     for (std::size_t g = 0; g < grids.size(); ++g)
         grids[g].visit_points([&](std::uint32_t point, int x, int y) {
-            const auto i = static_cast<std::size_t>(y * width + x);
+            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
             layers.depth[i] = 1;
             layers.albedo.pixels[i] = Rgb(1);
             layers.normal.pixels[i] = gauges[point].normal;
