@@ -50,7 +50,7 @@ struct DenoisedPicture {
 
 /// Removes noise from a picture drawn by paths.
 /// @return  The same bits for any number of threads on one kind of processor.
-/// @throws InputError for `oidn` without its library, std::runtime_error if the library fails.
+/// @throws InputError for the filter oidn without its library, std::runtime_error if the library fails.
 DenoisedPicture denoise(const PictureLayers& layers, Denoiser denoiser = Denoiser::automatic);
 
 /// Library of Denoiser::oidn.
