@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cmath>
 #include <random>
-#include <thread>
 
 #include "interflect/core.h"
 #include "tests/support/scenes/scenes.h"
@@ -91,33 +90,6 @@ std::vector<std::array<std::uint32_t, 4>> described(const ElementForest& forest)
     for (ElementIndex e{0}; e < forest.size(); ++e)
         d.push_back({forest.patch(e), forest.path(e), forest.parent(e), forest.first_child(e)});
     return d;
-}
-
-TEST(Forest, ThreadsThatSubdivideTogetherMakeTheForestThatOneMakes) {
-    const Scene scene = testing_support::closed_box({1, 2, 3}, 3, {Material{"grey", Rgb(0.5f), Rgb(1)}});
-    // Refines to level 4 around random points; threads with the same seed compete for the same elements.
-    const auto refine = [](ElementForest& forest, unsigned seed) {
-        std::mt19937 random(seed);
-        std::uniform_real_distribution<float> uniform(0, 1);
-        for (int i = 0; i < 500; ++i) {
-            ElementIndex e(random() % 8);
-            const Parameters p{uniform(random), uniform(random)};
-            Cell cell;
-            for (int level = 0; level < 4; ++level) {
-                const unsigned k = cell.child_at(p, false);
-                cell = cell.child(k, false);
-                e = forest.subdivide(e) + k;
-            }
-        }
-    };
-    ElementForest by_one(scene, capacity), by_many(scene, capacity);
-    for (unsigned t = 0; t < 4; ++t) refine(by_one, t % 2);
-    std::vector<std::thread> threads;
-    for (unsigned t = 0; t < 4; ++t) threads.emplace_back([&, t] { refine(by_many, t % 2); });
-    for (std::thread& thread : threads) thread.join();
-    by_one.put_in_order(by_one.patch_count());
-    by_many.put_in_order(by_many.patch_count());
-    EXPECT_EQ(described(by_one), described(by_many));
 }
 
 TEST(Forest, IsTheSameWhateverTheOrderOfSubdivision) {

@@ -8,13 +8,12 @@
 
 #include <cmath>
 #include <filesystem>
-#include <thread>
 #include <vector>
 
 #include "interflect/elements/forest.h"
 #include "interflect/solve.h"
 #include "interflect/solver.h"
-#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/scenes/scenes.h"
 
 namespace interflect {
@@ -84,23 +83,6 @@ TEST(Leaves, AreInTheWorld) {
 TEST(Leaves, OfAnotherSceneAreRefused) {
     const Scene scene = distant_room();
     EXPECT_THROW(leaves(colourful_box(), solved(scene)), InputError);
-}
-
-TEST(Solver, ConstFunctionsMayBeCalledFromSeveralThreads) {
-    const TemporaryFolder folder;
-    Solver solver(furnished_room(), {.limits = {.rays = 100'000}});
-    solver.advance({});
-    const Solver& run = solver;
-    std::vector<std::vector<Rgb>> seen(4);
-    std::vector<std::thread> threads;
-    for (std::size_t i = 0; i < seen.size(); ++i)
-        threads.emplace_back([&, i] {
-            if (i % 2 == 0) run.save(folder.path() / (std::to_string(i) + ".h5"));
-            seen[i] = run.solution().irradiance;
-        });
-    for (std::thread& thread : threads) thread.join();
-    for (const std::vector<Rgb>& irradiance : seen) EXPECT_EQ(irradiance, seen[0]);
-    EXPECT_EQ(Solver::open(folder.path() / "0.h5").solution().irradiance, seen[0]);
 }
 
 TEST(Solver, SharedSolutionsOutliveChanges) {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <random>
 
-#include "interflect/base/threads/parallel.h"
 #include "tests/support/parameter_names.h"
 
 namespace interflect {
@@ -43,18 +42,6 @@ TEST(FixedPoint, SumDoesNotDependOnTheOrder) {
         std::shuffle(colours.begin(), colours.end(), std::mt19937(seed));
         EXPECT_EQ(sum_in_order(fixed_point, colours), sum);
     }
-}
-
-TEST(FixedPoint, SumDoesNotDependOnTheThreads) {
-    const std::vector<RgbD> colours = random_colours(100'000);
-    const FixedPoint fixed_point(sum_of_channels(colours));
-    std::array<FixedPoint::Value, 3> sums{};
-    parallel_for_ranges(colours.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) add_concurrently(sums[1], fixed_point.from(colours[i]));
-    });
-    EXPECT_EQ(sums[1], sum_in_order(fixed_point, colours));
-    EXPECT_EQ(sums[0], FixedPoint::Value{});
-    EXPECT_EQ(sums[2], FixedPoint::Value{});
 }
 
 TEST(FixedPoint, IsAsPreciseAsDoublesForAMillionTerms) {

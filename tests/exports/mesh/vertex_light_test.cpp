@@ -3,7 +3,6 @@
 #include "interflect/exports/vertices/vertex_light.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <cmath>
 #include <numeric>
@@ -180,21 +179,6 @@ TEST(VertexLight, IsEvenInAFurnace) {
         }
         EXPECT_NEAR(std::accumulate(means.begin(), means.end(), 0.0) / 8, 0, 2e-3) << static_cast<int>(shading);
     }
-}
-
-TEST(VertexLight, HasTheSameBitsForAnyNumberOfThreads) {
-    const Scene scene = lit_floor(false);
-    const Solution solution = lightmap_testing::uniform(scene, 10);
-    const auto values = [&] {
-        VertexLight light = make_vertex_light(scene, solution, {});
-        std::vector<float> all;
-        for (const MeshTriangle& triangle : triangles_of(light))
-            for (const MeshCorner& corner : triangle) all.push_back(corner.irradiance.x);
-        return all;
-    };
-    const std::vector<float> usual = values();
-    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-    EXPECT_EQ(values(), usual);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "interflect/render.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <atomic>
 #include <functional>
@@ -305,29 +304,6 @@ struct Room {
         Lamp{1, 2, 1, 1, 0.7}.add_to(scene, add_material(scene, Rgb(0.6f, 0.4f, 0.2f), Rgb(0, 0, 0)), true);
     }
 };
-
-TEST(PathTracer, SameBitsForAnyNumberOfThreads) {
-    const Room room;
-    for (const double until : {0.0, 0.05}) {
-        std::vector<Rendering> runs;
-        for (const std::size_t threads : {1, 2, 5}) {
-            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-            runs.push_back(render(room.scene, RayCaster(room.scene), room.view,
-                                  {.width = 48,
-                                   .height = 27,
-                                   .shading = Shading::path,
-                                   .samples = 16,
-                                   .max_samples = 64,
-                                   .until = until}));
-        }
-        for (const Rendering& run : runs) {
-            EXPECT_EQ(run.image.pixels, runs[0].image.pixels);
-            EXPECT_EQ(run.standard_error.pixels, runs[0].standard_error.pixels);
-            EXPECT_EQ(run.rays, runs[0].rays);
-        }
-        EXPECT_GT(runs[0].paths, until > 0 ? 48 * 27 * 16 : 0);
-    }
-}
 
 /// The spread of the pictures matches their reported standard errors. In each run, the mean over the pixels of the
 /// squared deviation from the mean picture, less the squared standard error, has expectation 0.

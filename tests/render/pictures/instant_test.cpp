@@ -6,7 +6,6 @@
 // - distances that end at panes; walks that end there; emission of covered parts of a lamp;
 // - the same lights for all batches.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <atomic>
@@ -230,28 +229,6 @@ TEST(Instant, StandardErrorIncludesThatOfTheLights) {
     EXPECT_GT(p(1), false_alarm);
     EXPECT_LT(p(0.8), false_alarm);
     EXPECT_LT(p(1.25), false_alarm);
-}
-
-TEST(Instant, SameBitsForAnyNumberOfThreads) {
-    const House house;
-    std::vector<Rendering> runs;
-    for (const std::size_t threads : {1, 2, 5}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        runs.push_back(render(house.scene, RayCaster(house.scene), house.view,
-                              {.width = 32,
-                               .height = 18,
-                               .shading = Shading::instant,
-                               .samples = 16,
-                               .max_samples = 64,
-                               .until = 0.1,
-                               .light_walks = 2000}));
-    }
-    for (const Rendering& run : runs) {
-        EXPECT_EQ(run.image.pixels, runs[0].image.pixels);
-        EXPECT_EQ(run.standard_error.pixels, runs[0].standard_error.pixels);
-        EXPECT_EQ(run.rays, runs[0].rays);
-    }
-    EXPECT_GT(runs[0].paths, 32 * 18 * 16);
 }
 
 TEST(Instant, WithoutLightIsBlack) {

@@ -1,7 +1,6 @@
 #include "interflect/render/pictures/quantity_picture.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <limits>
 #include <memory>
@@ -94,17 +93,6 @@ TEST(QuantityPicture, CountsWhatIsNotFiniteAndDoesNotHideIt) {
     EXPECT_EQ(picture.scale.high, 2);
     EXPECT_FALSE(is_finite(picture.shown.at(0, 0)));
     EXPECT_FALSE(is_finite(picture.shown.at(1, 0)));
-}
-
-TEST(QuantityPicture, SameBitsForAnyNumberOfThreads) {
-    const HalfPicture half;
-    std::vector<std::vector<Rgb>> pictures;
-    for (const std::size_t threads : {1, 2, 5}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        pictures.push_back(half.picture(values, Spacing::logarithmic, {.width = 160, .height = 90}).shown.pixels);
-    }
-    EXPECT_EQ(pictures[0], pictures[1]);
-    EXPECT_EQ(pictures[0], pictures[2]);
 }
 
 TEST(QuantityPicture, IsNamedWithItsUnit) {

@@ -1,7 +1,6 @@
 #include "interflect/render/render_elements.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <atomic>
 #include <limits>
@@ -175,22 +174,6 @@ struct UnevenBox {
             irradiance.push_back(Rgb(1, 2, 3) * static_cast<float>(1 + i % 7));
     }
 };
-
-TEST_P(FlatAndSmooth, SameBitsForAnyNumberOfThreads) {
-    const UnevenBox box;
-    ElementForest forest(box.scene, 10'000);
-    for (ElementIndex e{0}; forest.size() < 5'000; e += 3) forest.subdivide(e);
-    std::vector<Rgb> h;
-    for (ElementIndex e{0}; e < forest.size(); ++e) h.push_back(Rgb(1, 2, 3) * static_cast<float>(1 + e % 7));
-    std::vector<std::vector<Rgb>> pictures;
-    for (const std::size_t threads : {1, 2, 5}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        const PictureOptions options{.width = 160, .height = 90, .shading = GetParam()};
-        pictures.push_back(render(box.scene, forest, RayCaster(box.scene), box.view, h, options).image.pixels);
-    }
-    EXPECT_EQ(pictures[0], pictures[1]);
-    EXPECT_EQ(pictures[0], pictures[2]);
-}
 
 TEST(Render, SeedMovesTheRaysAndNothingElse) {
     const UnevenBox box;

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/support/rooms/reference_rooms.h"
 
 namespace interflect {
 namespace {

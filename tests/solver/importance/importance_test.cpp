@@ -8,7 +8,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
-#include "tests/solver/rooms/variants.h"
+#include "tests/support/rooms/variants.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 

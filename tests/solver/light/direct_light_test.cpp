@@ -14,7 +14,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/solve.h"
 #include "interflect/solver.h"
-#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 

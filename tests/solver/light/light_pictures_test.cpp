@@ -9,7 +9,7 @@
 
 #include "interflect/render/render_elements.h"
 #include "interflect/solve.h"
-#include "tests/solver/rooms/room_with_window.h"
+#include "tests/support/rooms/room_with_window.h"
 
 namespace interflect {
 namespace {

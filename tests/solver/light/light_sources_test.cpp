@@ -17,7 +17,7 @@
 #include "interflect/luminaires/emission.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
-#include "tests/solver/rooms/room_with_window.h"
+#include "tests/support/rooms/room_with_window.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/parameter_names.h"
 #include "tests/support/release_only.h"

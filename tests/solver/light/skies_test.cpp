@@ -13,7 +13,7 @@
 #include "interflect/measure.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
-#include "tests/solver/rooms/room_with_window.h"
+#include "tests/support/rooms/room_with_window.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/scenes/skies.h"
 #include "tests/support/statistics.h"

@@ -6,7 +6,6 @@
 // or importance lacks rho.
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -23,7 +22,7 @@
 #include "interflect/solver/methods/links/first_links.h"
 #include "interflect/solver/methods/links/link_radiosity.h"
 #include "interflect/solver/methods/links/patch_tree.h"
-#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/scenes/scenes.h"
 
 namespace interflect {
@@ -318,21 +317,6 @@ TEST(ClusterLinks, AreNotMadeIfThePatchesAreFew) {
     SolveOptions without = with;
     without.experimental.clusters = false;
     EXPECT_EQ(solve_scene(scene, with).irradiance, solve_scene(scene, without).irradiance);
-}
-
-TEST(ClusterLinks, HaveTheSameBitsForAnyNumberOfThreads) {
-    const Scene scene = soup(150, 0.1f);
-    SolveOptions options = unrefined(true);
-    options.method.refines = true;
-    options.limits.rays = 300'000;
-    const auto solved_with = [&](std::size_t threads) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        return solve_scene(scene, options);
-    };
-    const Solution one = solved_with(1), three = solved_with(3);
-    ASSERT_EQ(one.forest->size(), three.forest->size());
-    EXPECT_GT(one.forest->size(), one.forest->patch_count());
-    EXPECT_EQ(one.irradiance, three.irradiance);
 }
 
 TEST(ClusterLinks, TransportImportanceAsLight) {

@@ -12,7 +12,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -26,7 +25,7 @@
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/methods/links/exchange.h"
-#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/parameter_names.h"
@@ -368,20 +367,6 @@ TEST(LinkRadiosity, StopsWhenAskedAndAtItsLimits) {
     EXPECT_TRUE(s.interrupted);
     EXPECT_EQ(s.iterations.size(), 2u);
     EXPECT_GT(s.irradiance[0].x, 0);
-}
-
-TEST(LinkRadiosity, HasTheSameBitsForAnyNumberOfThreads) {
-    const Scene scene = furnished_room();
-    const auto solved_with = [&](std::size_t threads) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        return solve_scene(scene, refined_to(1e-3));
-    };
-    const Solution one = solved_with(1), two = solved_with(2);
-    ASSERT_EQ(one.forest->size(), two.forest->size());
-    for (ElementIndex e{0}; e < one.forest->size(); ++e) {
-        ASSERT_EQ(one.forest->path(e), two.forest->path(e));
-        ASSERT_EQ(one.irradiance[e], two.irradiance[e]);
-    }
 }
 
 // Importance.

@@ -9,7 +9,6 @@
 // start anywhere on the leaf, or quarters are compared as if their areas were equal.
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <array>
 #include <cmath>
@@ -21,7 +20,7 @@
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/methods/particles/photon_mesh.h"
-#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -250,20 +249,6 @@ TEST(PhotonMesh, CountsDiscardedHits) {
     options.refinement.min_area = 0.1;
     EXPECT_EQ(solve(floor.scene, RayCaster(floor.scene), options).iterations.back().discarded_hits, 0)
         << "nothing is divided twice";
-}
-
-TEST(PhotonMesh, GivesTheSameBitsForAnyNumberOfThreads) {
-    const Scene scene = lamp_in_a_room();
-    const RayCaster ray_caster(scene);
-    const auto on_threads = [&](std::size_t threads) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return solve(scene, ray_caster, mesh_options(300'000));
-    };
-    const Solution one = on_threads(1), two = on_threads(2);
-    EXPECT_EQ(one.irradiance, two.irradiance);
-    EXPECT_EQ(one.rays, two.rays);
-    EXPECT_EQ(one.iterations.back().discarded_hits, two.iterations.back().discarded_hits);
-    EXPECT_NE(one.irradiance, solve(scene, ray_caster, mesh_options(300'000, 2)).irradiance);
 }
 
 }  // namespace

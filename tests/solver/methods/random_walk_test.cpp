@@ -12,7 +12,6 @@
 // the same random numbers pass, because these are used for particles at other places.
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +22,8 @@
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
-#include "tests/solver/rooms/reference_rooms.h"
-#include "tests/solver/rooms/variants.h"
+#include "tests/support/rooms/reference_rooms.h"
+#include "tests/support/rooms/variants.h"
 #include "tests/support/parameter_names.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
@@ -180,22 +179,6 @@ TEST(RandomWalk, KeepsEnergy) {
         }
         const double emitted = channel_sum(s.emitted_power), escaped = channel_sum(s.iterations.back().escaped_power);
         EXPECT_NEAR((received + escaped) / (emitted + reflected), 1, 2e-3);
-    }
-}
-
-TEST(RandomWalk, GivesTheSameBitsForAnyNumberOfThreads) {
-    const Scene scene = colourful_box();
-    const RayCaster ray_caster(scene);
-    for (const ImportanceUse use : {ImportanceUse::off, ImportanceUse::full}) {
-        const auto on_threads = [&](std::size_t threads) {
-            const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-            return solve(scene, ray_caster, walk_options(use, 1));
-        };
-        const Solution one = on_threads(1), two = on_threads(2);
-        EXPECT_EQ(one.irradiance, two.irradiance);
-        EXPECT_EQ(one.indirect_importance, two.indirect_importance);
-        EXPECT_EQ(one.rays, two.rays);
-        EXPECT_NE(one.irradiance, solve(scene, ray_caster, walk_options(use, 2)).irradiance);
     }
 }
 

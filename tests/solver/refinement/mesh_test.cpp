@@ -10,7 +10,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/solve.h"
-#include "tests/solver/rooms/variants.h"
+#include "tests/support/rooms/variants.h"
 #include "tests/support/scenes/scenes.h"
 
 namespace interflect {

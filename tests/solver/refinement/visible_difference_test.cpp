@@ -232,14 +232,6 @@ TEST(PerceptualRefinement, NeedsFewerElements) {
     EXPECT_LT(visible.iterations.back().elements, 0.85 * static_cast<double>(variance.iterations.back().elements));
 }
 
-TEST(PerceptualRefinement, HasTheSameBitsForAnyNumberOfThreads) {
-    const auto on_threads = [](std::size_t threads) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return solved(RefinementCriterion::perceptual);
-    };
-    EXPECT_EQ(on_threads(1).irradiance, on_threads(2).irradiance);
-}
-
 /// The criterion refers to pictures, so it needs full importance.
 TEST(PerceptualRefinement, IsRefusedWithoutPictures) {
     const Scene scene = cube();

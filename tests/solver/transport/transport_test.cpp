@@ -12,7 +12,7 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/solver/sampling/probabilities.h"
-#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 

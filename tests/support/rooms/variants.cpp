@@ -1,4 +1,4 @@
-#include "tests/solver/rooms/variants.h"
+#include "tests/support/rooms/variants.h"
 
 #include <algorithm>
 #include <iterator>
@@ -78,12 +78,6 @@ std::vector<Variant> variants_that_keep_every_ray() { return {plain("wdrs"), pla
 
 std::vector<Variant> variants_with_importance() {
     return those([](const Method& method) { return method.importance != ImportanceUse::off; });
-}
-
-std::vector<Variant> variants_that_refine() {
-    std::vector<Variant> variants = those([](const Method& method) { return method.refines; });
-    for (const char* method : {"hwdrs", "ihwdrs"}) variants.push_back(plain(method));
-    return variants;
 }
 
 std::vector<Variant> extreme_variants() {

@@ -1,4 +1,4 @@
-#include "tests/solver/rooms/reference_rooms.h"
+#include "tests/support/rooms/reference_rooms.h"
 
 #include <cmath>
 

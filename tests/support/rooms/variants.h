@@ -24,7 +24,6 @@ std::vector<Variant> stochastic_variants();
 /// Returns the stochastic methods of neither kind, without options. Each traces light to its end.
 std::vector<Variant> variants_of_other_methods();
 std::vector<Variant> variants_with_importance();
-std::vector<Variant> variants_that_refine();
 
 /// Returns importance-driven variants with options at the ends of their ranges.
 std::vector<Variant> extreme_variants();

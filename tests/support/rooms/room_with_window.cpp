@@ -1,4 +1,4 @@
-#include "tests/solver/rooms/room_with_window.h"
+#include "tests/support/rooms/room_with_window.h"
 
 #include "tests/support/scenes/scenes.h"
 
