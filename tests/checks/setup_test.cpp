@@ -448,7 +448,7 @@ TEST(Setup, IsSoundInMadeScenes) {
 }
 
 TEST(Setup, IsSoundInTheScenesOfTheRepository) {
-    const std::filesystem::path scenes = std::filesystem::path(INTERFLECT_SOURCE_FOLDER) / "scenes";
+    const std::filesystem::path scenes = repository() / "scenes";
     const PlacedLuminaire pendant{.file = scenes / "pendant.ies", .position = {2.5, 2, 2.2}};
     EXPECT_THAT(kinds(load_scene(scenes / "office.mgf", {}, {&pendant, 1})), IsEmpty());
 #ifdef INTERFLECT_HAS_REAL_SCENES

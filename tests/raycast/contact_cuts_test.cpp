@@ -88,7 +88,7 @@ TEST(ContactCuts, MadeScenesStayAsTheyAre) {
     for (const float turn : {0.0f, 30.0f}) expect_unchanged(make_two_rooms({.turn = turn, .furniture = true}));
 }
 
-TEST(ContactCuts, TheOfficeStaysAsItIs) { expect_unchanged(load_scene(INTERFLECT_SOURCE_FOLDER "/scenes/office.mgf")); }
+TEST(ContactCuts, TheOfficeStaysAsItIs) { expect_unchanged(load_scene(repository() / "scenes/office.mgf")); }
 
 #ifdef INTERFLECT_HAS_REAL_SCENES
 TEST(ContactCuts, RealScenesStayAsTheyAre) {

@@ -118,7 +118,7 @@ TEST(MeasuredLuminaire, HasTheIntensitiesOfItsFile) {
     constexpr double distance = 600;
     Warnings warnings;
     const auto web = std::make_shared<PhotometricWeb>(
-        load_photometric_web(INTERFLECT_SOURCE_FOLDER "/scenes/pendant.ies", {}, warnings));
+        load_photometric_web(repository() / "scenes/pendant.ies", {}, warnings));
     for (const bool is_turned : {false, true}) {
         const std::size_t tested = is_turned ? 5 : table.size();
         Scene scene = plate_below();
@@ -143,7 +143,7 @@ TEST(MeasuredLuminaire, HasTheIntensitiesOfItsFile) {
 TEST(MeasuredLuminaire, EmitsTheLumensOfItsFile) {
     Warnings warnings;
     const auto web = std::make_shared<PhotometricWeb>(
-        load_photometric_web(INTERFLECT_SOURCE_FOLDER "/scenes/pendant.ies", {}, warnings));
+        load_photometric_web(repository() / "scenes/pendant.ies", {}, warnings));
     Scene scene = closed_box({4, 5, 3}, 1, {Material{"", Rgb(0), Rgb(0)}});
     scene.luminaires = {{"", 0, MeasuredLight{web, {2, 2.5f, 2}}}};
     constexpr int rows = 1800, columns = 360;

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/support/scenes/scenes.h"
+
 namespace interflect::testing_support {
 
 namespace {
@@ -53,7 +55,7 @@ class Page : public testing::Environment {
     void TearDown() override {
         const char* path = std::getenv("INTERFLECT_VALIDATION_PAGE");
         if (!path) return;
-        std::ifstream form(INTERFLECT_SOURCE_FOLDER "/tests/validation/page.md");
+        std::ifstream form(testing_support::repository() / "tests/validation/page.md");
         std::ofstream page(path);
         std::size_t written = 0;
         for (std::string line; std::getline(form, line);) {

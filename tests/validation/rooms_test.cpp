@@ -86,7 +86,7 @@ TEST(Balance, OfClosedRooms) {
     Scene pendant = grey_room(0.7f);
     Warnings warnings;
     const auto web = std::make_shared<PhotometricWeb>(
-        load_photometric_web(INTERFLECT_SOURCE_FOLDER "/scenes/pendant.ies", {}, warnings));
+        load_photometric_web(repository() / "scenes/pendant.ies", {}, warnings));
     pendant.luminaires = {{"pendant", 0, MeasuredLight{web, {2, 1.5f, 1.8f}}}};
     check_balance("the same with pendant.ies, rho = 0.7", pendant, options_of(200'000));
 }
@@ -108,7 +108,7 @@ TEST(Balance, OfOpenScenes) {
 }
 
 TEST(Balance, OfTheOffice) {
-    const Scene scene = cut_at_contacts(load_scene(INTERFLECT_SOURCE_FOLDER "/scenes/office.mgf"));
+    const Scene scene = cut_at_contacts(load_scene(repository() / "scenes/office.mgf"));
     check_balance("scenes/office.mgf", scene, options_of(1'000'000));
     SolveOptions with_view{
         .method = find_method("ihsrr"), .views = {{scene.views.at(0)}}, .limits = {.rays = 3'000'000}};

@@ -253,7 +253,7 @@ TEST_F(SolutionFile, OpensVersion3) {
 
 /// A room of six two-sided walls and a lamp that Interflect 0.1.0 solved when version 3 was the newest.
 TEST_F(SolutionFile, OpensAFileOfItsTime) {
-    const SolvedScene read = read_solution(INTERFLECT_SOURCE_FOLDER "/tests/exports/hdf5/version-3.h5");
+    const SolvedScene read = read_solution(repository() / "tests/exports/hdf5/version-3.h5");
     EXPECT_EQ(read.format_version, 3);
     EXPECT_EQ(read.scene.name, "room.mgf");
     EXPECT_EQ(read.scene.patches.size(), 13u);
@@ -264,7 +264,7 @@ TEST_F(SolutionFile, OpensAFileOfItsTime) {
 
 /// The same room with a light group and a view, refined, solved by Interflect 0.1.0 when version 4 was the newest.
 TEST_F(SolutionFile, OpensVersion4) {
-    const SolvedScene read = read_solution(INTERFLECT_SOURCE_FOLDER "/tests/exports/hdf5/version-4.h5");
+    const SolvedScene read = read_solution(repository() / "tests/exports/hdf5/version-4.h5");
     EXPECT_EQ(read.format_version, 4);
     EXPECT_EQ(read.interflect_version, "0.1.0");
     EXPECT_THAT(read.scene.files, testing::ElementsAre("room.mgf", "room.views.json"));

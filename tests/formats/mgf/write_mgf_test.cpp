@@ -123,7 +123,7 @@ TEST(WriteMgf, Offices) {
 
 TEST(WriteMgf, WhatWasReadFromAFile) {
     // Two-sided faces, triangles, nested objects, includes.
-    Scene office = read_mgf(std::filesystem::path(INTERFLECT_SOURCE_FOLDER) / "scenes/office.mgf");
+    Scene office = read_mgf(testing_support::repository() / "scenes/office.mgf");
     ASSERT_GT(std::count_if(office.patches.begin(), office.patches.end(),
                             [](const Patch& patch) { return patch.other_side != none; }),
               0);

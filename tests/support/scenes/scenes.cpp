@@ -9,9 +9,11 @@ namespace interflect::testing_support {
 
 namespace fs = std::filesystem;
 
+fs::path repository() { return INTERFLECT_SOURCE_FOLDER; }
+
 fs::path real_scenes() {
     if (const char* folder = std::getenv("INTERFLECT_SCENES")) return folder;
-    return fs::path(INTERFLECT_SOURCE_FOLDER).parent_path() / "shared" / "scenes";
+    return repository().parent_path() / "shared" / "scenes";
 }
 
 TemporaryFolder::TemporaryFolder() {

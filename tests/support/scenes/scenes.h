@@ -11,6 +11,9 @@
 
 namespace interflect::testing_support {
 
+/// Returns the root of the repository.
+std::filesystem::path repository();
+
 /// Returns the folder of real test scenes: the environment variable INTERFLECT_SCENES, or shared/scenes beside the
 /// repository.
 std::filesystem::path real_scenes();
