@@ -1,6 +1,5 @@
 #include "apps/interflect/drawing/denoise_option.h"
 
-#include <algorithm>
 #include <array>
 
 #include "apps/interflect/values/parse.h"
@@ -14,8 +13,9 @@ const std::array<Choice, 4> choices{Choice{label(Denoiser::automatic), Denoiser:
                                     Choice{label(Denoiser::oidn), Denoiser::oidn},
                                     Choice{label(Denoiser::own), Denoiser::own}, Choice{"off", std::nullopt}};
 
-bool is_choice(const std::string& text) {
-    return std::any_of(choices.begin(), choices.end(), [&](const Choice& choice) { return choice.first == text; });
+/// Whether a word after --denoise is its value, possibly a wrong one: a file has a dot or a slash in its name.
+bool is_value(const std::string& word) {
+    return !word.empty() && word[0] != '-' && word.find_first_of("./:") == std::string::npos;
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ void require_denoiser(std::optional<Denoiser> denoiser) {
 void complete_denoise(std::vector<std::string>& arguments) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
         if (arguments[i] == "--no-denoise") arguments[i] = "--denoise=off";
-        const bool has_value = i + 1 < arguments.size() && is_choice(arguments[i + 1]);
+        const bool has_value = i + 1 < arguments.size() && is_value(arguments[i + 1]);
         if (arguments[i] == "--denoise" && !has_value) arguments[i] = "--denoise=auto";
     }
 }

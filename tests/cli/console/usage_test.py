@@ -222,6 +222,7 @@ class WrongUsage(CommandTest):
             ((*RENDER, "--display-luminance", "90"), "--display-luminance"),
             ((*RENDER, "--shading", "path", "--rays", "1k"), "--rays"),
             ((*RENDER, "--shading", "smooth", "--denoise"), "--denoise"),
+            ((*RENDER, "--denoise", "bad"), "--denoise"),
             ((*RENDER, "--size", "30000x30000"), "--size"),
             ((*RENDER, "--samples", "1"), "--samples"),
             ((*RENDER, "--until", "5%", "--samples", "64", "--max-samples", "8"), "--max-samples"),

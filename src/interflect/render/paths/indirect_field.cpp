@@ -311,7 +311,7 @@ void IndirectField::refine_noisy_records(const PathPlan& plan, const CommonStop&
     if (records_.empty() || stop.is_due()) return;
     pool_variances();
     const bool is_bake = !plan.start.camera;
-    const float min_irradiance = min_share_of_mean * (is_bake ? log_mean_irradiance() : mean_irradiance());
+    const float min_irradiance = min_share_of_mean * (is_bake ? geometric_mean_irradiance() : mean_irradiance());
     std::vector<float> needed(records_.size());
     for (std::size_t i = 0; i < records_.size(); ++i) {
         const Record& r = records_[i];
@@ -335,7 +335,7 @@ float IndirectField::mean_irradiance() const {
     return static_cast<float>(sum / static_cast<double>(records_.size()));
 }
 
-float IndirectField::log_mean_irradiance() const {
+float IndirectField::geometric_mean_irradiance() const {
     double sum = 0, lit = 0;
     for (const Record& r : records_)
         if (r.irradiance > 0) {

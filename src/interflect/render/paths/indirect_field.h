@@ -115,7 +115,7 @@ class IndirectField {
     /// Returns the mean over the records.
     float mean_irradiance() const;
     /// Returns the geometric mean over the lit records.
-    float log_mean_irradiance() const;
+    float geometric_mean_irradiance() const;
     /// Returns the distance to the nearest contact, at most max_distance [m].
     float distance_to_contact(const V3f& x, float max_distance) const;
 

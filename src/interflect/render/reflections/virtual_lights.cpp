@@ -16,9 +16,6 @@ namespace {
 
 constexpr std::size_t walks_per_task = 1 << 10;
 
-/// The bound of the geometric term is this number times the density of lights [1/m^2].
-constexpr float bound_per_density = 1;
-
 /// Systematic sampling: splits [0, total) into `count` consecutive intervals of length size(i), and calls visit(i, n)
 /// with the number n of points of a grid of spacing 1, with the random offset `uniform`, in interval i. The expected
 /// value of n is size(i).
@@ -52,8 +49,9 @@ VirtualLights::VirtualLights(const Scene& scene, const RayCaster& ray_caster, st
     measure_bounds();
 }
 
-/// Computes the bounds from a pilot set of lights that draws no picture, because bounds that depend on the lights in
-/// use would bias the picture.
+/// The bound of the geometric term is the density of the lights [1/m^2]: a light then brings at most about as much as
+/// the mean of its surroundings. Computes the bounds from a pilot set of lights that draws no picture, because bounds
+/// that depend on the lights in use would bias the picture.
 void VirtualLights::measure_bounds() {
     renew(none);
     const double area = std::accumulate(geometry_.begin(), geometry_.end(), 0.0,
@@ -65,7 +63,7 @@ void VirtualLights::measure_bounds() {
     const double mean_area = area / std::max<double>(1, static_cast<double>(lights_.size()));
     bounds_.resize(geometry_.size());
     for (std::size_t i = 0; i < bounds_.size(); ++i)
-        bounds_[i] = bound_per_density * static_cast<float>((count[i] + 1) / (double{geometry_[i].area()} + mean_area));
+        bounds_[i] = static_cast<float>((count[i] + 1) / (double{geometry_[i].area()} + mean_area));
 }
 
 void VirtualLights::renew(std::uint32_t number) {
