@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <thread>
 #include <tuple>
@@ -74,6 +75,7 @@ struct Setting {
     std::string name;
     std::function<void(SolveOptions&)> change;
 };
+void PrintTo(const Setting& setting, std::ostream* out) { *out << setting.name; }
 
 class SameBitsOfIhsrr : public testing::TestWithParam<Setting> {};
 INSTANTIATE_TEST_SUITE_P(

@@ -23,7 +23,7 @@ void change_values(Json& json, const std::string& name, const Change& change) {
 
 /// Stops parsing at a structure that is too large for Json. A callback of Json::parse() could do the same, but would
 /// visit all earlier values for each object of an array.
-class Limits : public JsonEvents<Json> {
+class JsonLimits : public JsonEvents<Json> {
   public:
     bool are_exceeded() const { return exceeded_; }
     static std::string text() {
@@ -66,7 +66,7 @@ std::string json_text(Json json, int indent) {
 }
 
 Json parse_json(std::string_view text) {
-    Limits limits;
+    JsonLimits limits;
     if (!Json::sax_parse(text, &limits) && limits.are_exceeded()) throw std::runtime_error(limits.text());
     return Json::parse(text);
 }

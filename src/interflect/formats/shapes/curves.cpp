@@ -155,8 +155,8 @@ PolygonMesh make_torus(const V3d& centre, const V3d& normal, double inner, doubl
         const double angle = quarter_turns(i, divisions);
         profile.push_back({std::max(0.0, middle + tube * std::cos(angle)), tube * std::sin(angle)});
     }
-    constexpr double pi = std::numbers::pi;
-    if (tessellation.keeps_area) scale_to_area(profile, true, 4 * pi * pi * middle * tube, divisions);
+    constexpr double of_unit_radii = 4 * std::numbers::pi * std::numbers::pi;
+    if (tessellation.keeps_area) scale_to_area(profile, true, of_unit_radii * middle * tube, divisions);
     PolygonMesh mesh = revolve(profile, true, centre, normal, divisions);
     if (outer < 0) reverse_faces(mesh);
     return mesh;

@@ -25,8 +25,8 @@ constexpr std::uint32_t first_divisor = 4;
 /// Gauges of one tile.
 class GaugeTile {
   public:
-    GaugeTile(const PathPlan& plan, std::size_t first, std::size_t count)
-        : plan_(plan), first_(first), pixels_(count) {}
+    GaugeTile(const PathPlan& plan, std::size_t first, std::size_t count, PathIntegrator& integrator)
+        : plan_(plan), first_(first), pixels_(count), integrator_(integrator) {}
 
     /// Returns the number of rays.
     std::int64_t trace() {
@@ -56,9 +56,8 @@ class GaugeTile {
                 batches.push_back({.pixel = static_cast<std::uint32_t>(first_ + i),
                                    .first_index = present,
                                    .size = wanted[i] - present});
-        PathIntegrator integrator(plan_);
-        integrator.trace(batches);
-        rays_ += integrator.counts().rays;
+        integrator_.trace(batches);
+        rays_ += integrator_.counts().rays;
         for (const SampleBatch& b : batches) pixels_[b.pixel - first_].add(b, ErrorSource::halves);
     }
 
@@ -81,6 +80,7 @@ class GaugeTile {
     const PathPlan& plan_;
     std::size_t first_;
     std::vector<PixelStatistics> pixels_;
+    PathIntegrator& integrator_;
     std::int64_t rays_ = 0;
 };
 
@@ -88,6 +88,7 @@ std::vector<GaugeLight> trace_all_gauges(const PathPlan& plan, const Monitor& mo
     const std::size_t gauges = plan.start.gauges.size();
     std::vector<GaugeLight> irradiance;
     const CommonStop stop(monitor.stop, monitor.ranks);
+    PerThread<PathIntegrator> integrators([&] { return PathIntegrator(plan); });
     const std::size_t at_once =
         gauges_per_tile * tiles_per_report * (monitor.ranks ? static_cast<std::size_t>(monitor.ranks->count()) : 1);
     std::int64_t rays = 0;
@@ -97,7 +98,7 @@ std::vector<GaugeLight> trace_all_gauges(const PathPlan& plan, const Monitor& mo
         std::vector<std::int64_t> rays_of_tile((count + gauges_per_tile - 1) / gauges_per_tile);
         parallel_for_own_ranges(monitor.ranks, count, gauges_per_tile, [&](std::size_t begin, std::size_t end) {
             if (stop.within_process().is_due()) return;
-            GaugeTile tile(plan, first + begin, end - begin);
+            GaugeTile tile(plan, first + begin, end - begin, integrators.local());
             rays_of_tile[begin / gauges_per_tile] = tile.trace();
             for (std::size_t i = begin; i < end; ++i) light[i] = tile.light(i - begin);
         });

@@ -30,6 +30,10 @@ namespace interflect::detail {
 class FirstPoints {
   public:
     explicit FirstPoints(const PathPlan& plan) : plan_(plan) {}
+    void clear() {
+        groups_.clear();
+        points_.clear();
+    }
 
     /// Result of looking up the recorded indirect light of a group of points.
     struct Lookup {

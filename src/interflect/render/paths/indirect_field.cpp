@@ -80,9 +80,10 @@ struct GatheredGroup {
 /// Traces the batches in all ranks together. @param plan  Plan whose gauges are the records.
 std::vector<GatheredGroup> gather_groups(const PathPlan& plan, std::span<SampleBatch> batches, const CommonStop& stop) {
     std::vector<GatheredGroup> groups(batches.size());
+    PerThread<PathIntegrator> integrators([&] { return PathIntegrator(plan); });
     parallel_for_own_ranges(stop.ranks(), batches.size(), groups_per_task, [&](std::size_t begin, std::size_t end) {
         if (stop.within_process().is_due()) return;
-        PathIntegrator integrator(plan);
+        PathIntegrator& integrator = integrators.local();
         integrator.trace(batches.subspan(begin, end - begin));
         for (std::size_t i = begin; i < end; ++i) {
             const SampleBatch& b = batches[i];

@@ -33,7 +33,12 @@ V3f start_on(const TracedScene& s, const Gauge& gauge, const V3f& normal, float 
 }  // namespace
 
 void PathIntegrator::trace(std::span<SampleBatch> batches) {
-    light_.resize(2 * batches.size());
+    vertex_ = 1;
+    keys_.clear();
+    light_.assign(2 * batches.size(), {});
+    paths_.clear();
+    first_points_.clear();
+    counts_ = {};
     for (const SampleBatch& b : batches)
         for (const std::uint64_t half : {0, 1})
             keys_.push_back(mix(mix(plan_.options.seed, b.pixel), 2 * std::uint64_t{b.number} + half));
@@ -71,10 +76,11 @@ void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
         path.half_batch = h;
         for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
             path.index_in_sequence = batch.first_index + i;
+            path.level_samples = i == 0 ? batch.size : 0;
             paths_.add(path, plan_.start.camera->ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
         }
     }
-    first_hits_.resize(path.sample);
+    first_hits_.assign(path.sample, {});
 }
 
 void PathIntegrator::start_at_gauges(std::span<const SampleBatch> batches) {
@@ -94,7 +100,7 @@ void PathIntegrator::start_at_gauges(std::span<const SampleBatch> batches) {
             paths_.add(path, {path.position, path.normal});
         }
     }
-    first_hits_.resize(path.sample);
+    first_hits_.assign(path.sample, {});
 }
 
 void PathIntegrator::arrive_at_surfaces() {
@@ -137,9 +143,11 @@ bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
     }
     FirstHit& first = first_hits_[path.sample];
     // A path seen through clear panes or in a mirror follows the path that it was split from, and replaces its hit.
-    if (vertex_ == 1 && path.sets_first_hit)
-        first = {RgbD(reflectance), Imath::V3d(s.geometry[hit.patch].normal()), Imath::V3d(x), distance,
-                 plan_.known ? static_cast<double>(plan_.known->level(hit.patch, x)) : 0};
+    if (vertex_ == 1 && path.sets_first_hit) {
+        first = {RgbD(reflectance), Imath::V3d(s.geometry[hit.patch].normal()), Imath::V3d(x), distance};
+        if (plan_.known && path.level_samples > 0)
+            first.level = path.level_samples * static_cast<double>(plan_.known->level(hit.patch, x));
+    }
     if (vertex_ == 2 && !plan_.start.camera) {
         first.inverse_length = 1 / static_cast<double>(distance);
         first.hits = 1;

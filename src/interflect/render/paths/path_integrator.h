@@ -25,8 +25,9 @@ class PathIntegrator {
     /// @param plan  Must outlive this.
     explicit PathIntegrator(const PathPlan& plan) : plan_(plan), first_points_(plan) {}
 
-    /// Adds the light of all paths to their batches. Call once.
+    /// Adds the light of all paths to their batches. Later calls reuse the memory.
     void trace(std::span<SampleBatch> batches);
+    /// Returns the counts of the last call of trace().
     const RayCounts& counts() const { return counts_; }
 
   private:

@@ -32,6 +32,9 @@ struct Path {
     SourceSampling sampling{};
     float travelled = 0;         ///< Distance from the vertex to the ray's origin, through panes and by mirrors [m].
     bool sets_first_hit = true;  ///< Whether only clear panes and pure mirrors are in front of the first hit.
+    /// Number of samples for which the first hit of this path gives the level of the element; 0 for most paths, because
+    /// elements are found slowly.
+    std::uint32_t level_samples = 0;
 };
 
 /// Paths with their current rays and, after find_surfaces(), the hits of these rays.
@@ -40,6 +43,10 @@ struct PathRays {
     std::vector<Ray> rays;
     std::vector<Hit> hits;
 
+    void clear() {
+        paths.clear();
+        rays.clear();
+    }
     void add(const Path& path, const Ray& ray) {
         paths.push_back(path);
         rays.push_back(ray);

@@ -14,7 +14,7 @@ struct FirstHit {
     RgbD albedo{0, 0, 0};
     Imath::V3d normal{0, 0, 0}, position{0, 0, 0};
     double distance = 0;        ///< Distance from the camera, through panes and by mirrors [m].
-    double level = 0;           ///< Level of subdivision of the element, if a solution is known.
+    double level = 0;           ///< Level of the element times Path::level_samples, if a solution is known.
     double inverse_length = 0;  ///< 1 / length of the first ray from a gauge; 0 if it escapes [1/m].
     double hits = 0;            ///< Number of first rays from gauges that hit a surface.
 

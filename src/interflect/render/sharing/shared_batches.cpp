@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "interflect/base/threads/shared_ranges.h"
-#include "interflect/render/paths/path_integrator.h"
 #include "interflect/render/sharing/broadcast.h"
 
 namespace interflect::detail {
@@ -66,7 +65,7 @@ RayCounts SharedBatches::trace_own(std::span<SampleBatch> batches, const std::fu
     std::vector<RayCounts> counts((batches.size() + per_tile - 1) / per_tile);
     parallel_for_own_ranges(ranks_, batches.size(), per_tile, [&](std::size_t begin, std::size_t end) {
         if (is_over()) return;
-        PathIntegrator integrator(plan_);
+        PathIntegrator& integrator = integrators_.local();
         integrator.trace(batches.subspan(begin, end - begin));
         counts[begin / per_tile] = integrator.counts();
     });

@@ -5,8 +5,10 @@
 #include <functional>
 #include <span>
 
+#include "interflect/base/threads/parallel.h"
 #include "interflect/base/threads/stop_request.h"
 #include "interflect/ranks.h"
+#include "interflect/render/paths/path_integrator.h"
 #include "interflect/render/rays/path_plan.h"
 #include "interflect/render/rays/sample_batch.h"
 #include "interflect/render/reflections/virtual_lights.h"
@@ -21,7 +23,7 @@ class SharedBatches {
     /// @param virtual_lights  The virtual lights of `plan`; may be null.
     /// @param ranks           Null: this process alone traces all batches.
     SharedBatches(const PathPlan& plan, VirtualLights* virtual_lights, Ranks* ranks)
-        : plan_(plan), virtual_lights_(virtual_lights), ranks_(ranks) {}
+        : virtual_lights_(virtual_lights), ranks_(ranks), integrators_([&plan] { return PathIntegrator(plan); }) {}
 
     /// Returns the number of paths to pass to one call of trace(), enough to occupy all processes.
     static std::size_t paths_at_once(const Ranks* ranks);
@@ -54,9 +56,9 @@ class SharedBatches {
     };
     RayCounts trace_own(std::span<SampleBatch> batches, const std::function<bool()>& is_over);
 
-    const PathPlan& plan_;
     VirtualLights* virtual_lights_;
     Ranks* ranks_;
+    PerThread<PathIntegrator> integrators_;
     std::uint32_t light_set_ = none;
 };
 

@@ -164,8 +164,8 @@ void use_published_algorithm(SolveOptions& options) {
 }
 
 Limits GivenLimits::limits() const {
-    const Limits unlimited;
-    return {rays.value_or(unlimited.rays), time.value_or(unlimited.time), until.value_or(unlimited.until)};
+    const Limits endless;
+    return {rays.value_or(endless.rays), time.value_or(endless.time), until.value_or(endless.until)};
 }
 
 SolveOptions resolved(const GivenSettings& given) {

@@ -10,9 +10,9 @@ namespace interflect::detail {
 
 namespace {
 
-enum class Purpose : std::uint64_t { survival = 1, reflection = 2 };
+enum class VertexPurpose : std::uint64_t { survival = 1, reflection = 2 };
 
-std::uint64_t sub_key(std::uint64_t key, Purpose purpose, std::uint64_t index) {
+std::uint64_t sub_key(std::uint64_t key, VertexPurpose purpose, std::uint64_t index) {
     return mix(mix(key, static_cast<std::uint64_t>(purpose)), index);
 }
 
@@ -36,8 +36,8 @@ void Walks::add(const Ray& ray, const Hit& hit, const RgbD& power, const Rgb& tr
 }
 
 void Walks::follow(std::uint64_t task, Walkers& walkers, Descent& descent) const {
-    const std::uint64_t survival = sub_key(key_, Purpose::survival, task);
-    const std::uint64_t reflection = sub_key(key_, Purpose::reflection, task);
+    const std::uint64_t survival = sub_key(key_, VertexPurpose::survival, task);
+    const std::uint64_t reflection = sub_key(key_, VertexPurpose::reflection, task);
     for (std::uint64_t bounce = 0; !walkers.received.empty(); ++bounce) {
         survive(random_double(survival, bounce), walkers);
         shoot(mix(reflection, bounce), walkers);
