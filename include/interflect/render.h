@@ -74,7 +74,7 @@ struct PictureLayers {
     Image normal;    ///< Normal of the visible surface, towards the camera; shorter than 1 as a mean of several.
     Image position;  ///< Position of the visible surface, relative to the scene's origin [m].
     std::vector<float> depth;  ///< Distance of the visible surface from the camera [m]; 0 without a hit.
-    std::vector<float> level;  ///< Level of the visible element of the solution; 0 without one.
+    std::vector<float> level;  ///< Level of the visible element of the solution, of some samples; 0 without one.
     float pixel_angle = 0;     ///< Angle of a pixel's side at the centre of the picture [rad]; 0 if orthographic.
     float pixel_size = 0;      ///< Side of a pixel in an orthographic picture [m]; else 0.
 };
