@@ -22,7 +22,7 @@ endif()
 if(INTERFLECT_SANITIZE)
   target_compile_options(interflect_options INTERFACE -fsanitize=${INTERFLECT_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)
-  if(INTERFLECT_SANITIZE MATCHES address)  # it finds these faults itself, and the checks take a quarter of the build
+  if(INTERFLECT_SANITIZE MATCHES address)  # it finds such accesses itself; these checks build slowly
     target_compile_options(interflect_options INTERFACE -fno-sanitize=null,object-size)
   endif()
   target_link_options(interflect_options INTERFACE -fsanitize=${INTERFLECT_SANITIZE})

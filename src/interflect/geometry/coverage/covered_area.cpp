@@ -22,7 +22,7 @@ using Imath::V3d;
 constexpr double negligible_share = 1e-12;
 /// A polygon that meets more faces is halved first, because cutting by each in turn multiplies the pieces.
 constexpr std::size_t cut_at_once = 4;
-/// Parts are then 2^-12 of the polygon long and wide; faces that still overlap there are nested.
+/// The smallest parts have 2^-12 of the length and width of the polygon.
 constexpr int max_halvings = 24;
 
 double area_of(const PlanarPolygon& polygon) { return 0.5 * doubled_area(polygon); }

@@ -21,8 +21,8 @@ constexpr float same_plane_cosine = 0.9999f;
 
 constexpr std::size_t patches_per_task = 4096;
 
-/// Number of faces at an edge that are compared in pairs. More than four meet only in broken models, which would cost
-/// the square of the number.
+/// Each face at an edge is compared with at most this number of others, because all pairs cost the square of the
+/// number.
 constexpr std::size_t max_faces_at_edge = 8;
 
 /// Relative difference up to which areas count as equal, because division into patches and rounding change them.

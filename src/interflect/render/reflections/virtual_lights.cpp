@@ -49,9 +49,8 @@ VirtualLights::VirtualLights(const Scene& scene, const RayCaster& ray_caster, st
     measure_bounds();
 }
 
-/// The bound of the geometric term is the density of the lights [1/m^2]: a light then brings at most about as much as
-/// the mean of its surroundings. Computes the bounds from a pilot set of lights that draws no picture, because bounds
-/// that depend on the lights in use would bias the picture.
+/// Bounds the geometric term by the density of the lights [1/m^2]. Computes the bounds from a pilot set of lights that
+/// draws no picture, because bounds that depend on the lights in use would bias the picture.
 void VirtualLights::measure_bounds() {
     renew(none);
     const double area = std::accumulate(geometry_.begin(), geometry_.end(), 0.0,
