@@ -117,8 +117,8 @@ TEST(MeasuredLuminaire, HasTheIntensitiesOfItsFile) {
                                                 {25, 45, 715}, {30, 22.5, 660}};
     constexpr double distance = 600;
     Warnings warnings;
-    const auto web = std::make_shared<PhotometricWeb>(
-        load_photometric_web(repository() / "scenes/pendant.ies", {}, warnings));
+    const auto web =
+        std::make_shared<PhotometricWeb>(load_photometric_web(repository() / "scenes/pendant.ies", {}, warnings));
     for (const bool is_turned : {false, true}) {
         const std::size_t tested = is_turned ? 5 : table.size();
         Scene scene = plate_below();
@@ -142,8 +142,8 @@ TEST(MeasuredLuminaire, HasTheIntensitiesOfItsFile) {
 /// The walls of a black room receive the whole emission: the integral of its table, by the midpoint rule.
 TEST(MeasuredLuminaire, EmitsTheLumensOfItsFile) {
     Warnings warnings;
-    const auto web = std::make_shared<PhotometricWeb>(
-        load_photometric_web(repository() / "scenes/pendant.ies", {}, warnings));
+    const auto web =
+        std::make_shared<PhotometricWeb>(load_photometric_web(repository() / "scenes/pendant.ies", {}, warnings));
     Scene scene = closed_box({4, 5, 3}, 1, {Material{"", Rgb(0), Rgb(0)}});
     scene.luminaires = {{"", 0, MeasuredLight{web, {2, 2.5f, 2}}}};
     constexpr int rows = 1800, columns = 360;

@@ -85,8 +85,8 @@ TEST(Balance, OfClosedRooms) {
     check_balance("room with a panel, rho = 0.9", grey_room(0.9f), options_of(200'000));
     Scene pendant = grey_room(0.7f);
     Warnings warnings;
-    const auto web = std::make_shared<PhotometricWeb>(
-        load_photometric_web(repository() / "scenes/pendant.ies", {}, warnings));
+    const auto web =
+        std::make_shared<PhotometricWeb>(load_photometric_web(repository() / "scenes/pendant.ies", {}, warnings));
     pendant.luminaires = {{"pendant", 0, MeasuredLight{web, {2, 1.5f, 1.8f}}}};
     check_balance("the same with pendant.ies, rho = 0.7", pendant, options_of(200'000));
 }

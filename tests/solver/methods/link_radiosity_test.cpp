@@ -25,10 +25,10 @@
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/methods/links/exchange.h"
-#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/scenes/scenes.h"
 
 namespace interflect {

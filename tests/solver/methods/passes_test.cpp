@@ -17,10 +17,10 @@
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/solve.h"
-#include "tests/support/rooms/reference_rooms.h"
-#include "tests/support/rooms/variants.h"
 #include "tests/support/form_factors.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/rooms/reference_rooms.h"
+#include "tests/support/rooms/variants.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 

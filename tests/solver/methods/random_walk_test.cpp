@@ -22,9 +22,9 @@
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
+#include "tests/support/parameter_names.h"
 #include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/rooms/variants.h"
-#include "tests/support/parameter_names.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 

@@ -11,10 +11,10 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
-#include "tests/support/rooms/reference_rooms.h"
-#include "tests/support/rooms/variants.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/rooms/reference_rooms.h"
+#include "tests/support/rooms/variants.h"
 #include "tests/support/statistics.h"
 
 namespace interflect {

@@ -6,7 +6,6 @@
 
 #include <vector>
 
-
 namespace interflect {
 
 using namespace detail;

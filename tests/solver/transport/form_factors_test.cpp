@@ -12,8 +12,8 @@
 
 #include "interflect/elements/forest.h"
 #include "interflect/solver/transport/transport.h"
-#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/brute_force.h"
+#include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 

@@ -16,8 +16,8 @@
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/solve.h"
 #include "interflect/solver/light/materials.h"
-#include "tests/support/rooms/variants.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/rooms/variants.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/statistics.h"
 
