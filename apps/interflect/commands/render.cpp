@@ -302,8 +302,6 @@ void run_solution(RenderArguments& options, PendingFile& output) {
         const double left = std::max(shortest_time, options.seconds_left());
         seconds_to_preview = std::min(seconds_to_preview, left / 10);
         solve_options.limits.time = left / 3;  // provisional, until the drawing time is predicted
-        if (options.has_default_samples && traces_paths(options.picture.shading))
-            options.picture.samples = options.picture.max_samples;  // the time limit ends the picture earlier
     }
 
     std::optional<DrawingTime> planned;
@@ -329,8 +327,9 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     if (is_limited && planned) {
         PictureOptions& picture = options.picture;
         picture.time = std::max(shortest_time, options.seconds_left() - planned->finishing);
-        if (options.has_default_samples && picture.shading == Shading::hybrid)
-            picture.samples = planned->samples_within(picture.time, picture.max_samples);
+        if (!options.has_default_samples) picture.max_samples = picture.samples;
+        if (picture.shading == Shading::hybrid)
+            picture.samples = std::min(picture.samples, planned->samples_within(picture.time));
     }
     const Picture picture = draw_solution(solved, ray_caster, view, options);
     if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);

@@ -47,13 +47,11 @@ double reduce(int& width, int& height, int reduction) {
 
 double seconds_of_process() { return seconds_since(process_start); }
 
-int DrawingTime::samples_within(double seconds, int most) const {
-    // Records take about half of the time of a picture with the fewest samples.
-    constexpr double samples_per_least = 2 * least_samples;
-    constexpr int usual = 8;  // the noise determines the number of later samples
-    const int samples =
-        least_samples + static_cast<int>(std::min<double>(most, samples_per_least * (seconds / least - 1)));
-    return samples < usual ? std::max(least_samples, samples) : most;
+int DrawingTime::samples_within(double seconds) const {
+    constexpr int usual = 8;                  // the noise determines the number of later samples
+    constexpr double usual_over_least = 2.2;  // ratio of the times, measured in office-graz
+    const double share = std::clamp((seconds / least - 1) / (usual_over_least - 1), 0.0, 1.0);
+    return least_samples + 2 * static_cast<int>(share * (usual - least_samples) / 2);
 }
 
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
@@ -100,7 +98,7 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
 }
 
 double reserved_for(const DrawingTime& predicted, bool is_refined, double left) {
-    constexpr double share_of_paths = 2.0 / 3;
+    constexpr double share_of_paths = 3.0 / 4;
     const double drawing = is_refined ? std::max(share_of_paths * left, predicted.least) : predicted.least;
     return std::min(largest_drawing_share * left, drawing + predicted.finishing);
 }

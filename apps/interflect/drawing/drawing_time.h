@@ -15,11 +15,10 @@ struct DrawingTime {
     double least = 0;      ///< Time with least_samples per pixel.
     double finishing = 0;  ///< Time of filtering noise and writing.
 
-    static constexpr int least_samples = 4;
+    static constexpr int least_samples = 2;
     double total() const { return least + finishing; }
-    /// Returns the samples per pixel of hybrid shading for a time [s]. If all pixels can get the usual eight, returns
-    /// `most`: then tracing continues until the time is over.
-    int samples_within(double seconds, int most) const;
+    /// Returns the even number of samples that every pixel of hybrid shading can get within a time [s]: two to eight.
+    int samples_within(double seconds) const;
 };
 
 /// Predicts the time of a picture from a smaller one. Within 25% for hybrid shading of 960 x 540 pixels in three
@@ -33,8 +32,8 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
 /// Drawing takes at most this share of the time that is left.
 constexpr double largest_drawing_share = 0.8;
 
-/// Returns the part of `left` [s] that solving leaves to drawing: for paths, whose noise more samples reduce, two
-/// thirds, as in the default run of an office; at least the predicted time.
+/// Returns the part of `left` [s] that solving leaves to drawing: for paths, whose noise more samples reduce, three
+/// quarters, as in the default run of an office; at least the predicted time.
 double reserved_for(const DrawingTime& predicted, bool is_refined, double left);
 
 }  // namespace interflect::command

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Values of OpenImageDenoise/oidn.h, version 2.
-constexpr int cpu_device = 1, three_floats = 3, no_error = 0, supported_version = 2;
+constexpr int cpu_device = 1, three_floats = 3, no_error = 0, balanced_quality = 5, supported_version = 2;
 constexpr const char* library_name = "libOpenImageDenoise.so.2";
 
 std::runtime_error not_usable(const fs::path& file, const std::string& reason) {
@@ -51,6 +51,7 @@ struct Oidn::Functions {
         find("oidnNewFilter", new_filter);
         find("oidnSetSharedFilterImage", set_shared_filter_image);
         find("oidnSetFilterBool", set_filter_bool);
+        find("oidnSetFilterInt", set_filter_int);
         find("oidnCommitFilter", commit_filter);
         find("oidnExecuteFilter", execute_filter);
         find("oidnReleaseFilter", release_filter);
@@ -68,6 +69,7 @@ struct Oidn::Functions {
                                     std::size_t height, std::size_t offset, std::size_t pixel_stride,
                                     std::size_t row_stride);
     void (*set_filter_bool)(void* filter, const char* name, bool value);
+    void (*set_filter_int)(void* filter, const char* name, int value);
     void (*commit_filter)(void* filter);
     void (*execute_filter)(void* filter);
     void (*release_filter)(void* filter);
@@ -150,6 +152,9 @@ OidnFilter::OidnFilter(std::shared_ptr<const Oidn> library, Image albedo, Image 
     filter_ = {call.new_filter(device_.get(), "RT"), call.release_filter};
     call.set_filter_bool(filter_.get(), "hdr", true);
     call.set_filter_bool(filter_.get(), "cleanAux", true);
+    // The highest quality has 0.94 to 0.97 of the error of pixels in four scenes, but takes 1.05 to 1.26 times the time
+    // of the whole picture, which lowers the error as much if it is spent on samples.
+    call.set_filter_int(filter_.get(), "quality", balanced_quality);
 }
 
 Image OidnFilter::operator()(const Image& light) const {

@@ -74,6 +74,7 @@ void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
         const std::uint32_t column = batch.pixel % width, row = batch.pixel / width;
         const auto left = static_cast<float>(column), top = static_cast<float>(row);
         path.half_batch = h;
+        path.sampling.is_last = batch.ends_at_first_hit;
         for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
             path.index_in_sequence = batch.first_index + i;
             path.level_samples = i == 0 ? batch.size : 0;
@@ -154,6 +155,14 @@ bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
     }
 
     if (channel_sum(exitance) > 0) add_emission(hit, ray.direction, distance, path, exitance);
+    if (vertex_ == 1 && plan_.hybrid) {
+        const Rgb& irradiance = plan_.known->irradiance(plan_.known->place(hit.patch, x));
+        const Rgb predicted = path.throughput * reflectance * irradiance / pi;
+        PathLight& light = light_[path.half_batch];
+        light.predicted += RgbD(predicted);
+        const double seen = mean_channel(RgbD(predicted + path.throughput * exitance / pi));
+        light.square_of_first_hit += seen * seen;
+    }
     if (path.sampling.is_last || end_at_known_light(hit, x, ray.direction, distance, path)) return false;
     if (plan_.virtual_lights && vertex_ > 1) path.throughput *= share_beyond_bound(hit, ray.direction, distance, path);
     path.throughput *= reflectance;
@@ -300,7 +309,10 @@ void PathIntegrator::store(std::span<SampleBatch> batches) const {
     std::size_t sample = 0;
     for (std::size_t b = 0; b < batches.size(); ++b) {
         SampleBatch& batch = batches[b];
-        for (std::size_t h = 0; h < 2; ++h) batch.halves[h] = light_[2 * b + h] * per_radiance;
+        for (std::size_t h = 0; h < 2; ++h) {
+            batch.halves[h] = light_[2 * b + h] * per_radiance;
+            batch.halves[h].square_of_first_hit *= per_radiance;
+        }
         for (const std::size_t end = sample + 2 * std::size_t{batch.size}; sample < end; ++sample)
             batch.first += first_hits_[sample];
         batch.done = true;
@@ -309,7 +321,12 @@ void PathIntegrator::store(std::span<SampleBatch> batches) const {
 
 void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
     const Skies& skies = plan_.sources().skies();
-    if (vertex_ == 1) return add(path.half_batch, 0, path.throughput * skies.seen(direction));
+    if (vertex_ == 1) {
+        const Rgb seen = path.throughput * skies.seen(direction);
+        const double mean = mean_channel(RgbD(seen));
+        light_[path.half_batch].square_of_first_hit += mean * mean;
+        return add(path.half_batch, 0, seen);
+    }
     Rgb radiance = sampled_sky(path, direction);
     if (channel_sum(radiance) > 0)
         radiance *= balance(direction_density(path, direction), sky_density(path, direction));

@@ -50,15 +50,19 @@ class PathPicture {
         const std::uint32_t least_parts = error_source() == ErrorSource::batches ? 2 : 1;
         const std::uint32_t usual = std::max(samples_of_half(options_.samples), least_parts * batch_size());
         const std::uint32_t allowed = samples_of_half(std::max(options_.max_samples, options_.samples));
-        const std::uint32_t most = options_.until > 0 ? allowed / batch_size() * batch_size() : usual;
+        const bool has_no_number = options_.until > 0 || is_limited(options_);  // the target or the time is one
+        const std::uint32_t most = has_no_number ? allowed / batch_size() * batch_size() : usual;
         const std::uint32_t least =
             plan_.hybrid || is_limited(options_) ? std::min(usual, least_parts * first_samples()) : usual;
         foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
         trace_round(std::vector<std::uint32_t>(pixels_.size(), least));
         has_all_pixels_ = true;
+        if (plan_.hybrid && plan_.start.camera && !stopped()) add_first_hits();
         if (!is_adaptive || most <= least) return;
         const std::vector<double> needed = needed_by_pixels();
-        for (double factor = 1; !is_over(); factor *= 2) {
+        // Within a time limit, small steps spread the samples evenly over the picture.
+        constexpr double first_step = 1.0 / 8;
+        for (double factor = is_limited(options_) ? first_step : 1; !is_over(); factor *= 2) {
             const bool more = trace_round(wanted(needed, factor, most));
             const bool has_target = options_.until > 0;
             if (has_target && error_of_picture() <= options_.until) break;
@@ -105,7 +109,8 @@ class PathPicture {
     /// Samples of each half in a batch. A power of two, except in hybrid shading, where all batches of a pixel continue
     /// the same two sequences.
     std::uint32_t batch_size() const {
-        if (plan_.hybrid) return std::min(samples_of_half(options_.samples), first_samples());
+        if (plan_.hybrid)
+            return is_limited(options_) ? 1 : std::min(samples_of_half(options_.samples), first_samples());
         const int parts = error_source() == ErrorSource::batches ? 2 * min_parts : min_parts;
         const auto size =
             std::bit_floor(static_cast<unsigned>(std::clamp(options_.samples / parts, 1, largest_half_batch)));
@@ -209,6 +214,31 @@ class PathPicture {
         }
         trace_chunk(chunk);
         return has_traced;
+    }
+
+    /// Traces camera rays alone at edges and textures, even if the time is over: they are cheap.
+    void add_first_hits() {
+        constexpr std::uint32_t number = 1;  // all samples are in batches of number 0
+        const std::vector<std::uint32_t> needed = needed_first_hits(pixels_, options_);
+        std::vector<SampleBatch> chunk;
+        std::size_t rays = 0;
+        for (std::uint32_t i = 0; i < pixels_.size(); ++i) {
+            if (needed[i] == 0) continue;
+            chunk.push_back({.pixel = i, .number = number, .size = needed[i], .ends_at_first_hit = true});
+            rays += 2 * std::size_t{needed[i]};
+            if (rays < SharedBatches::paths_at_once(monitor_.ranks)) continue;
+            trace_first_hits(chunk);
+            rays = 0;
+        }
+        if (!chunk.empty()) trace_first_hits(chunk);
+    }
+
+    void trace_first_hits(std::vector<SampleBatch>& chunk) {
+        counts_ += shared_.trace(
+            chunk, [this] { return stopped(); }, false);
+        for (const SampleBatch& batch : chunk)
+            if (batch.done) pixels_[batch.pixel].add_first_hits(batch);
+        chunk.clear();
     }
 
     /// Each batch of a pixel uses another set of virtual lights, so the variance of the batches includes the error of

@@ -1,6 +1,7 @@
 #include "interflect/render/pictures/pixel_statistics.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -10,7 +11,11 @@ namespace interflect::detail {
 namespace {
 
 /// A neighbourhood of radius r has (2 r + 1)^2 pixels.
-constexpr std::size_t neighbourhood_radius = 3, radius_of_lamps = 1;
+constexpr std::size_t neighbourhood_radius = 3, radius_of_lamps = 1, radius_of_edges = 1;
+/// First hits are added where their error, relative to the light around, exceeds this: a third of hybrid_target.
+constexpr double first_hit_target = 0.01;
+/// Most first hits of a half. Four times as many lower the error of pixels by another 2 to 5%.
+constexpr double most_first_hits = 32;
 
 std::array<RgbD, 3> parts_of(const PathLight& light) {
     return {light.emitted + light.direct + light.indirect, light.direct, light.indirect};
@@ -97,6 +102,34 @@ void PixelStatistics::add(const SampleBatch& b, ErrorSource source) {
     }
 }
 
+void PixelStatistics::add_first_hits(const SampleBatch& b) {
+    number_of_first_hits_ = b.size;
+    first_sum_ += b.first;
+    for (std::size_t h = 0; h < 2; ++h)
+        first_hits_[h] = {b.halves[h].emitted / static_cast<double>(b.size),
+                          b.halves[h].predicted / static_cast<double>(b.size)};
+    spread_ = {};
+    for (std::size_t h = 0; h < 2; ++h) spread_.add(half_mean(h));
+}
+
+PathLight PixelStatistics::half_mean(std::size_t h) const {
+    PathLight mean = sums_[h] * (samples_ > 0 ? 1.0 / samples_ : 0.0);
+    if (number_of_first_hits_ == 0) return mean;
+    const auto& [emitted, predicted] = first_hits_[h];
+    const RgbD missing = predicted - mean.predicted;
+    // The other half divides the difference between direct and indirect light: its share is independent of it.
+    const PathLight& other = sums_[1 - h];
+    for (int k = 0; k < 3; ++k) {
+        const double reflected = other.direct[k] + other.indirect[k];
+        const double direct = reflected > 0 ? std::clamp(other.direct[k] / reflected, 0.0, 1.0) : 0.5;
+        mean.direct[k] += direct * missing[k];
+        mean.indirect[k] += (1 - direct) * missing[k];
+    }
+    mean.emitted = emitted;
+    mean.predicted = predicted;
+    return mean;
+}
+
 PathLight PixelStatistics::light() const {
     PathLight sum = half_mean(0);
     sum += half_mean(1);
@@ -107,7 +140,7 @@ RgbD PixelStatistics::mean() const { return parts_of(light())[0]; }
 
 FirstHit PixelStatistics::first() const {
     FirstHit mean = first_sum_;
-    const double samples = std::max(1.0, 2.0 * samples_);
+    const double samples = std::max(1.0, 2.0 * (samples_ + number_of_first_hits_));
     mean.albedo /= samples;
     mean.normal /= samples;
     mean.position /= samples;
@@ -153,6 +186,32 @@ std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, c
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         const double around = count[i] > 1 ? std::max(0.0, sums[i] - variance[i]) / (count[i] - 1) : variance[i];
         if (scale[i] > 0) needed[i] = around / (scale[i] * scale[i] * target * target);
+    }
+    return needed;
+}
+
+std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>& pixels,
+                                             const PictureOptions& options) {
+    // At an edge, the error of a mean of n stratified samples is about their standard deviation times n to the power of
+    // -3/4.
+    constexpr double samples_per_error = 4.0 / 3;
+    const std::vector<double> reflected = error_scale(pixels, options), lamps = lamps_around(pixels, options);
+    std::vector<double> variance(pixels.size());
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const PathLight light = pixels[i].light();
+        const double mean = mean_channel(light.emitted + light.predicted);
+        variance[i] = std::max(0.0, light.square_of_first_hit - mean * mean);
+    }
+    const std::vector<double> sums = sums_around(variance, options, radius_of_edges);
+    const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options, radius_of_edges);
+    std::vector<std::uint32_t> needed(pixels.size(), 0);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const double scale = std::max(reflected[i], lamps[i]);
+        if (!(scale > 0) || !(count[i] > 1)) continue;
+        const double deviation = std::sqrt(std::max(0.0, sums[i] - variance[i]) / (count[i] - 1)) / scale;
+        const double of_half = std::pow(deviation / first_hit_target, samples_per_error) / 2;
+        if (of_half > pixels[i].samples_of_half())
+            needed[i] = std::bit_ceil(static_cast<std::uint32_t>(std::min(most_first_hits, of_half)));
     }
     return needed;
 }

@@ -26,10 +26,14 @@ class PixelStatistics {
   public:
     /// Adds a batch. @param source  Must be equal for all batches.
     void add(const SampleBatch& batch, ErrorSource source);
+    /// Adds the batch of first hits, which is independent of all others; only for ErrorSource::halves.
+    void add_first_hits(const SampleBatch& batch);
 
     std::uint32_t samples_of_half() const { return samples_; }
     bool has_error() const { return spread_.parts > 1; }
-    PathLight half_mean(std::size_t h) const { return sums_[h] * (samples_ > 0 ? 1.0 / samples_ : 0.0); }
+    /// Returns the mean of a half. First hits replace the emitted light, and are a control variate of the reflected
+    /// light: mean of (L - predicted) over the paths + mean of predicted over the first hits.
+    PathLight half_mean(std::size_t h) const;
     PathLight light() const;
     RgbD mean() const;
     FirstHit first() const;
@@ -54,7 +58,10 @@ class PixelStatistics {
 
     std::array<PathLight, 2> sums_{};  // sum over the samples of each half
     std::uint32_t samples_ = 0;        // number of samples of each half
-    FirstHit first_sum_;
+    /// Means of emitted and predicted light over the first hits of each half.
+    std::array<std::array<RgbD, 2>, 2> first_hits_{};
+    std::uint32_t number_of_first_hits_ = 0;  // of each half
+    FirstHit first_sum_;                      // over samples and first hits
     Spread spread_;
 };
 
@@ -66,5 +73,9 @@ double relative_error(const std::vector<PixelStatistics>& pixels, const PictureO
 /// @param target  Target of the relative standard error.
 std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target);
+
+/// Returns the number of first hits, in each half, that the edges and textures of each pixel need in addition to its
+/// samples; 0 for most pixels. It is estimated from the pixel's neighbours, as in needed_samples().
+std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>& pixels, const PictureOptions& options);
 
 }  // namespace interflect::detail

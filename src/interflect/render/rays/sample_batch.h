@@ -36,16 +36,23 @@ struct PathLight {
     RgbD direct{0, 0, 0};     ///< Light that is reflected once.
     RgbD indirect{0, 0, 0};   ///< Light that is reflected more than once.
     double record_error = 0;  ///< Standard error of recorded light, mean channel; common to all paths.
+    /// Prediction of direct + indirect light by the first hit alone, from the elements of a solution; 0 without one.
+    RgbD predicted{0, 0, 0};
+    /// Squares of the emitted and predicted light of each first hit, mean channel. Their spread shows edges.
+    double square_of_first_hit = 0;
 
     PathLight& operator+=(const PathLight& o) {
         emitted += o.emitted;
         direct += o.direct;
         indirect += o.indirect;
         record_error += o.record_error;
+        predicted += o.predicted;
+        square_of_first_hit += o.square_of_first_hit;
         return *this;
     }
     PathLight operator*(double factor) const {
-        return {emitted * factor, direct * factor, indirect * factor, record_error * factor};
+        return {emitted * factor,      direct * factor,    indirect * factor,
+                record_error * factor, predicted * factor, square_of_first_hit * factor};
     }
 };
 
@@ -56,6 +63,8 @@ struct SampleBatch {
     std::uint32_t number = 0;       ///< Batches of different numbers are independent.
     std::uint32_t first_index = 0;  ///< Index of the first path in the sequence of each half.
     std::uint32_t size = 1;         ///< Number of paths of each half.
+    /// Whether the paths end at their first hit, with emitted and predicted light alone.
+    bool ends_at_first_hit = false;
     bool done = false;
     std::array<PathLight, 2> halves{};
     FirstHit first{};  ///< Sum of the first hits of all paths.

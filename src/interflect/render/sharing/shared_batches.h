@@ -48,6 +48,7 @@ class SharedBatches {
   private:
     struct Key {
         std::uint32_t pixel, number, first_index, size;
+        bool ends_at_first_hit;
     };
     struct Chunk {
         std::size_t batches = 0;         // number of batches; 0: the picture is finished

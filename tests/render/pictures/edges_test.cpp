@@ -1,0 +1,102 @@
+// First hits of camera rays alone sharpen edges in hybrid shading.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "interflect/ray_caster.h"
+#include "interflect/render.h"
+#include "interflect/solve.h"
+#include "tests/support/scenes/scenes.h"
+
+namespace interflect {
+namespace {
+
+using namespace testing_support;
+
+constexpr int side = 24;                           // [pixels] and [m]
+constexpr float cosine = 0.9397f, sine = 0.3420f;  // of 20 degrees: the direction of the edge
+constexpr float sky = 100, reflectance = 0.8f;     // radiance of the sky [cd/m^2]
+constexpr float radiance = reflectance * sky;      // of the bright half
+const View from_above{.name = "above", .eye = {0, 0, 10}, .look_at = {0, 0, 0}, .up = {0, 1, 0}, .extent = side};
+
+/// A floor whose halves meet at a slanted edge; the left one is bright. Nothing hides the uniform sky, and no light is
+/// reflected twice.
+Scene slanted_halves(const Rgb& bright_reflectance, const Rgb& bright_exitance) {
+    Scene scene;
+    const V3f along(-sine * 40, cosine * 40, 0), across(cosine * 40, sine * 40, 0);
+    const std::uint32_t bright = add_material(scene, bright_reflectance, bright_exitance);
+    add_rectangle(scene, -across - along / 2, across, along, bright, 4, 4);
+    add_rectangle(scene, -along / 2, across, along, add_material(scene, Rgb(0), Rgb(0)));
+    return scene;
+}
+
+/// Returns the share of the pixel that the left half covers.
+double coverage(int x, int y) {
+    constexpr int points = 64;  // on each axis
+    int covered = 0;
+    for (int j = 0; j < points; ++j)
+        for (int i = 0; i < points; ++i) {
+            const double u = x + (i + 0.5) / points - side / 2.0, v = side / 2.0 - (y + (j + 0.5) / points);
+            covered += u * static_cast<double>(cosine) + v * static_cast<double>(sine) < 0;
+        }
+    return static_cast<double>(covered) / (points * points);
+}
+
+struct EdgeErrors {
+    double root_mean_square = 0, mean = 0, standard_error_of_mean = 0;  // relative to the bright half
+};
+
+/// Errors of the pixels at the edge, over some seeds.
+EdgeErrors errors_at_edge(Scene scene) {
+    constexpr std::uint64_t seeds = 16;
+    if (scene.materials[0].exitance == Rgb(0)) scene.luminaires.push_back({"sky", 0, UniformSky{Rgb(sky)}});
+    const RayCaster ray_caster(scene);
+    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 100'000}});
+    PictureOptions options{.width = side, .height = side, .shading = Shading::hybrid, .samples = 8};
+    std::vector<double> errors;
+    for (options.seed = 1; options.seed <= seeds; ++options.seed) {
+        const Rendering picture = render(scene, solution, ray_caster, from_above, options);
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side; ++x)
+                if (const double share = coverage(x, y); share > 0 && share < 1)
+                    errors.push_back(static_cast<double>(picture.image.at(x, y).y / radiance) - share);
+    }
+    EdgeErrors found;
+    const auto count = static_cast<double>(errors.size());
+    for (const double e : errors) found.mean += e / count;
+    double squares = 0;
+    for (const double e : errors) squares += e * e / count;
+    found.root_mean_square = std::sqrt(squares);
+    found.standard_error_of_mean = std::sqrt(squares / count);
+    return found;
+}
+
+struct Edge {
+    std::string name;
+    Rgb reflectance, exitance;
+};
+void PrintTo(const Edge& edge, std::ostream* out) { *out << edge.name; }
+
+class Edges : public testing::TestWithParam<Edge> {};
+
+/// Eight samples a pixel leave a root mean square error of 8.1% at the edge; with up to 64 first hits it is 2.2
+/// to 2.7%. Their mean has no bias: correct code fails with a probability of 6e-5 (4 standard errors). Seen to fail
+/// without first hits, if 0.9 of the prediction is subtracted from the samples, and if it lacks the reflectance.
+TEST_P(Edges, AreSharpAndHaveTheRightMean) {
+    const EdgeErrors found = errors_at_edge(slanted_halves(GetParam().reflectance, GetParam().exitance));
+    EXPECT_LT(found.root_mean_square, 0.035);
+    EXPECT_NEAR(found.mean, 0, 4 * found.standard_error_of_mean);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfBrightHalves, Edges,
+                         testing::Values(Edge{"Reflecting", Rgb(reflectance), Rgb(0)},
+                                         Edge{"Emitting", Rgb(0), Rgb(std::numbers::pi_v<float>* radiance)}),
+                         testing::PrintToStringParamName());
+
+}  // namespace
+}  // namespace interflect
