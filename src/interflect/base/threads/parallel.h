@@ -62,6 +62,15 @@ void parallel_for_ranges(std::size_t count, std::size_t grain, const Body& body)
 #endif
 }
 
+/// Calls body(index), which takes little time, for the indices in [0, count).
+template <class Body>
+void parallel_for_indices(std::size_t count, const Body& body) {
+    constexpr std::size_t grain = 4096;
+    parallel_for_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) body(i);
+    });
+}
+
 /// Sums over these ranges in order: equal bits for any number of threads.
 template <class T, class Body>
 T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& body) {

@@ -124,7 +124,7 @@ class RegionSums {
 template <class Combine>
 Image combined(const Image& a, const Image& b, const Combine& combine) {
     Image result(a.width, a.height);
-    std::transform(a.pixels.begin(), a.pixels.end(), b.pixels.begin(), result.pixels.begin(), combine);
+    parallel_for_indices(a.pixels.size(), [&](std::size_t i) { result.pixels[i] = combine(a.pixels[i], b.pixels[i]); });
     return result;
 }
 Image difference(const Image& a, const Image& b) { return combined(a, b, std::minus<Rgb>()); }
@@ -157,14 +157,14 @@ std::vector<double> kept_shares(const Moved& moved, const Image& albedo, const s
                                 const RegionSums& region) {
     const std::size_t pixels = level.size();
     std::vector<double> squares(pixels), products(pixels);
-    for (std::size_t i = 0; i < pixels; ++i) {
+    parallel_for_indices(pixels, [&](std::size_t i) {
         const auto relative = [&](const Image& light) {
             return light.pixels[i] * albedo.pixels[i] / static_cast<float>(level[i]);
         };
         const Rgb removed = relative(moved.removed);
         squares[i] = dot(removed, removed);
         products[i] = dot(relative(moved.removed_difference), relative(moved.noise));
-    }
+    });
     squares = region(squares);
     products = region(products);
     for (std::size_t i = 0; i < pixels; ++i)
@@ -182,7 +182,7 @@ Image squared_error(const Moved& left, const Image& combined, const Image& albed
     Image result(combined.width, combined.height);
     for (int c = 0; c < 3; ++c) {
         std::vector<double> errors(pixels), spreads(pixels), squares(pixels);
-        for (std::size_t i = 0; i < pixels; ++i) {
+        parallel_for_indices(pixels, [&](std::size_t i) {
             const auto relative = [&](const Image& light) {
                 return static_cast<double>(light.pixels[i][c] * albedo.pixels[i][c]) / level[i];
             };
@@ -190,13 +190,14 @@ Image squared_error(const Moved& left, const Image& combined, const Image& albed
             errors[i] = (p * p + d * d - 2 * d * m) / 4;
             spreads[i] = (d - m) * (d - m) / 4;  // difference of the halves of the result: its noise
             squares[i] = std::pow(relative(combined), 2) + std::pow(share_of_surroundings, 2);
-        }
+        });
         errors = region(errors);
         spreads = region(spreads);
         const std::vector<double> squares_of_region = region(squares);
-        for (std::size_t i = 0; i < pixels; ++i)
+        parallel_for_indices(pixels, [&](std::size_t i) {
             result.pixels[i][c] = static_cast<float>(level[i] * level[i] * squares[i] *
                                                      std::max(errors[i], spreads[i]) / squares_of_region[i]);
+        });
     }
     return result;
 }
@@ -221,11 +222,11 @@ CombinedLight combine(const Surfaces& surfaces, const Image& albedo, const std::
                             difference(rest.removed_difference, means.removed_difference),
                             difference(rest.noise, means.noise)};
         const std::vector<double> kept = kept_shares(details, albedo, level, region);
-        for (std::size_t i = 0; i < pixels; ++i) {
+        parallel_for_indices(pixels, [&](std::size_t i) {
             const auto returned = static_cast<float>(1 - kept[i]);
             left.removed.pixels[i] -= returned * details.removed.pixels[i];
             left.removed_difference.pixels[i] -= returned * details.removed_difference.pixels[i];
-        }
+        });
         rest = std::move(means);
     }
     left.removed = difference(left.removed, rest.removed);

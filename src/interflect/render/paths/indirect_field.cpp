@@ -39,7 +39,7 @@ constexpr float usual_samples = 8;
 constexpr float max_baked_error = 0.1f;  // standard error of a record, relative to E
 /// Reach of a record, relative to the harmonic mean length of its rays, and its limits in spacings of the points. With
 /// 0.35 in place of 0.15, errors are 1.1 to 1.8 times as large, even with 512 paths per record.
-constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
+constexpr float reach_over_length = 0.15f, usual_min_spacings = 4, max_spacings = 100;
 /// A record and its neighbours halve their reach if the record differs from the fit of its neighbours by more than this
 /// share of all irradiance. The halved reach is at least min_halved_spacings.
 constexpr float max_residual = 0.1f, min_halved_spacings = 2;
@@ -56,15 +56,21 @@ constexpr std::size_t points_per_task = 1024, records_per_task = 64, groups_per_
 /// Groups that each rank gathers before it checks again for a stop; they take one thread some seconds.
 constexpr std::size_t groups_of_rank = 1 << 16;
 
-/// Effort for records, relative to that of pictures with the usual samples.
+/// Effort for records, relative to that of pictures with the usual samples. It is full for bakes, and for a target of
+/// the error, which includes that of records.
 float effort_of(const PathPlan& plan) {
-    return plan.start.camera ? std::min(1.0f, static_cast<float>(plan.options.samples) / usual_samples) : 1;
+    const bool is_full = !plan.start.camera || plan.options.until > 0;
+    return is_full ? 1 : std::min(1.0f, static_cast<float>(plan.options.samples) / usual_samples);
 }
 /// With two samples a pixel, a quarter of the usual groups has 1.17 times the squared error in 0.67 of the time.
 std::size_t least_groups(const PathPlan& plan) {
     constexpr float fewest = 2;  // the spread of a group is that of its halves
     return static_cast<std::size_t>(std::max(fewest, effort_of(plan) * static_cast<float>(usual_least_groups)));
 }
+
+/// With two samples a pixel, 8 spacings have the errors of 4 in 0.9 of the time; with eight, 1.1 times the errors in
+/// blocks.
+float min_spacings(const PathPlan& plan) { return usual_min_spacings / std::sqrt(effort_of(plan)); }
 
 V3f nearest_on(const Contact& contact, const V3f& x) {
     const V3f along = contact.b - contact.a;
@@ -223,7 +229,7 @@ bool IndirectField::add_records(const PathPlan& plan, std::span<const SurfacePoi
     for (std::size_t i = 0; i < points.size(); ++i) {
         Record& r = records_[old_count + i];
         const float max_reach = max_spacings * r.spacing;
-        r.reach = lengths[i] > 0 ? std::clamp(reach_over_length * lengths[i], min_spacings * r.spacing, max_reach)
+        r.reach = lengths[i] > 0 ? std::clamp(reach_over_length * lengths[i], min_spacings(plan) * r.spacing, max_reach)
                                  : max_reach;
         r.reach_elsewhere = distance_to_contact(r.position, r.reach);
         r.irradiance = luminance(Rgb(r.gathered.mean));
@@ -313,14 +319,16 @@ void IndirectField::estimate_bias() {
             if (const std::optional<Residual> found = residual(static_cast<std::uint32_t>(i)))
                 excess[i] = static_cast<float>(found->square - found->variance);
     });
-    for (Record& r : records_) {
-        double sum = 0, count = 0;
-        visit_near(r.position, r.normal, r.patch, [&](std::uint32_t k, float) {
-            sum += static_cast<double>(excess[k]);
-            ++count;
-        });
-        r.squared_bias = count > 0 ? bias_of_points * std::max(0.0f, static_cast<float>(sum / count)) : 0;
-    }
+    parallel_for_ranges(records_.size(), records_per_task, [&](std::size_t begin, std::size_t end) {
+        for (Record& r : std::span(records_).subspan(begin, end - begin)) {
+            double sum = 0, count = 0;
+            visit_near(r.position, r.normal, r.patch, [&](std::uint32_t k, float) {
+                sum += static_cast<double>(excess[k]);
+                ++count;
+            });
+            r.squared_bias = count > 0 ? bias_of_points * std::max(0.0f, static_cast<float>(sum / count)) : 0;
+        }
+    });
 }
 
 void IndirectField::refine_noisy_records(const PathPlan& plan, const CommonStop& stop) {

@@ -12,6 +12,7 @@
 
 #include "interflect/base/sums/common_stop.h"
 #include "interflect/base/threads/monitor_section.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/base/threads/stop_request.h"
 #include "interflect/core.h"
 #include "interflect/render/pictures/camera_samples.h"
@@ -76,13 +77,13 @@ class PathPicture {
         Rendering result;
         result.image = Image(options_.width, options_.height);
         result.standard_error = Image(options_.width, options_.height);
-        result.batches.reserve(pixels_.size());
-        for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            result.batches.push_back(pixels_[i].samples_of_half() / batch_size() * 2);
+        result.batches.resize(pixels_.size());
+        parallel_for_indices(pixels_.size(), [&](std::size_t i) {
+            result.batches[i] = pixels_[i].samples_of_half() / batch_size() * 2;
             const RgbD e = pixels_[i].squared_error();
             result.image.pixels[i] = Rgb(pixels_[i].mean());
             result.standard_error.pixels[i] = Rgb(RgbD(std::sqrt(e.x), std::sqrt(e.y), std::sqrt(e.z)));
-        }
+        });
         result.layers = layers();
         result.relative_error = error_of_picture();
         result.rays = counts_.rays;
@@ -122,7 +123,7 @@ class PathPicture {
     SampledLight light_of(const auto& part, double variances) const {
         SampledLight light{Image(options_.width, options_.height), Image(options_.width, options_.height),
                            std::vector<float>(pixels_.size()), std::vector<float>(pixels_.size())};
-        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        parallel_for_indices(pixels_.size(), [&](std::size_t i) {
             const PathLight mean = part(pixels_[i]);
             light.direct.pixels[i] = Rgb(mean.direct);
             light.indirect.pixels[i] = Rgb(mean.indirect);
@@ -131,7 +132,7 @@ class PathPicture {
             };
             light.direct_variance[i] = variance(pixels_[i].direct_squared_error());
             light.indirect_variance[i] = variance(pixels_[i].indirect_squared_error());
-        }
+        });
         return light;
     }
 
@@ -147,7 +148,7 @@ class PathPicture {
             *image = Image(options_.width, options_.height);
         layers.depth.resize(pixels_.size());
         layers.level.resize(pixels_.size());
-        for (std::size_t i = 0; i < pixels_.size(); ++i) {
+        parallel_for_indices(pixels_.size(), [&](std::size_t i) {
             const FirstHit first = pixels_[i].first();
             layers.emitted.pixels[i] = Rgb(pixels_[i].light().emitted);
             layers.albedo.pixels[i] = Rgb(first.albedo);
@@ -155,7 +156,7 @@ class PathPicture {
             layers.position.pixels[i] = Rgb(V3f(first.position));
             layers.depth[i] = static_cast<float>(first.distance);
             layers.level[i] = static_cast<float>(first.level);
-        }
+        });
         return layers;
     }
 

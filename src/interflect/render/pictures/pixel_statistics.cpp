@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
+
+#include "interflect/base/threads/parallel.h"
 
 namespace interflect::detail {
 
@@ -21,22 +24,32 @@ std::array<RgbD, 3> parts_of(const PathLight& light) {
     return {light.emitted + light.direct + light.indirect, light.direct, light.indirect};
 }
 
+/// Returns value(pixel) of each pixel.
+template <class Value>
+std::vector<double> of_pixels(const std::vector<PixelStatistics>& pixels, const Value& value) {
+    std::vector<double> values(pixels.size());
+    parallel_for_indices(pixels.size(), [&](std::size_t i) { values[i] = value(pixels[i]); });
+    return values;
+}
+
 double mean_reflected(const std::vector<PixelStatistics>& pixels) {
-    double sum = 0;
-    for (const PixelStatistics& p : pixels) sum += p.reflected();
-    return sum / static_cast<double>(pixels.size());
+    const std::vector<double> reflected = of_pixels(pixels, [](const PixelStatistics& p) { return p.reflected(); });
+    return std::accumulate(reflected.begin(), reflected.end(), 0.0) / static_cast<double>(pixels.size());
 }
 
 /// Sums each value over its neighbours in a line. Line j starts at index j line_step; its values are `step` apart.
 std::vector<double> sums_along(const std::vector<double>& values, std::size_t lines, std::size_t line_step,
                                std::size_t length, std::size_t step, std::size_t radius) {
+    constexpr std::size_t lines_per_task = 16;
     std::vector<double> sums(values.size());
-    for (std::size_t line = 0; line < lines; ++line)
-        for (std::size_t i = 0; i < length; ++i) {
-            const std::size_t first = i - std::min(i, radius), end = std::min(length, i + radius + 1);
-            double& sum = sums[line * line_step + i * step];
-            for (std::size_t k = first; k < end; ++k) sum += values[line * line_step + k * step];
-        }
+    parallel_for_ranges(lines, lines_per_task, [&](std::size_t begin, std::size_t end_of_lines) {
+        for (std::size_t line = begin; line < end_of_lines; ++line)
+            for (std::size_t i = 0; i < length; ++i) {
+                const std::size_t first = i - std::min(i, radius), end = std::min(length, i + radius + 1);
+                double& sum = sums[line * line_step + i * step];
+                for (std::size_t k = first; k < end; ++k) sum += values[line * line_step + k * step];
+            }
+    });
     return sums;
 }
 
@@ -51,9 +64,8 @@ std::vector<double> sums_around(std::vector<double> values, const PictureOptions
 /// picture. The pixel itself is left out, because its noisy value would hide errors of rare light and bias the number
 /// of its samples.
 std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
-    std::vector<double> light;
-    light.reserve(pixels.size());
-    for (const PixelStatistics& p : pixels) light.push_back(mean_channel(p.mean()));
+    const std::vector<double> light =
+        of_pixels(pixels, [](const PixelStatistics& p) { return mean_channel(p.mean()); });
     std::vector<double> scale = sums_around(light, options);
     const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options);
     const double least = mean_reflected(pixels);
@@ -65,9 +77,8 @@ std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, cons
 /// Returns the mean emitted light of each pixel and the eight around it, because the neighbourhood of a small lamp is
 /// much darker than the lamp. The mean is used because a single noisy pixel would hide its own error.
 std::vector<double> lamps_around(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
-    std::vector<double> light;
-    light.reserve(pixels.size());
-    for (const PixelStatistics& p : pixels) light.push_back(mean_channel(p.light().emitted));
+    std::vector<double> light =
+        of_pixels(pixels, [](const PixelStatistics& p) { return mean_channel(p.light().emitted); });
     light = sums_around(light, options, radius_of_lamps);
     const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options, radius_of_lamps);
     for (std::size_t i = 0; i < light.size(); ++i) light[i] /= count[i];
@@ -166,10 +177,12 @@ double relative_error(const std::vector<PixelStatistics>& pixels, const PictureO
     const auto has_error = [](const PixelStatistics& p) { return p.has_error(); };
     if (!std::all_of(pixels.begin(), pixels.end(), has_error)) return std::numeric_limits<double>::infinity();
     const std::vector<double> around = error_scale(pixels, options), lamps = lamps_around(pixels, options);
+    const std::vector<double> squares =
+        of_pixels(pixels, [](const PixelStatistics& p) { return mean_channel(p.squared_error()); });
     double sum = 0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         const double scale = std::max(around[i], lamps[i]);
-        if (scale > 0) sum += mean_channel(pixels[i].squared_error()) / (scale * scale);
+        if (scale > 0) sum += squares[i] / (scale * scale);
     }
     return std::sqrt(sum / static_cast<double>(pixels.size()));
 }
@@ -177,9 +190,9 @@ double relative_error(const std::vector<PixelStatistics>& pixels, const PictureO
 std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target) {
     const std::vector<double> scale = error_scale(pixels, options);
-    std::vector<double> variance(pixels.size());  // variance of a mean of two samples, one from each half
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-        variance[i] = mean_channel(pixels[i].sampling_error()) * pixels[i].samples_of_half();
+    // Variance of a mean of two samples, one from each half
+    const std::vector<double> variance = of_pixels(
+        pixels, [](const PixelStatistics& p) { return mean_channel(p.sampling_error()) * p.samples_of_half(); });
     const std::vector<double> sums = sums_around(variance, options);
     const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options);
     std::vector<double> needed(pixels.size(), 0);
@@ -196,12 +209,11 @@ std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>&
     // -3/4.
     constexpr double samples_per_error = 4.0 / 3;
     const std::vector<double> reflected = error_scale(pixels, options), lamps = lamps_around(pixels, options);
-    std::vector<double> variance(pixels.size());
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const PathLight light = pixels[i].light();
+    const std::vector<double> variance = of_pixels(pixels, [](const PixelStatistics& p) {
+        const PathLight light = p.light();
         const double mean = mean_channel(light.emitted + light.predicted);
-        variance[i] = std::max(0.0, light.square_of_first_hit - mean * mean);
-    }
+        return std::max(0.0, light.square_of_first_hit - mean * mean);
+    });
     const std::vector<double> sums = sums_around(variance, options, radius_of_edges);
     const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options, radius_of_edges);
     std::vector<std::uint32_t> needed(pixels.size(), 0);
