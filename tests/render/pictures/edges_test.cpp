@@ -24,8 +24,8 @@ constexpr float sky = 100, reflectance = 0.8f;     // radiance of the sky [cd/m^
 constexpr float radiance = reflectance * sky;      // of the bright half
 const View from_above{.name = "above", .eye = {0, 0, 10}, .look_at = {0, 0, 0}, .up = {0, 1, 0}, .extent = side};
 
-/// A floor whose halves meet at a slanted edge; the left one is bright. Nothing hides the uniform sky, and no light is
-/// reflected twice.
+/// A floor with a bright left half and a black right half, which meet at a slanted edge. Nothing hides the uniform sky,
+/// and light is reflected at most once.
 Scene slanted_halves(const Rgb& bright_reflectance, const Rgb& bright_exitance) {
     Scene scene;
     const V3f along(-sine * 40, cosine * 40, 0), across(cosine * 40, sine * 40, 0);

@@ -56,15 +56,15 @@ constexpr std::size_t points_per_task = 1024, records_per_task = 64, groups_per_
 /// Groups that each rank gathers before it checks again for a stop; they take one thread some seconds.
 constexpr std::size_t groups_of_rank = 1 << 16;
 
-/// Effort for records, relative to that of pictures with the usual samples. It is full for bakes, and for a target of
-/// the error, which includes that of records.
+/// Effort for records, relative to pictures with the usual samples. Bakes have full effort, and so do pictures with a
+/// target of the error, because it includes the error of records.
 float effort_of(const PathPlan& plan) {
     const bool is_full = !plan.start.camera || plan.options.until > 0;
     return is_full ? 1 : std::min(1.0f, static_cast<float>(plan.options.samples) / usual_samples);
 }
 /// With two samples a pixel, a quarter of the usual groups has 1.17 times the squared error in 0.67 of the time.
 std::size_t least_groups(const PathPlan& plan) {
-    constexpr float fewest = 2;  // the spread of a group is that of its halves
+    constexpr float fewest = 2;
     return static_cast<std::size_t>(std::max(fewest, effort_of(plan) * static_cast<float>(usual_least_groups)));
 }
 

@@ -110,8 +110,7 @@ class PathPicture {
     /// Samples of each half in a batch. A power of two, except in hybrid shading, where all batches of a pixel continue
     /// the same two sequences.
     std::uint32_t batch_size() const {
-        if (plan_.hybrid)
-            return is_limited(options_) ? 1 : std::min(samples_of_half(options_.samples), first_samples());
+        if (plan_.hybrid) return std::min(samples_of_half(options_.samples), first_samples());
         const int parts = error_source() == ErrorSource::batches ? 2 * min_parts : min_parts;
         const auto size =
             std::bit_floor(static_cast<unsigned>(std::clamp(options_.samples / parts, 1, largest_half_batch)));

@@ -14,7 +14,7 @@ namespace interflect::detail {
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
 
 /// Peak memory of trace_picture() [bytes].
-inline constexpr std::size_t path_bytes_per_pixel = 600;
+inline constexpr std::size_t path_bytes_per_pixel = 760;
 
 /// Draws the picture with virtual lights; the arguments are those of trace_picture().
 Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,

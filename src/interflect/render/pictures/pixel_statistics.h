@@ -59,7 +59,7 @@ class PixelStatistics {
     std::array<PathLight, 2> sums_{};  // sum over the samples of each half
     std::uint32_t samples_ = 0;        // number of samples of each half
     /// Means of emitted and predicted light over the first hits of each half.
-    std::array<std::array<RgbD, 2>, 2> first_hits_{};
+    std::array<std::array<Rgb, 2>, 2> first_hits_{};
     std::uint32_t number_of_first_hits_ = 0;  // of each half
     FirstHit first_sum_;                      // over samples and first hits
     Spread spread_;
