@@ -113,7 +113,7 @@ struct Rendering {
 /// @return          The same bits for the same seed and any number of threads, unless interrupted or out of time.
 /// @throws InputError for a view that defines no picture, an option out of range, and a solution or a ray caster of
 ///         another scene.
-/// Cost: of flat and smooth shading, a ray per sample; of others, two rays a vertex, 250 bytes a patch and 600 a pixel.
+/// Cost: of flat and smooth shading, a ray per sample; of others, two rays a vertex, 250 bytes a patch and 760 a pixel.
 /// Paths have two vertices in gathering; in path tracing 1 / (1 - rho) or a few more for reflectances about rho.
 /// Instant radiosity has three more shadow rays at the first vertex and fewer bounces, and takes 0.5 to 4 kB a walk.
 Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
