@@ -155,14 +155,9 @@ bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
     }
 
     if (channel_sum(exitance) > 0) add_emission(hit, ray.direction, distance, path, exitance);
-    if (vertex_ == 1 && plan_.hybrid) {
-        const Rgb& irradiance = plan_.known->irradiance(plan_.known->place(hit.patch, x));
-        const Rgb predicted = path.throughput * reflectance * irradiance / pi;
-        PathLight& light = light_[path.half_batch];
-        light.predicted += RgbD(predicted);
-        const double seen = mean_channel(RgbD(predicted + path.throughput * exitance / pi));
-        light.square_of_first_hit += seen * seen;
-    }
+    if (vertex_ == 1 && plan_.hybrid)
+        add_first_hit(path, exitance / pi,
+                      reflectance * plan_.known->irradiance(plan_.known->place(hit.patch, x)) / pi);
     if (path.sampling.is_last || end_at_known_light(hit, x, ray.direction, distance, path)) return false;
     if (plan_.virtual_lights && vertex_ > 1) path.throughput *= share_beyond_bound(hit, ray.direction, distance, path);
     path.throughput *= reflectance;
@@ -319,13 +314,19 @@ void PathIntegrator::store(std::span<SampleBatch> batches) const {
     }
 }
 
+void PathIntegrator::add_first_hit(const Path& path, const Rgb& emitted, const Rgb& predicted) {
+    PathLight& light = light_[path.half_batch];
+    light.predicted += RgbD(path.throughput * predicted);
+    const double seen = mean_channel(RgbD(path.throughput * (emitted + predicted)));
+    light.square_of_first_hit += seen * seen;
+}
+
 void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
     const Skies& skies = plan_.sources().skies();
     if (vertex_ == 1) {
-        const Rgb seen = path.throughput * skies.seen(direction);
-        const double mean = mean_channel(RgbD(seen));
-        light_[path.half_batch].square_of_first_hit += mean * mean;
-        return add(path.half_batch, 0, seen);
+        const Rgb seen = skies.seen(direction);
+        add_first_hit(path, seen, Rgb(0));
+        return add(path.half_batch, 0, path.throughput * seen);
     }
     Rgb radiance = sampled_sky(path, direction);
     if (channel_sum(radiance) > 0)

@@ -51,6 +51,8 @@ class PathIntegrator {
 
     // Contributions of a surface or the sky to a path:
     void add_sky(const Path& path, const V3f& direction);
+    /// Adds PathLight::predicted and the square. @param emitted, predicted  Radiance of the first surface or the sky.
+    void add_first_hit(const Path& path, const Rgb& emitted, const Rgb& predicted);
     void add_emission(const Hit& hit, const V3f& direction, float distance, const Path& path, const Rgb& exitance);
     bool end_at_known_light(const Hit& hit, const V3f& x, const V3f& direction, float distance, const Path& path);
     /// Returns the share of the light from the hit to the path's last vertex that virtual lights do not represent.

@@ -51,8 +51,8 @@ class PathPicture {
         const std::uint32_t least_parts = error_source() == ErrorSource::batches ? 2 : 1;
         const std::uint32_t usual = std::max(samples_of_half(options_.samples), least_parts * batch_size());
         const std::uint32_t allowed = samples_of_half(std::max(options_.max_samples, options_.samples));
-        const bool has_no_number = options_.until > 0 || is_limited(options_);  // the target or the time is one
-        const std::uint32_t most = has_no_number ? allowed / batch_size() * batch_size() : usual;
+        const bool is_open_ended = options_.until > 0 || is_limited(options_);
+        const std::uint32_t most = is_open_ended ? allowed / batch_size() * batch_size() : usual;
         const std::uint32_t least =
             plan_.hybrid || is_limited(options_) ? std::min(usual, least_parts * first_samples()) : usual;
         foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());

@@ -208,19 +208,24 @@ std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>&
     // At an edge, the error of a mean of n stratified samples is about their standard deviation times n to the power of
     // -3/4.
     constexpr double samples_per_error = 4.0 / 3;
-    const std::vector<double> reflected = error_scale(pixels, options), lamps = lamps_around(pixels, options);
+    const std::vector<double> scale = error_scale(pixels, options);
+    const std::vector<double> emitted =
+        of_pixels(pixels, [](const PixelStatistics& p) { return mean_channel(p.light().emitted); });
     const std::vector<double> variance = of_pixels(pixels, [](const PixelStatistics& p) {
         const PathLight light = p.light();
         const double mean = mean_channel(light.emitted + light.predicted);
         return std::max(0.0, light.square_of_first_hit - mean * mean);
     });
     const std::vector<double> sums = sums_around(variance, options, radius_of_edges);
+    const std::vector<double> sums_of_lamps = sums_around(emitted, options, radius_of_edges);
     const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options, radius_of_edges);
     std::vector<std::uint32_t> needed(pixels.size(), 0);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        const double scale = std::max(reflected[i], lamps[i]);
-        if (!(scale > 0) || !(count[i] > 1)) continue;
-        const double deviation = std::sqrt(std::max(0.0, sums[i] - variance[i]) / (count[i] - 1)) / scale;
+        if (!(count[i] > 1)) continue;
+        const double others = count[i] - 1, lamps = (sums_of_lamps[i] - emitted[i]) / others;
+        const double relative_to = std::max(scale[i], lamps);
+        if (!(relative_to > 0)) continue;
+        const double deviation = std::sqrt(std::max(0.0, sums[i] - variance[i]) / others) / relative_to;
         const double of_half = std::pow(deviation / first_hit_target, samples_per_error) / 2;
         if (of_half > pixels[i].samples_of_half())
             needed[i] = std::bit_ceil(static_cast<std::uint32_t>(std::min(most_first_hits, of_half)));
