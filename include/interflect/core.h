@@ -116,6 +116,7 @@ struct Progress {
 };
 
 class Ranks;
+struct Rendering;
 
 /// Progress reports and early termination of long work, and who shares it.
 struct Monitor {
@@ -127,6 +128,9 @@ struct Monitor {
     /// the first one counts, and ends the work after some seconds. Only the command shares pictures, measurements and
     /// exports; elsewhere their monitor needs null.
     Ranks* ranks = nullptr;
+    /// Called on the calling thread by render() in hybrid shading with a picture so far, once every pixel has its first
+    /// samples, if more may follow. May be empty.
+    std::function<void(const Rendering&)> on_picture = {};
 };
 
 /// Thrown if Monitor::stop ends work before it has a usable result. The message names the missing part.

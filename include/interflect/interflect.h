@@ -11,6 +11,7 @@
 ///     for (const Leaf& leaf : leaves(scene, solution)) ... // solution.h: irradiance and errors of the mesh; files
 ///     find_escapes(scene, ray_caster, solution);           // leaks.h: light that leaves the scene through gaps
 ///     render(scene, solution, ray_caster, scene.views[0]); // render.h, shading.h; image.h writes files
+///     preview(scene, solution, ray_caster, scene.views[0]).image;     // preview.h: a rough picture in a second
 ///     denoise(rendering.layers).image;                     // denoise.h: filters against the noise of pictures
 ///     compare(image, reference).flip;                      // metrics.h: differences of pictures
 ///     measure_irradiance(...);                             // measure.h: lux at points and grids, glare, probes
@@ -34,6 +35,7 @@
 #include "interflect/metrics.h"
 #include "interflect/plots.h"
 #include "interflect/prepare.h"
+#include "interflect/preview.h"
 #include "interflect/rates.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"

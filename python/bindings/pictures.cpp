@@ -10,6 +10,7 @@
 #include "interflect/image/codecs/image_codecs.h"
 #include "interflect/image/codecs/srgb.h"
 #include "interflect/metrics.h"
+#include "interflect/preview.h"
 #include "interflect/render.h"
 #include "long_work.h"
 
@@ -44,6 +45,17 @@ SharedRendering draw(const py::object& lit, const py::object& view, const Pictur
         return std::make_shared<Rendering>(
             place.solution ? render(*place.scene, *place.solution, *place.ray_caster, camera, options, monitor)
                            : render(*place.scene, *place.ray_caster, camera, options, monitor));
+    });
+}
+
+SharedRendering draw_preview(const SharedLight& light, const py::object& view, const PictureOptions& options,
+                             int reduction, const std::string& denoiser, int threads, const py::object& progress) {
+    const View camera = view_of(*light->scene, view);
+    const PreviewOptions preview_options{reduction, find_denoiser(denoiser)};
+    name_library_of_pyoidn();
+    return long_work(progress, threads, [&](const Monitor& monitor) {
+        return std::make_shared<Rendering>(
+            preview(*light->scene, *light->solution, *light->ray_caster, camera, options, preview_options, monitor));
     });
 }
 
@@ -278,6 +290,8 @@ void bind_pictures(py::module_& m) {
     bind_differences(m);
     m.def("render", &draw, py::arg("lit"), py::arg("view"), py::arg("options"), py::arg("threads"), py::arg("progress"),
           Documented("For interflect.render() and trace()."));
+    m.def("preview", &draw_preview, py::arg("lit"), py::arg("view"), py::arg("options"), py::arg("reduction"),
+          py::arg("denoiser"), py::arg("threads"), py::arg("progress"), Documented("For interflect.preview()."));
     m.def(
         "automatic_exposure", [](const Floats& image) { return automatic_exposure(image_of(image, "image")); },
         py::arg("image"),

@@ -26,7 +26,7 @@ from interflect._core import (
 )
 from interflect._core import version as __version__
 from interflect._errors import Error, Fault, InputError, Stopped, TooManyPatches, Warning
-from interflect._pictures import export, probe, rate_glare, render, tonemap, trace
+from interflect._pictures import export, preview, probe, rate_glare, render, tonemap, trace
 from interflect._scenes import load
 from interflect._solving import Solver, open_solution, solve
 from interflect._view_factors import view_factors
@@ -39,7 +39,7 @@ __all__ = [
     "Reconciliation", "Rendering", "Scene", "SceneSummary", "SkyDome", "SkyModel", "Solution", "Solver", "SpotLight", "Stopped", "Sun", "Texture", "TooManyPatches",
     "UniformSky", "View", "ViewFactors", "Warning", "WeightedView", "__version__", "area_grid", "automatic_exposure", "cie_standard_sky",
     "compare", "cut_at_contacts", "export", "export_scene", "find_floor", "find_surface", "find_top", "grid_spacing",
-    "groups_by_name", "line_grid", "load", "load_photometric_web", "none", "open_solution", "overview", "probe",
+    "groups_by_name", "line_grid", "load", "load_photometric_web", "none", "open_solution", "overview", "preview", "probe",
     "rate_glare", "read_image", "read_radiance_view", "render", "solve", "summarise", "tonemap", "trace", "validate",
     "view_factors", "write_image",
 ]

@@ -7,6 +7,7 @@
 #include "interflect/denoise.h"
 #include "interflect/measure.h"
 #include "interflect/metrics.h"
+#include "interflect/preview.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"
 #include "tests/support/rooms/reference_rooms.h"
@@ -64,6 +65,15 @@ TEST_P(SameBitsOfPictures, UntilAnErrorIsReached) {
     until.until = 0.1;
     until.max_samples = 16;
     expect_same_bits([&] { return bits_of(room().picture(until)); });
+}
+
+TEST(SameBitsOfPreviews, InAQuarterOfTheSize) {
+    const PictureOptions options{.width = 64, .height = 36};
+    expect_same_bits([&] {
+        const Rendering r = preview(room().scene, room().solution, room().ray_caster, into_the_corner, options,
+                                    {.reduction = 4, .denoiser = Denoiser::own});
+        return std::tuple(r.image.pixels, r.rays);
+    });
 }
 
 TEST(SameBitsOfFilteredPictures, ByTheOwnFilter) {

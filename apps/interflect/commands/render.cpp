@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -34,6 +36,7 @@
 #include "interflect/image.h"
 #include "interflect/image/files/pending_image.h"
 #include "interflect/plots.h"
+#include "interflect/preview.h"
 #include "interflect/render.h"
 #include "interflect/scene.h"
 #include "interflect/solution.h"
@@ -43,6 +46,8 @@ namespace interflect::command {
 using namespace detail;
 
 namespace {
+
+constexpr int usual_reduction = 4;  // of previews
 
 struct RenderArguments {
     SceneOptions scene;
@@ -62,6 +67,8 @@ struct RenderArguments {
     FalseColourOptions false_colour;
     int legend_rows = 0;  // height of the legend at the foot of the picture
     bool has_default_samples = true;
+    bool progressive = false;  // whether better pictures replace the first as the light improves
+    int reduction = 1;         // above 1, the picture is a preview() for lack of time
 
     bool is_in_false_colours() const { return is_quantity(shown) || false_colour.measured; }
     /// Height of the view, above the legend [pixels].
@@ -141,10 +148,43 @@ Picture picture_of(const Image& light, std::int64_t non_finite_pixels, const Ren
     return picture;
 }
 
+/// Writes a picture that a better one will replace.
+void write_preview(const Picture& picture, const View& view, const Scene& scene, const RenderArguments& options) {
+    PendingFile output(options.output);
+    write_image(output, picture.image,
+                {view,
+                 picture.quantity,
+                 scene.name,
+                 INTERFLECT_VERSION,
+                 options.solver.seed(),
+                 picture.exposure.value_or(0),
+                 {}});
+    spdlog::info("{}: picture so far; a better one will replace it", options.output.string());
+}
+
+/// Draws the light in about a second, as a preview of hybrid shading or by smooth shading.
+Rendering draw_roughly(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                       const RenderArguments& options, int reduction, const Monitor& monitor) {
+    if (options.picture.shading == Shading::hybrid)
+        return preview(scene, solution, ray_caster, view, options.picture,
+                       {reduction, options.path.denoise.value_or(Denoiser::automatic)}, monitor);
+    constexpr int few_samples = 4;
+    PictureOptions few = options.picture;
+    few.samples = std::min(few.samples, few_samples);
+    few.shading = Shading::smooth;
+    return interflect::render(scene, solution, ray_caster, view, few, monitor);
+}
+
 /// Draws the light by tracing paths. @param solution  Null for shading without a solution.
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
-    TracedPicture traced = run_path_tracer(scene, solution, ray_caster, view, options.picture, options.path);
+    std::function<void(const Image&)> write_so_far;
+    if (options.progressive)
+        write_so_far = [&](const Image& so_far) {
+            write_preview(picture_of(so_far, count_non_finite(so_far), options), view, scene, options);
+        };
+    TracedPicture traced =
+        run_path_tracer(scene, solution, ray_caster, view, options.picture, options.path, write_so_far);
     Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
     picture.traced = std::move(traced);
     return picture;
@@ -204,77 +244,79 @@ std::array<NamedFile, 3> outputs_of(const RenderArguments& options) {
         {{"--output", options.output}, {"--stats", options.solver.stats}, {"--error-image", options.path.error_image}}};
 }
 
-/// Returns whether coarser pictures may precede the final picture. Previews are not written under a time limit, in .exr
-/// and .hdr, for small pictures, and to pipes and devices.
+/// Whether a later picture can replace the output: it is no pipe or device.
+bool is_replaceable(const std::filesystem::path& output) {
+    std::error_code unknown;
+    const auto status = std::filesystem::status(output, unknown);
+    return !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+}
+
+/// Whether rough pictures precede the last one. Without --progressive, not under a time limit, in .exr and .hdr, and for
+/// small pictures.
 bool takes_previews(const RenderArguments& options) {
     constexpr std::size_t fewest_pixels = 1 << 16;  // smaller pictures take less than a second
-    if (std::isfinite(options.solver.time())) return false;
-    if (!is_for_people(options) || options.shown != Shown::light || options.size.pixels() < fewest_pixels) return false;
-    std::error_code unknown;
-    const auto status = std::filesystem::status(options.output, unknown);
-    return options.output != "-" && (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status));
+    if (options.progressive) return true;
+    return !std::isfinite(options.solver.time()) && is_for_people(options) && options.shown == Shown::light &&
+           options.size.pixels() >= fewest_pixels && is_replaceable(options.output);
 }
 
-/// Writes a preview of the light so far, with few samples. A later picture replaces it.
-void write_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                   const RenderArguments& options) {
-    constexpr int preview_samples = 4;
-    PictureOptions few = options.picture;
-    few.samples = std::min(few.samples, preview_samples);
-    few.shading = Shading::smooth;
-    const Rendering rendering = interflect::render(scene, solution, ray_caster, view, few, {{}, &stop_flag()});
-    if (rendering.interrupted) return;
-    const Picture picture = picture_of(rendering.image, rendering.non_finite_pixels, options);
-    PendingFile output(options.output);
-    write_image(output, picture.image,
-                {view,
-                 picture.quantity,
-                 scene.name,
-                 INTERFLECT_VERSION,
-                 solution.options.seed,
-                 picture.exposure.value_or(0),
-                 {}});
-    spdlog::info("{}: picture so far; a better one will replace it", options.output.string());
+/// Writes a rough picture of the light so far.
+void write_light_so_far(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                        const RenderArguments& options, int reduction) {
+    const Rendering rough = draw_roughly(scene, solution, ray_caster, view, options, reduction, {{}, &stop_flag()});
+    if (!rough.interrupted)
+        write_preview(picture_of(rough.image, rough.non_finite_pixels, options), view, scene, options);
 }
 
-/// Predicts the time of drawing. Changes to smooth shading with few samples if the time is too short.
+/// Predicts the time of drawing. Chooses a preview, or smooth shading with few samples, if the time is too short.
 DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                          RenderArguments& options) {
     constexpr int few_samples = 4;
     if (traces_paths(options.picture.shading)) {
+        const double limit = options.path.needs_paths() ? std::numeric_limits<double>::infinity()
+                                                        : largest_drawing_share * options.seconds_left();
         const DrawingTime paths =
-            predict_time_of_paths(scene, solution, ray_caster, view, options.picture, options.path.denoise);
+            predict_time_of_paths(scene, solution, ray_caster, view, options.picture, options.path.denoise, limit);
         const double left = options.seconds_left();
-        if (paths.total() <= largest_drawing_share * left) return paths;
-        const std::string needed = fmt::format("per-pixel shading takes about {}, but --time leaves {}",
-                                               duration(paths.total()), duration(std::max(0.0, left)));
-        if (options.path.needs_paths()) {
-            spdlog::warn("{}: the picture will be late", needed);
+        const bool fits = paths.total() <= largest_drawing_share * left;
+        options.reduction = paths.reduction;
+        if (paths.reduction > 1)
+            spdlog::warn(
+                "--time is too short for all pixels: light is traced for one in {} x {}, so small shadows are "
+                "blurred; a smaller --size takes less time",
+                paths.reduction, paths.reduction);
+        if (fits || options.picture.shading == Shading::hybrid || options.path.needs_paths()) {
+            if (!fits)
+                spdlog::warn("drawing takes about {}, but --time leaves {}: the picture will be late",
+                             duration(paths.total()), duration(std::max(0.0, left)));
             return paths;
         }
-        spdlog::warn("{}: the light is drawn as with --shading smooth; a smaller --size takes less time", needed);
+        spdlog::warn(
+            "per-pixel shading takes about {}, but --time leaves {}: the light is drawn as with --shading "
+            "smooth; a smaller --size takes less time",
+            duration(paths.total()), duration(std::max(0.0, left)));
         options.picture.shading = Shading::smooth;
         options.picture.samples = std::min(options.picture.samples, few_samples);
     }
     return predict_time_of_elements(scene, solution, ray_caster, view, options.picture);
 }
 
-/// Draws the light of a solution. If a signal stops path tracing before every pixel has light, draws smooth shading.
+/// Draws the light of a solution. If a signal stops path tracing before every pixel has light, draws it roughly.
 Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                      RenderArguments& options) {
-    if (traces_paths(options.picture.shading)) {
-        // A signal that ended the solver would end gathering before its first ray.
-        if (options.path.needs_paths() || !is_stop_requested()) {
-            Picture picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options);
-            if (options.path.needs_paths() || has_every_pixel(picture.traced)) return picture;
-        }
-        spdlog::warn("stopped before each pixel had enough light: the picture is drawn as with --shading smooth");
-        options.picture.shading = Shading::smooth;
-        options.picture.samples =
-            std::min(options.picture.samples, require_samples(Shading::smooth, &DefaultSamples::pixel));
+                      const RenderArguments& options) {
+    if (is_quantity(options.shown)) return draw_quantity(solved, ray_caster, view, options);
+    if (!traces_paths(options.picture.shading)) return draw_light(solved, ray_caster, view, options);
+    // A signal that ended the solver would end gathering before its first ray.
+    if (options.path.needs_paths() || (options.reduction == 1 && !is_stop_requested())) {
+        Picture picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options);
+        if (options.path.needs_paths() || has_every_pixel(picture.traced)) return picture;
     }
-    return is_quantity(options.shown) ? draw_quantity(solved, ray_caster, view, options)
-                                      : draw_light(solved, ray_caster, view, options);
+    if (options.reduction == 1) spdlog::warn("stopped before each pixel had enough light: the picture is a rough one");
+    DrawingProgress progress;
+    const Rendering rough =
+        draw_roughly(solved.scene, solved.solution, ray_caster, view, options,
+                     options.reduction > 1 ? options.reduction : usual_reduction, progress.monitor());
+    return picture_of(rough.image, rough.non_finite_pixels, options);
 }
 
 /// Draws the light of a solution. If the input is a scene, solves it first.
@@ -297,7 +339,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     // --time limits the whole command.
     constexpr double shortest_time = 1e-3;  // [s]
     const bool is_limited = !solved_before && std::isfinite(options.solver.time());
-    double seconds_to_preview = 1;
+    double seconds_to_preview = options.progressive ? 0.25 : 1;
     if (is_limited) {
         const double left = std::max(shortest_time, options.seconds_left());
         seconds_to_preview = std::min(seconds_to_preview, left / 10);
@@ -308,23 +350,27 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     // Called once after some seconds of solving. Writes a preview; with --time, predicts the drawing time and returns
     // the time limit that remains for solving.
     const auto preview_and_plan_time = [&](const Solution& so_far) -> std::optional<Limits> {
-        if (takes_previews(options)) write_preview(solved.scene, so_far, ray_caster, view, options);
-        if (!is_limited) return {};
+        if (takes_previews(options))
+            write_light_so_far(solved.scene, so_far, ray_caster, view, options, usual_reduction);
+        if (!is_limited) return std::nullopt;
         planned = plan_drawing(solved.scene, so_far, ray_caster, view, options);
         const double left = options.seconds_left(),
                      spent = so_far.iterations.empty() ? 0 : so_far.iterations.back().seconds;
         Limits limits = solve_options.limits;
-        limits.time =
-            spent + std::max(shortest_time, left - reserved_for(*planned, traces_paths(options.picture.shading), left));
+        const bool is_refined = traces_paths(options.picture.shading) && options.reduction == 1;
+        limits.time = spent + std::max(shortest_time, left - reserved_for(*planned, is_refined, left));
         return limits;
     };
     if (!solved_before)
-        solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory, {},
-                                    {.after = seconds_to_preview, .use = preview_and_plan_time});
-    if (traces_paths(options.picture.shading) && !planned && !is_stop_requested())
+        solved.solution =
+            run_solve(solved.scene, ray_caster, solve_options, options.solver.memory, {},
+                      {.after = seconds_to_preview, .repeats = options.progressive, .use = preview_and_plan_time});
+    if (options.progressive && options.picture.shading == Shading::hybrid && !is_stop_requested())
+        write_light_so_far(solved.scene, solved.solution, ray_caster, view, options, usual_reduction / 2);
+    else if (traces_paths(options.picture.shading) && !planned && !is_stop_requested())
         preview_and_plan_time(solved.solution);
 
-    if (is_limited && planned) {
+    if (is_limited && planned && options.reduction == 1) {
         PictureOptions& picture = options.picture;
         picture.time = std::max(shortest_time, options.seconds_left() - planned->finishing);
         if (!options.has_default_samples) picture.max_samples = picture.samples;
@@ -384,6 +430,18 @@ void check_false_colours(const RenderArguments& options) {
                      options.output.string());
 }
 
+/// @throws UsageError where --progressive cannot be obeyed.
+void check_progress(const RenderArguments& options) {
+    if (!options.progressive) return;
+    if (std::isfinite(options.solver.time()))
+        throw UsageError("--progressive", "--time writes one picture, at the end");
+    if (options.shown != Shown::light)
+        throw UsageError("--progressive", "only pictures of light improve, and --show draws something else");
+    if (!is_replaceable(options.output))
+        throw UsageError("--progressive", fmt::format("{} is no file, whose picture a better one could replace",
+                                                      options.output.string()));
+}
+
 /// Checks all options before it traces the first ray, then draws the picture.
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(options.solver.threads);
@@ -416,6 +474,7 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
         options.path.denoise = Denoiser::automatic;
     check_tone_options(options, command);
     check_false_colours(options);
+    check_progress(options);
     options.cut.check();
     options.path.check();
     options.legend_rows = legend_rows(options);
@@ -488,6 +547,8 @@ void add_render(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1, 1 << 18))
         ->group(path_group);
     options->path.add_to(command, options->picture);
+    command.add_flag("--progressive", options->progressive,
+                     "Write a rough picture after about a second, and better ones in its place until the last");
     add_tone_options(command, *options);
     add_show(command, options->shown);
     options->false_colour.add_to(command);
@@ -496,8 +557,8 @@ void add_render(CLI::App& app, int& exit_code) {
     command.get_option("--rays")->description(
         "Maximum number of rays, such as 20M (default 20M, unless --until is given)");
     command.get_option("--time")->description(
-        "Maximum time of the whole command [s], divided between solving and drawing; if it is too short for per-pixel "
-        "shading, --shading smooth is used");
+        "Maximum time of the whole command [s], divided between solving and drawing; if it is too short, light is "
+        "traced for fewer pixels");
     options->mesh.add_to(command);
     command.callback([options, &command, &exit_code] { run(*options, command, exit_code); });
 }

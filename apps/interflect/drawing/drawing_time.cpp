@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 
 #include "apps/interflect/processes/shared_light.h"
 #include "apps/interflect/processes/signals.h"
@@ -55,7 +56,8 @@ int DrawingTime::samples_within(double seconds) const {
 }
 
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                                  const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser) {
+                                  const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser,
+                                  double limit) {
     constexpr double shortest = 1e-9;  // time limit that ends the picture after least_samples [s]
     SharedLight shared_light(scene, &solution);
     const double sending = seconds_of([&] { shared_light.start(); });
@@ -82,10 +84,20 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
     const Growth& growth = options.shading == Shading::hybrid ? of_hybrid : of_gathering;
     const double ratio = reduce(small.width, small.height, growth.reduction);
     const double drawing = seconds_to_draw(small);
-    const double filtering = starting_filter + ratio * std::max(0.0, seconds_to_filter() - starting_filter);
-    const double least =
-        sending + preparation + std::max(0.0, drawing - preparation) * std::pow(ratio, growth.exponent);
-    return {least, filtering + writing * options.width * options.height};
+    const double of_pixels = std::max(0.0, drawing - preparation), filtering = seconds_to_filter() - starting_filter;
+    const double pixels = static_cast<double>(options.width) * options.height;
+    // Surfaces of a preview take two to four camera rays per pixel; other rays take more time than these.
+    const double of_surfaces = 2 * pixels * of_pixels / static_cast<double>(std::max<std::int64_t>(1, traced.rays));
+    const auto time = [&](int reduction) {
+        const double more_pixels = ratio / (reduction * reduction);
+        const double least = sending + preparation + of_pixels * std::pow(more_pixels, growth.exponent);
+        return DrawingTime{least + (reduction > 1 ? of_surfaces : 0),
+                           starting_filter + more_pixels * std::max(0.0, filtering) + writing * pixels, reduction};
+    };
+    const int largest = options.shading == Shading::hybrid ? largest_reduction : 1;
+    int reduction = 1;
+    while (reduction < largest && time(reduction).total() > limit) ++reduction;
+    return time(reduction);
 }
 
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,

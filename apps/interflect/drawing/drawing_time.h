@@ -14,6 +14,7 @@ double seconds_of_process();
 struct DrawingTime {
     double least = 0;      ///< Time with least_samples per pixel.
     double finishing = 0;  ///< Time of filtering noise and writing.
+    int reduction = 1;     ///< Above 1, of preview(): PreviewOptions::reduction.
 
     static constexpr int least_samples = 2;
     double total() const { return least + finishing; }
@@ -24,8 +25,12 @@ struct DrawingTime {
 /// Predicts the time of a picture from a smaller one. Within 25% for hybrid shading of 960 x 540 pixels in three
 /// offices and a corridor.
 /// @param options  Options of the full picture.
+/// @param limit    Maximum time [s]. If hybrid shading exceeds it, the prediction is for a preview whose reduction is as
+///                 small as the limit permits, at most largest_reduction.
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
-                                  const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser);
+                                  const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser,
+                                  double limit);
+constexpr int largest_reduction = 8;
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                      const View& view, const PictureOptions& options);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "apps/interflect/console/path_progress.h"
 #include "apps/interflect/console/progress.h"
@@ -127,7 +128,8 @@ void require_memory_for_paths(Size size) {
 }
 
 TracedPicture run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
-                              const View& view, const PictureOptions& options, const PathTracerArguments& arguments) {
+                              const View& view, const PictureOptions& options, const PathTracerArguments& arguments,
+                              const std::function<void(const Image&)>& on_picture) {
     require_free_memory(path_memory(scene.patches.size(), options), fmt::format("tracing paths in {}", scene.name),
                         "a smaller --size, fewer --light-walks, and a scene of fewer faces, need less");
     std::optional<PendingFile> error_image;
@@ -135,7 +137,12 @@ TracedPicture run_path_tracer(const Scene& scene, const Solution* solution, cons
     TracedPicture traced;
     stop_on_signal();
     SharedLight shared_light(scene, solution);
-    const double seconds = with_path_progress(shared_light, [&](const Monitor& monitor) {
+    const double seconds = with_path_progress(shared_light, [&](Monitor monitor) {
+        if (on_picture)
+            monitor.on_picture = [&](const Rendering& so_far) {
+                on_picture(arguments.denoise ? interflect::denoise(so_far.layers, *arguments.denoise).image
+                                             : so_far.image);
+            };
         static_cast<Rendering&>(traced) = solution ? render(scene, *solution, ray_caster, view, options, monitor)
                                                    : render(scene, ray_caster, view, options, monitor);
     });

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -47,8 +48,10 @@ struct TracedPicture : Rendering {
 
 /// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
 /// with a partial result, which is neither filtered nor reported if smooth shading can replace it.
-/// @param solution  Null for shading without a solution.
+/// @param solution    Null for shading without a solution.
+/// @param on_picture  Receives the picture so far (Monitor::on_picture), filtered as the last. May be empty.
 TracedPicture run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
-                              const View& view, const PictureOptions& options, const PathTracerArguments& arguments);
+                              const View& view, const PictureOptions& options, const PathTracerArguments& arguments,
+                              const std::function<void(const Image&)>& on_picture = {});
 
 }  // namespace interflect::command

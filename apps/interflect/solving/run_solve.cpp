@@ -136,17 +136,19 @@ Solution run_to_end(Solver solver, Checkpoints checkpoints, const EarlyLight& ea
         const Monitor monitor{show, &stop_flag()};
         Limits limits;
         if (!checkpoints.file.empty()) limits.time = checkpoints.every;
-        Limits first = limits;
-        if (early_light.use) first.time = std::min(first.time, early_light.after);
         SharedRun run(solver, checkpoints.file);
-        AdvanceReport report = run.advance(first, monitor);
-        if (early_light.use && !report.is_finished && !report.is_stopped)
-            if (const std::optional<Limits> plan = early_light.use(solver.solution())) run.set_plan(*plan);
-        checkpoints.save(solver);
-        while (!report.is_finished && !report.is_stopped) {
-            report = run.advance(limits, monitor);
+        bool uses_light = early_light.use != nullptr;
+        AdvanceReport report;
+        do {
+            Limits next = limits;
+            if (uses_light) next.time = std::min(next.time, std::max(early_light.after, report.seconds));
+            report = run.advance(next, monitor);
+            const bool goes_on = !report.is_finished && !report.is_stopped;
+            if (uses_light && goes_on)
+                if (const std::optional<Limits> plan = early_light.use(solver.solution())) run.set_plan(*plan);
+            uses_light = uses_light && early_light.repeats;
             checkpoints.save(solver);
-        }
+        } while (!report.is_finished && !report.is_stopped);
     }
     const std::shared_ptr<const Scene> scene = solver.shared_scene();
     const std::shared_ptr<const RayCaster> ray_caster = solver.shared_ray_caster();

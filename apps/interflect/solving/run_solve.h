@@ -14,9 +14,10 @@ namespace interflect::command {
 /// Warns about emitters covered by coincident faces, with the missing power.
 void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
-/// Use of the light of a run that takes longer, once.
+/// Use of the light of a run that takes longer.
 struct EarlyLight {
-    double after = 0;  ///< [s]
+    double after = 0;      ///< Time of the run before the first use [s].
+    bool repeats = false;  ///< Whether the light is used again, whenever the time of the run has doubled.
     /// May return a new SolveOptions::limits.
     std::function<std::optional<Limits>(const Solution&)> use = {};
 };

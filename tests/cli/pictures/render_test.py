@@ -239,6 +239,12 @@ class OptionsWithoutEffect(RenderTest):
         self.assertEqual(self.files(), before)
         return result.stderr
 
+    def test_progressive_pictures_need_time_a_file_and_light(self):
+        os.mkfifo(self.folder / "pipe.png")
+        for options in (("-o", "a.png", "--time", "5"), ("-o", "a.png", "--show", "level"), ("-o", "pipe.png")):
+            result = self.interflect("render", "room.mgf", "--progressive", *options, exit_code=WRONG_USAGE)
+            self.assertIn("--progressive", result.stderr)
+
     def test_a_solution_is_not_solved_again(self):
         self.solve()
         for option, value in {

@@ -36,8 +36,13 @@ class TimeLimit(RenderTest):
     def test_too_short_for_per_pixel_shading(self):
         took, said = self.limited("out.png", 0.5, "--mesh-size", "0.5")
         self.assertLess(took, 10)
-        self.assertRegex(said, r"per-pixel shading takes about .*, but --time leaves .*: .* as with --shading smooth")
+        self.assertRegex(said, r"--time is too short for all pixels: light is traced for one in \d x \d")
         self.assertNotIn("not reached", said)
+
+    def test_too_short_for_gathering(self):
+        took, said = self.limited("out.png", 0.5, "--mesh-size", "0.5", "--shading", "gather")
+        self.assertLess(took, 10)
+        self.assertRegex(said, r"per-pixel shading takes about .*, but --time leaves .*: .* as with --shading smooth")
 
     def test_too_short_for_layers(self):
         _, said = self.limited("out.exr", 0.1, "--size", "320x180", "--mesh-size", "0.5", "--layers")
@@ -115,6 +120,14 @@ class Agreement(RenderTest):
             said = self.interflect("render", "room.mgf", "-o", f"last.{kind}", *SOLVED, *size).stderr
             self.assertEqual("picture so far" in said, has_preview, kind)
         self.assertNotEqual(self.bytes("last.png"), self.render("smooth.png", "--shading", "smooth", size=size))
+
+    def test_progressive_pictures_end_with_the_same_bits(self):
+        size = ("--size", "160x120", "--samples", "8", "--rays", "4M", *VIEW)
+        for kind in ("png", "exr"):
+            said = self.draw(f"steps.{kind}", "--progressive", *size)
+            self.assertGreaterEqual(said.count("picture so far"), 2, kind)
+            self.draw(f"once.{kind}", *size)
+            self.assertEqual(self.bytes(f"steps.{kind}"), self.bytes(f"once.{kind}"))
 
     def test_a_target_takes_more_samples_where_they_are_needed(self):
         def paths_and_error(*options):

@@ -229,23 +229,37 @@ Imath::Box3f box_around(const V3f& a, const V3f& b, float margin) {
     return widened(box, margin);
 }
 
-class SegmentTree {
+/// Finds segments that may be collinear with another and overlap it. Segments are in three trees, by the axis along
+/// which they are longest; so segments that only meet at an angle are not visited.
+class SegmentTrees {
   public:
-    SegmentTree(std::size_t count, const auto& ends_of) {
+    SegmentTrees(std::size_t count, const auto& ends_of) {
         boxes_.reserve(count);
         for (std::uint32_t i = 0; i < count; ++i) {
             const auto [a, b] = ends_of(i);
-            boxes_.push_back({box_around(a, b, 0), i});
+            boxes_.push_back(box_around(a, b, 0));
+            trees_[boxes_.back().majorAxis()].push_back({boxes_.back(), i});
         }
-        arrange_box_tree(boxes_);
+        for (std::vector<Boxed>& tree : trees_) arrange_box_tree(tree);
     }
-    void visit(const Imath::Box3f& box, const auto& body) const {
-        visit_box_tree(
-            std::span<const Boxed>(boxes_), [&](const Imath::Box3f& b) { return b.intersects(box); }, body);
+    void visit(const V3f& a, const V3f& b, float margin, const auto& body) const {
+        constexpr float min_share = 0.25f;  // of the largest extent: rounding turns the shortest segments
+        const V3f extent = box_around(a, b, 0).size();
+        const float least = min_share * std::max({extent.x, extent.y, extent.z});
+        const Imath::Box3f box = box_around(a, b, margin);
+        for (unsigned axis = 0; axis < trees_.size(); ++axis)
+            if (extent[static_cast<int>(axis)] >= least)
+                visit_box_tree(
+                    std::span<const Boxed>(trees_[axis]),
+                    [&](const Imath::Box3f& other) { return other.intersects(box); },
+                    [&](std::uint32_t i) {
+                        if (boxes_[i].intersects(box)) body(i);
+                    });
     }
 
   private:
-    std::vector<Boxed> boxes_;
+    std::vector<Imath::Box3f> boxes_;
+    std::array<std::vector<Boxed>, 3> trees_;
 };
 
 class ContactTree {
@@ -253,13 +267,13 @@ class ContactTree {
     explicit ContactTree(const Scene& scene)
         : contacts_(scene.contacts),
           tolerance_(weld_tolerance(scene)),
-          tree_(scene.contacts.size(),
-                [&](std::uint32_t i) { return std::pair(scene.contacts[i].a, scene.contacts[i].b); }) {}
+          trees_(scene.contacts.size(),
+                 [&](std::uint32_t i) { return std::pair(scene.contacts[i].a, scene.contacts[i].b); }) {}
 
     std::vector<LineInterval> along(const V3f& a, const V3f& b) const {
         const StraightEdge edge(a, b);
         std::vector<LineInterval> found;
-        tree_.visit(box_around(a, b, tolerance_), [&](std::uint32_t i) {
+        trees_.visit(a, b, tolerance_, [&](std::uint32_t i) {
             const Contact& c = contacts_[i];
             if (!edge.is_collinear(c.a, c.b, tolerance_)) return;
             const LineInterval part = edge.part_between(c.a, c.b);
@@ -271,7 +285,7 @@ class ContactTree {
   private:
     const std::vector<Contact>& contacts_;
     float tolerance_;
-    SegmentTree tree_;
+    SegmentTrees trees_;
 };
 
 /// Minimum length of a seam, relative to the shorter edge. Shorter seams are gaps between consecutive walls.
@@ -286,7 +300,7 @@ class SeamFinder {
           edges_(std::move(edges)),
           contacts_(contacts),
           tolerance_(weld_tolerance(scene)),
-          tree_(edges_.size(), [&](std::uint32_t i) { return std::pair(start(edges_[i]), end(edges_[i])); }) {}
+          trees_(edges_.size(), [&](std::uint32_t i) { return std::pair(start(edges_[i]), end(edges_[i])); }) {}
 
     std::vector<SmoothSurfaces::Seam> seams(const auto& smooth) const {
         std::vector<std::vector<SmoothSurfaces::Seam>> found((edges_.size() + edges_per_task - 1) / edges_per_task);
@@ -303,7 +317,7 @@ class SeamFinder {
     void add_seams(std::uint32_t i, const auto& smooth, std::vector<SmoothSurfaces::Seam>& found) const {
         if (!is_piece(edges_[i])) return;
         std::vector<std::uint32_t> others;
-        tree_.visit(box_around(start(edges_[i]), end(edges_[i]), tolerance_), [&](std::uint32_t j) {
+        trees_.visit(start(edges_[i]), end(edges_[i]), tolerance_, [&](std::uint32_t j) {
             if (is_piece(edges_[j]) && j <= i) return;  // because the pair was found from the other side
             if (edges_[i].patch() != edges_[j].patch() && smooth(edges_[i].patch(), edges_[j].patch()))
                 others.push_back(j);
@@ -344,7 +358,7 @@ class SeamFinder {
     const std::vector<PatchEdge> edges_;
     const ContactTree& contacts_;
     float tolerance_;
-    SegmentTree tree_;
+    SegmentTrees trees_;
 };
 
 }  // namespace

@@ -7,7 +7,6 @@
 
 #include "interflect/base/numbers/points.h"
 #include "interflect/base/numbers/random.h"
-#include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/render/paths/sky_guide.h"
 #include "interflect/render/reflections/known_light.h"
 
@@ -130,14 +129,7 @@ bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
     }
     const V3f x = ray.origin + hit.distance * ray.direction;
     const float distance = path.travelled + hit.distance;
-    const Material& material = s.material(hit.patch);
-    Rgb exitance = material.exitance, reflectance = material.reflectance;
-    if (material.is_textured()) {
-        const Patch& patch = s.scene.patches[hit.patch];
-        const Parameters p = s.geometry[hit.patch].parameters_of(x);
-        exitance = exitance_at(s.scene, patch, p);
-        reflectance = reflectance_at(s.scene, patch, p);
-    }
+    auto [exitance, reflectance] = s.colours(hit.patch, x);
     if (is_white) {
         exitance = Rgb(0);
         reflectance = Rgb(1);

@@ -60,6 +60,7 @@ class PathPicture {
         has_all_pixels_ = true;
         if (plan_.hybrid && plan_.start.camera && !stopped()) add_first_hits();
         if (!is_adaptive || most <= least) return;
+        if (plan_.hybrid && monitor_.on_picture && !is_over()) monitor_.on_picture(result());
         const std::vector<double> needed = needed_by_pixels();
         // Within a time limit, small steps spread the samples evenly over the picture.
         constexpr double first_step = 1.0 / 8;
