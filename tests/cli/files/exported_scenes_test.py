@@ -300,6 +300,21 @@ class Scenes(Exported):
             self.assertLess(vertex["z"], 2.4 + 1e-4)
         self.assertNotIn("left out", stderr)
 
+    def test_mitsuba_has_no_light_in_gaps(self):
+        """Two sheets, 0.2 mm apart: Mitsuba let the light between them pass through (1.57 times the light of an office)."""
+        corners = {"low": (0.9998, "abcd"), "high": (1, "dcba")}
+        places = {"a": (1, 1), "b": (1, 1.5), "c": (1.5, 1.5), "d": (1.5, 1)}
+        sheets = "".join(
+            "".join(f"v {name}{k} =\n\tp {places[k][0]} {places[k][1]} {z}\n" for k in order)
+            + f"f {' '.join(name + k for k in order)}\n"
+            for name, (z, order) in corners.items()
+        )
+        self.write("room.mgf", room() + "m sheet =\n\tc\n\tsides 2\n\ted 100\n" + sheets)
+        text, _ = self.export("room.xml")
+        names = [s.find("string").get("value") for s in ElementTree.fromstring(text).findall("shape") if s.find("emitter") is not None]
+        self.assertTrue(any("sheet" in name for name in names), names)
+        self.assertFalse(any("sheet" in name and "back" in name for name in names), names)
+
     def test_tells_what_it_leaves_out(self):
         lights = "v bulb =\n\tp 1 1 1\nlight sky 5\nlight point bulb 3\n"
         self.write("room.mgf", room().replace("sides 1", "sides 2") + lights)

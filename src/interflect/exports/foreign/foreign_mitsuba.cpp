@@ -2,10 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
 
+#include "interflect/base/numbers/random.h"
 #include "interflect/exports/foreign/foreign_scene.h"
+#include "interflect/ray_caster.h"
+#include "interflect/render/lights/path_samples.h"
 
 namespace interflect::detail {
 
@@ -65,7 +74,43 @@ std::string sensor_text(const ForeignScene& scene, const View& view) {
         scene.options.height);
 }
 
-std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
+/// Whether something covers the face so closely that hardly any of its light leaves the gap.
+bool faces_narrow_gap(const RayCaster& ray_caster, const ForeignMesh& mesh, std::size_t face, float gap) {
+    constexpr std::uint64_t count = 64;
+    constexpr int most_free = 3;  // rays that may leave the gap
+    const auto& corners = mesh.faces[face];
+    const bool is_triangle = corners[3] == none;
+    const auto at = [&](std::size_t k) { return mesh.positions[corners[k]]; };
+    const V3f normal = (at(1) - at(0)).cross(at(is_triangle ? 2 : 3) - at(0)).normalized();
+    std::vector<Ray> rays;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const auto places = random_words(face, 2 * i), directions = random_words(face, 2 * i + 1);
+        float u = unit_float(places[0]), v = unit_float(places[1]);
+        if (u + v > 1) std::tie(u, v) = std::pair(1 - u, 1 - v);
+        const std::size_t half = is_triangle ? 0 : i % 2;  // of a quadrilateral
+        const V3f origin = at(0) + u * (at(1 + half) - at(0)) + v * (at(2 + half) - at(0));
+        rays.push_back({origin, cosine_direction(normal, unit_float(directions[0]), unit_float(directions[1]))});
+    }
+    std::vector<Hit> hits(rays.size());
+    ray_caster.trace(rays, hits);
+    return std::count_if(hits.begin(), hits.end(),
+                         [&](const Hit& hit) { return hit.patch == none || hit.distance > gap; }) <= most_free;
+}
+
+/// Returns the mesh without faces whose light stays in narrow gaps, as between the sheets of a thin lamp: in Mitsuba it
+/// would pass through what covers them, because shadow rays in single precision end before they reach the light.
+ForeignMesh without_narrow_gaps(const ForeignScene& scene, const RayCaster& ray_caster, ForeignMesh mesh) {
+    constexpr float shadow_epsilon = 1e-3f;  // share of the length of a shadow ray that is not tested
+    const float gap = shadow_epsilon * 2 * scene.size;
+    std::vector<std::array<std::uint32_t, 4>> open;
+    for (std::size_t i = 0; i < mesh.faces.size(); ++i)
+        if (!faces_narrow_gap(ray_caster, mesh, i, gap)) open.push_back(mesh.faces[i]);
+    mesh.faces = std::move(open);
+    return mesh;
+}
+
+/// @param ray_caster  Of the scene; made when the first mesh needs it.
+std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh, std::optional<RayCaster>& ray_caster) {
     const Material& m = scene.material(mesh);
     const std::string bsdf = bsdf_text(scene, mesh.material);
     std::string emitter;
@@ -82,8 +127,10 @@ std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {
             "    {}\n{}  </shape>\n",
             scene.add_file(side.name + ".ply", ply_of(side)), bsdf, emitter);
     };
-    const bool has_back = scene.emits(mesh) && mesh.backs == Backs::emit;
-    return shape(mesh) + (has_back ? shape(mesh.shifted_backs(scene.distance_of_backs())) : "");
+    if (!scene.emits(mesh) || mesh.backs != Backs::emit) return shape(mesh);
+    if (!ray_caster) ray_caster.emplace(scene.scene);
+    const ForeignMesh backs = without_narrow_gaps(scene, *ray_caster, mesh.shifted_backs(scene.distance_of_backs()));
+    return shape(mesh) + (backs.faces.empty() ? "" : shape(backs));
 }
 
 /// Describes the sun as a distant disc that has the sun's angle as seen from the whole scene, because Mitsuba has no
@@ -147,7 +194,8 @@ std::string mitsuba_description(ForeignScene& scene) {
         "  <integrator type=\"{}\"><integer name=\"max_depth\" value=\"-1\"/></integrator>\n",
         INTERFLECT_VERSION, has_holes ? "volpath" : "path");
     for (const View& view : scene.views) text += sensor_text(scene, view);
-    for (const ForeignMesh& mesh : scene.meshes) text += shape_text(scene, mesh);
+    std::optional<RayCaster> ray_caster;
+    for (const ForeignMesh& mesh : scene.meshes) text += shape_text(scene, mesh, ray_caster);
     for (const Luminaire& luminaire : scene.scene.luminaires) text += luminaire_text(scene, luminaire);
     if (const std::string sky = scene.add_sky_image(2, envmap_direction); !sky.empty())
         text += fmt::format("  <emitter type=\"envmap\"><string name=\"filename\" value=\"{}\"/></emitter>\n", sky);
