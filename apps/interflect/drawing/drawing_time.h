@@ -25,7 +25,8 @@ struct DrawingTime {
 /// Predicts the time of a picture from a smaller one. Within 25% for hybrid shading of 960 x 540 pixels in three
 /// offices and a corridor.
 /// @param options  Options of the full picture.
-/// @param limit    Maximum time [s]. If hybrid shading exceeds it, the prediction is for a preview whose reduction is as
+/// @param limit    Maximum time [s]. If hybrid shading exceeds it, the prediction is for a preview whose reduction is
+/// as
 ///                 small as the limit permits, at most largest_reduction.
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser,

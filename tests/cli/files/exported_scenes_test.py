@@ -301,7 +301,7 @@ class Scenes(Exported):
         self.assertNotIn("left out", stderr)
 
     def test_mitsuba_has_no_light_in_gaps(self):
-        """Two sheets, 0.2 mm apart: Mitsuba let the light between them pass through (1.57 times the light of an office)."""
+        """Mitsuba lets the light between two sheets 0.2 mm apart pass through them."""
         corners = {"low": (0.9998, "abcd"), "high": (1, "dcba")}
         places = {"a": (1, 1), "b": (1, 1.5), "c": (1.5, 1.5), "d": (1.5, 1)}
         sheets = "".join(

@@ -97,8 +97,8 @@ bool faces_narrow_gap(const RayCaster& ray_caster, const ForeignMesh& mesh, std:
                          [&](const Hit& hit) { return hit.patch == none || hit.distance > gap; }) <= most_free;
 }
 
-/// Returns the mesh without faces whose light stays in narrow gaps, as between the sheets of a thin lamp: in Mitsuba it
-/// would pass through what covers them, because shadow rays in single precision end before they reach the light.
+/// Returns the mesh without faces whose light stays in narrow gaps, as between the sheets of a thin lamp. Mitsuba would
+/// let it out, because its shadow rays do not test the last part of their length.
 ForeignMesh without_narrow_gaps(const ForeignScene& scene, const RayCaster& ray_caster, ForeignMesh mesh) {
     constexpr float shadow_epsilon = 1e-3f;  // share of the length of a shadow ray that is not tested
     const float gap = shadow_epsilon * 2 * scene.size;
