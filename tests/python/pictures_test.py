@@ -26,6 +26,18 @@ class Pictures(unittest.TestCase):
             self.assertTrue(picture.flags.c_contiguous)
             self.assertAlmostEqual(picture.mean() / reference, 1, delta=0.04, msg=shading)
 
+    def test_previews_show_the_same_light(self):
+        reference = ifl.render(self.solution, **SMALL).mean()
+        for reduction in (1, 4):
+            picture = ifl.preview(self.solution, reduction=reduction, denoiser="own", **SMALL)
+            self.assertEqual((picture.shape, picture.dtype), ((36, 64, 3), np.float32))
+            self.assertAlmostEqual(picture.mean() / reference, 1, delta=0.03, msg=reduction)
+        for error, wrong in ((ifl.InputError, {"reduction": 0}), (ifl.InputError, {"denoiser": "median"})):
+            with self.subTest(wrong), self.assertRaises(error):
+                ifl.preview(self.solution, **wrong, **SMALL)
+        with self.assertRaises(TypeError):
+            ifl.preview(room(), **SMALL)  # not solved
+
     def test_radiance_of_a_furnace(self):
         """L = B / pi = M / (1 - rho) / pi, without noise in a path tracer but for roulette: 2% of 200 / pi."""
         camera = ifl.View("inside", (0.5, 0.5, 0.5), (1, 0.5, 0.5))

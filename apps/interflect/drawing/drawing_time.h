@@ -31,7 +31,7 @@ struct DrawingTime {
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser,
                                   double limit);
-constexpr int largest_reduction = 8;
+constexpr int largest_reduction = 4;
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                      const View& view, const PictureOptions& options);
 
