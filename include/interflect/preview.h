@@ -20,9 +20,10 @@ struct PreviewOptions {
 ///
 /// A picture of fewer pixels is drawn by hybrid shading with two samples and filtered. Camera rays of every pixel then
 /// find the surfaces; the irradiance of each is interpolated between pixels of the smaller picture that show the same
-/// surface (joint bilateral upsampling, Kopf et al. 2007). So outlines, textures and lamps are sharp, and shadows are
-/// blurred over about `reduction` pixels, as is all behind glass that also reflects. A surface that the smaller picture
-/// misses shows the light of its elements. The error is not estimated.
+/// surface (joint bilateral upsampling, Kopf et al. 2007). Shadow rays of every pixel find the light of suns. So
+/// outlines, textures, lamps and shadows of suns are sharp; other shadows are blurred over about `reduction` pixels, as
+/// is all behind glass that also reflects. A surface that the smaller picture misses shows the light of its elements.
+/// The error is not estimated.
 ///
 /// @param options  Its size, `quantity`, `mirrors` and `seed`. @param solution  Of the same scene, as is `ray_caster`.
 /// @return  Without layers and standard error. The same bits for any number of threads, unless interrupted; then parts

@@ -195,7 +195,7 @@ void PathIntegrator::light_first_point(Path& path) {
             : LightSample{};
     const std::uint32_t point = first_points_.add(path, numbers);
     for (const SourceKind kind : source_kinds) {
-        const std::uint32_t rays = sources.useful_rays(kind, sampling.rays);
+        const std::uint32_t rays = shadow_rays_to(kind, sampling.rays);
         const std::uint32_t first_point = unoccluded.has(kind) ? point : none;
         for (std::uint32_t k = 0; k < rays; ++k)
             connect_to_source(path, kind, path.index_in_sequence * rays + k, rays, first_point);
@@ -203,10 +203,15 @@ void PathIntegrator::light_first_point(Path& path) {
     for (std::uint32_t k = 0; k < sampling.rays; ++k) connect_to_sky(path, path.index_in_sequence * sampling.rays + k);
 }
 
+std::uint32_t PathIntegrator::shadow_rays_to(SourceKind kind, std::uint32_t most) const {
+    if (vertex_ == 1 && kind == SourceKind::suns && !plan_.has_suns) return 0;
+    return plan_.sources().useful_rays(kind, most);
+}
+
 void PathIntegrator::sample_sources(Path& path) {
     if (vertex_ == 1 && !plan_.has_direct) return;
     for (const SourceKind kind : source_kinds) {
-        const std::uint32_t rays = plan_.sources().useful_rays(kind, path.sampling.rays);
+        const std::uint32_t rays = shadow_rays_to(kind, path.sampling.rays);
         for (std::uint32_t k = 0; k < rays; ++k)
             connect_to_source(path, kind, path.index_in_sequence * rays + k, rays, none);
     }

@@ -61,6 +61,8 @@ class PathIntegrator {
     // Shadow rays from a vertex:
     void light_first_point(Path& path);
     void sample_sources(Path& path);
+    /// Returns the number of shadow rays that the vertices send to sources of a kind.
+    std::uint32_t shadow_rays_to(SourceKind kind, std::uint32_t most) const;
     /// @param index        Index of the shadow ray among all shadow rays of the sequence at this vertex.
     /// @param first_point  Point of FirstPoints that receives the light, or none.
     void connect_to_source(const Path& path, SourceKind kind, std::uint32_t index, std::uint32_t rays,

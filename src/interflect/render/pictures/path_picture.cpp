@@ -338,7 +338,8 @@ Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster,
 }
 
 Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
-                        const PictureOptions& options, const Monitor& monitor, const KnownIrradiance* known) {
+                        const PictureOptions& options, const Monitor& monitor, const KnownIrradiance* known,
+                        bool has_suns) {
     require_valid(options);
     ray_caster.require_made_for(scene);
     give_order(monitor.ranks,
@@ -350,7 +351,7 @@ Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const P
     StopRequest time_left;
     time_left.limit_time(StopRequest::Clock::now(), options.time);
     const TracedScene traced(scene, ray_caster);
-    const PathPlan plan{.scene = traced, .start = start, .options = options};
+    const PathPlan plan{.scene = traced, .start = start, .options = options, .has_suns = has_suns};
     // Rough share of the time, for progress reports.
     const double share_of_records = known && known->is_interpolated ? 0.25 : 0;
     const PreparedLight prepared(plan, known, monitor_section(monitor, 0, share_of_records));
