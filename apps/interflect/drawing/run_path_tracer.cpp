@@ -12,6 +12,7 @@
 #include "apps/interflect/console/progress.h"
 #include "apps/interflect/drawing/denoise_option.h"
 #include "apps/interflect/processes/long_work.h"
+#include "apps/interflect/processes/signals.h"
 #include "apps/interflect/values/parse.h"
 #include "apps/interflect/values/percent.h"
 #include "interflect/base/files/pending_file.h"
