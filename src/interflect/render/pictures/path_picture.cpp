@@ -58,7 +58,7 @@ class PathPicture {
         foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
         trace_round(std::vector<std::uint32_t>(pixels_.size(), least));
         has_all_pixels_ = true;
-        if (plan_.hybrid && plan_.start.camera && !stopped()) add_first_hits();
+        if (plan_.hybrid && plan_.start.camera && predicts_light() && !stopped()) add_first_hits();
         if (!is_adaptive || most <= least) return;
         if (plan_.hybrid && monitor_.on_picture && !is_over()) monitor_.on_picture(result());
         const std::vector<double> needed = needed_by_pixels();
@@ -216,6 +216,10 @@ class PathPicture {
         trace_chunk(chunk);
         return has_traced;
     }
+
+    /// Whether the solution predicts the light of the picture. It has the light of suns, whose edges would be noise in
+    /// a picture without.
+    bool predicts_light() const { return plan_.has_suns || plan_.sources().useful_rays(SourceKind::suns, 1) == 0; }
 
     /// Traces camera rays alone at edges and textures, even if the time is over: they are cheap.
     void add_first_hits() {
