@@ -73,7 +73,8 @@ PathRays LitSurfaces::camera_rays(std::size_t begin, std::size_t count, std::vec
     Path path;
     for (std::size_t pixel = begin; pixel < begin + count; ++pixel) {
         fill_points(PointSet::sobol, mix(options_.seed, pixel), 0, camera_rays_, points);
-        const V2f corner(static_cast<float>(pixel % width), static_cast<float>(pixel / width));
+        const std::size_t column = pixel % width, row = pixel / width;
+        const V2f corner(static_cast<float>(column), static_cast<float>(row));
         for (std::uint32_t k = 0; k < camera_rays_; ++k, ++path.sample) {
             places.push_back(corner + V2f(points.coordinate[0][k], points.coordinate[1][k]));
             rays.add(path, camera_.ray(places.back().x, places.back().y));
