@@ -74,14 +74,17 @@ std::string sensor_text(const ForeignScene& scene, const View& view) {
         scene.options.height);
 }
 
-/// Whether something covers the face so closely that hardly any of its light leaves the gap.
-bool faces_narrow_gap(const RayCaster& ray_caster, const ForeignMesh& mesh, std::size_t face, float gap) {
+/// Whether something covers the face so closely that hardly any of its light leaves the gap, also after reflections.
+/// @param widest  Largest width of a gap [m].
+bool faces_narrow_gap(const RayCaster& ray_caster, const ForeignMesh& mesh, std::size_t face, float widest) {
     constexpr std::uint64_t count = 64;
-    constexpr int most_free = 3;  // rays that may leave the gap
+    constexpr int most_free = 3;            // rays that may leave the gap
+    constexpr float share_of_side = 0.02f;  // width of a gap that reflected light hardly leaves
     const auto& corners = mesh.faces[face];
     const bool is_triangle = corners[3] == none;
     const auto at = [&](std::size_t k) { return mesh.positions[corners[k]]; };
-    const V3f normal = (at(1) - at(0)).cross(at(is_triangle ? 2 : 3) - at(0)).normalized();
+    const V3f cross = (at(1) - at(0)).cross(at(is_triangle ? 2 : 3) - at(0)), normal = cross.normalized();
+    const float gap = std::min(widest, share_of_side * std::sqrt(cross.length()));
     std::vector<Ray> rays;
     for (std::uint64_t i = 0; i < count; ++i) {
         const auto places = random_words(face, 2 * i), directions = random_words(face, 2 * i + 1);
@@ -101,10 +104,10 @@ bool faces_narrow_gap(const RayCaster& ray_caster, const ForeignMesh& mesh, std:
 /// let it out, because its shadow rays do not test the last part of their length.
 ForeignMesh without_narrow_gaps(const ForeignScene& scene, const RayCaster& ray_caster, ForeignMesh mesh) {
     constexpr float shadow_epsilon = 1e-3f;  // share of the length of a shadow ray that is not tested
-    const float gap = shadow_epsilon * 2 * scene.size;
+    const float widest = shadow_epsilon * 2 * scene.size;
     std::vector<std::array<std::uint32_t, 4>> open;
     for (std::size_t i = 0; i < mesh.faces.size(); ++i)
-        if (!faces_narrow_gap(ray_caster, mesh, i, gap)) open.push_back(mesh.faces[i]);
+        if (!faces_narrow_gap(ray_caster, mesh, i, widest)) open.push_back(mesh.faces[i]);
     mesh.faces = std::move(open);
     return mesh;
 }
