@@ -311,7 +311,7 @@ class Scenes(Exported):
                 + f"f {' '.join(name + k for k in order)}\n"
                 for name, z, order in (("low", 1 - gap, "abcd"), ("high", 1, "dcba"))
             )
-            self.write("room.mgf", room() + "m sheet =\n\tc\n\tsides 2\n\ted 100\n" + sheets + other)
+            self.write("room.mgf", room() + other + "m sheet =\n\tc\n\tsides 2\n\ted 100\n" + sheets)
             text, _ = self.export("room.xml")
             lamps = [s for s in ElementTree.fromstring(text).findall("shape") if s.find("emitter") is not None]
             sheets = [name for lamp in lamps if "sheet" in (name := lamp.find("string").get("value"))]
