@@ -45,19 +45,19 @@ class Scale:
 
     size: tuple[int, int] = (960, 540)
     large: tuple[int, int] = (1920, 1080)  # one row for each program, on the scenes of LARGE_SCENES
-    reference_samples: int = 512  # per pixel in each half of each program's reference
-    large_reference_samples: int = 128
-    batch: int = 64  # samples between savings of references
+    batch: int = 64  # samples per pixel in each half of each program's reference, doubled until `precise` is reached
+    most_samples: int = 512  # of each half
+    precise: float = 0.005  # error of a pixel that stands out of the noise of the references
     seconds: float = 240  # settings that are expected to take longer are left out
     settings: int | None = None  # number of settings of each series; ours by default is always measured
 
 
-QUICK = Scale((96, 54), (192, 108), 32, 16, 16, 20, 2)
+QUICK = Scale((96, 54), (192, 108), 16, 32, seconds=20, settings=2)
 LARGE_SCENES = ("office-graz",)
 GROWTH = 4  # of the time from one setting to the next
 OURS, DEFAULT = "Interflect", "--shading hybrid --denoise"  # its other options have their defaults
 
-LIMITED = ("--rays 1M --samples 4", "--rays 2M --samples 8", "--rays 5M --samples 16")
+LIMITED = ("--time 5", "--rays 1M --samples 2", "--time 15", "--rays 2M --samples 8")
 HYBRID = (*(f"{DEFAULT} {limits}" for limits in LIMITED), DEFAULT, f"{DEFAULT} --rays 40M --samples 64")
 SAMPLES = (4, 16, 64, 256, 1024)
 # Column "accurate" of the table of options in Radiance's documentation, with a coarser and a finer cache.
@@ -107,12 +107,12 @@ class Bench:
         with tempfile.TemporaryDirectory() as temporary:
             scene = make(self.command, Path(temporary), name)
             job = Job(self.command, scene, self.scale.size, Path(temporary))
-            reference = self.reference(name, job, self.scale.reference_samples)
+            reference = self.reference(name, job)
             for series in chosen:
                 self._measure_settings(name, series, job, reference)
             if name in LARGE_SCENES:
                 large = dataclasses.replace(job, size=self.scale.large)
-                reference = self.reference(name, large, self.scale.large_reference_samples)
+                reference = self.reference(name, large)
                 for series in chosen:
                     setting = self._setting_of_equal_time(name, series)
                     if setting is not None:
@@ -165,18 +165,28 @@ class Bench:
         key = (name, size_text(size), series, setting)
         return next((r for r in self.rows if (r["scene"], r["size"], r["series"], r["settings"]) == key), None)
 
-    def reference(self, name: str, job: Job, samples: int) -> Reference:
+    def reference(self, name: str, job: Job) -> Reference:
         """Returns the references of a scene, path-traced where they are missing, and writes their agreement."""
-        ours, theirs = ([self._half(job, who, half, samples) for half in range(2)] for who in ("ours", "theirs"))
-        counts = without_lamps(sum(half["emitted"] for half in ours))
-        reference = Reference(*(tuple(half["sum"] / half["samples"] for half in one) for one in (ours, theirs)), counts)
+        samples = self.scale.batch
+        while True:
+            reference = self._traced(job, samples)
+            agreement = reference.agreement()
+            if agreement.smallest <= self.scale.precise or 2 * samples > self.scale.most_samples:
+                break
+            samples *= 2
         row = {"scene": name, "size": job.size_text, "samples": samples}
-        row |= {key: f"{value:.6g}" for key, value in dataclasses.asdict(reference.agreement()).items()}
+        row |= {key: f"{value:.6g}" for key, value in dataclasses.asdict(agreement).items()}
         table = references_of(self.table)
         others = results.read_csv(table, TEXTS) if table.is_file() else []
         others = [r for r in others if (r["scene"], r["size"]) != (name, job.size_text)]
         results.write_csv(table, [*others, row], AGREEMENT)
         return reference
+
+    def _traced(self, job: Job, samples: int) -> Reference:
+        """@param samples  Per pixel in each half of each program's reference, at least."""
+        ours, theirs = ([self._half(job, who, half, samples) for half in range(2)] for who in ("ours", "theirs"))
+        counts = without_lamps(sum(half["emitted"] for half in ours))
+        return Reference(*(tuple(half["sum"] / half["samples"] for half in one) for one in (ours, theirs)), counts)
 
     def _half(self, job: Job, who: str, half: int, samples: int) -> dict[str, np.ndarray]:
         """Returns the sum of one half of a program's samples, from the cache and from further batches."""

@@ -83,7 +83,8 @@ class Reference:
         differences = [block_means(b - a, self.counts, BLOCK_SIDES[-1]) / scale for a, b in pairs]
         noise = [root((((a - b) / everywhere)[self.counts] ** 2).mean()) / 2 for a, b in (self.ours, self.theirs)]
         error = np.hypot(means[0] - means[1], means[2] - means[3]) / (means[0] + means[1])
-        return Agreement(float(ratio), float(error), root((differences[0] * differences[1]).mean()), *noise)
+        smallest = (2 * (noise[0] * noise[1]) ** 2 / self.counts.sum()) ** 0.25
+        return Agreement(float(ratio), float(error), root((differences[0] * differences[1]).mean()), *noise, float(smallest))
 
 
 @dataclass(frozen=True)
@@ -95,6 +96,9 @@ class Agreement:
     blocks_9: float  # relative root mean square difference of blocks, without noise
     noise_of_ours: float  # relative, of a pixel in both halves together
     noise_of_theirs: float
+    # The root of the standard error of the squared error of a picture without error. A product of the noise of two halves
+    # has the variance 4 a^2 b^2, the mean over both pairs of halves and n pixels 2 a^2 b^2 / n (a and b: noise_of_...).
+    smallest: float
 
 
 def root(mean_square: float) -> float:

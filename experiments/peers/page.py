@@ -132,8 +132,8 @@ def write_agreement(rows: list[dict], path: Path) -> None:
     lines = []
     for row in rows:
         mean = f"{100 * (row['ratio_of_means'] - 1):+.2f}% ± {100 * row['error_of_ratio']:.2f}%"
-        others = [f"{100 * row[kind]:.3g}%" for kind in ("blocks_9", "noise_of_ours", "noise_of_theirs")]
+        others = [f"{100 * row[kind]:.3g}%" for kind in ("blocks_9", "noise_of_ours", "noise_of_theirs", "smallest")]
         lines.append([row["scene"], row["size"].replace("x", " x "), f"{2 * row['samples']:g}", mean, *others])
     header = ["scene", "pixels", "samples", "mean of Mitsuba's over ours", "difference of blocks of 9"]
-    header += ["noise of ours", "of Mitsuba's"]
+    header += ["noise of ours", "of Mitsuba's", "smallest error that is found"]
     results.write_table(path, header, lines)
