@@ -45,13 +45,25 @@ enum class LightmapContent {
     radiance,    ///< L = (M + rho H) / pi, which any renderer can show directly.
 };
 
+/// Resolution of lightmaps on some surfaces.
+struct TexelDensity {
+    std::string pattern;     ///< Of names of objects, as in LightGroup, or of materials.
+    float texels_per_metre;  ///< > 0.
+};
+
 struct LightmapOptions {
     float texels_per_metre = 20;  ///< Minimum resolution, > 0; lower only on surfaces that would not fit into an image.
-    int max_size = 4096;          ///< Maximum side of an image [texels], 64 to 16384, a multiple of 4.
-    int gutter = 2;               ///< Margin of each chart, filled from its edge [texels], 1 to 64.
+    std::vector<TexelDensity> densities;  ///< Exceptions, of which the first that matches counts.
+    int max_size = 4096;                  ///< Maximum side of an image [texels], 64 to 16384, a multiple of 4.
+    int gutter = 2;                       ///< Margin of each chart, filled from its edge [texels], 1 to 64.
     LightmapContent content = LightmapContent::irradiance;
     std::string image = ".exr";  ///< Format of the images beside the file: .exr or .hdr.
     bool own_charts = false;     ///< Whether Scene::lightmap_coordinates are ignored.
+    /// Whether the light of a scene from a glTF file is added to that file (Scene::files), which keeps its nodes,
+    /// meshes and materials. Else, and with a warning if the file is not there as it was read, the faces of the scene
+    /// are written anew.
+    bool keep_file = true;
+    bool keep_lights = false;  ///< Whether a file that is kept keeps its light sources, whose light is in the lightmap.
     /// Memory limit [bytes], checked before allocation.
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
     bool groups =

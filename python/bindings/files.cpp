@@ -163,10 +163,17 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
     take(left, "rays", options.probes.rays);
     if (lightmap) {
         take(left, "texels_per_metre", texels.texels_per_metre);
+        if (left.contains("densities")) {
+            for (const auto& [pattern, density] : left["densities"].cast<py::dict>())
+                texels.densities.push_back({pattern.cast<std::string>(), density.cast<float>()});
+            PyDict_DelItemString(left.ptr(), "densities");
+        }
         take(left, "max_size", texels.max_size);
         take(left, "gutter", texels.gutter);
         take(left, "image", texels.image);
         take(left, "own_charts", texels.own_charts);
+        take(left, "keep_file", texels.keep_file);
+        take(left, "keep_lights", texels.keep_lights);
         take(left, "groups", texels.groups);
         take(left, "content", content);
         if (content != "irradiance" && content != "radiance")

@@ -196,8 +196,9 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         exposure: [stops], of 8-bit colours, as of tonemap().
         threads, progress: As of render().
         options: up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
-            max_triangles, and for .ply and .obj polygons. In lightmaps: texels_per_metre, max_size, gutter, image,
-            own_charts, groups, content, denoise (as of render(); default: "own"). For probes: spacing, rays.
+            max_triangles, and for .ply and .obj polygons. In lightmaps: texels_per_metre, densities (a
+            dictionary of patterns of names and their texels per metre), max_size, gutter, image, own_charts, keep_file,
+            keep_lights, groups, content, denoise (as of render(); default: "own"). For probes: spacing, rays.
 
     Returns:
         The files that were written. Features that the format lacks are reported by warnings.warn().

@@ -35,7 +35,7 @@ INNER_LAYERS = {
     "rates": ["."],
     "photometry": ["."],
     "metrics": ["."],
-    "exports": ["hdf5", "records", "mesh", "lightmap", "vertices", "files", "gltf", "foreign", "."],
+    "exports": ["hdf5", "records", "mesh", "charts", "lightmap", "vertices", "files", "gltf", "authored", "foreign", "."],
     "cluster": ["."],
 }
 # Headers of src/interflect that programs in apps/ may include: services of a program, records of files and processes.

@@ -268,6 +268,9 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
                                    "Maximum width and height of the images, at least"))
         ->capture_default_str()
         ->check(number_between(1e-6, 1e6));
+    of_lightmap(add_each(command, "--density", lightmap.densities, parse_density,
+                         "Texels per metre on objects or materials with such a name ('*' stands for anything)"))
+        ->type_name("PATTERN=N");
     of_lightmap(
         command.add_option("--lightmap-max-size", lightmap.max_size, "Largest side of an image, a multiple of 4"))
         ->capture_default_str()
@@ -288,6 +291,11 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
     of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image, {{"exr", ".exr"}, {"hdr", ".hdr"}},
                                         "Format of the unclamped images beside the file"))
         ->default_str("exr");
+    of_lightmap(command.add_flag_callback(
+        "--rewrite", [&lightmap] { lightmap.keep_file = false; },
+        "Write the scene's faces anew in place of adding the light to its glTF file"));
+    of_lightmap(command.add_flag("--keep-lights", lightmap.keep_lights,
+                                 "Keep the glTF file's light sources, whose light the lightmap has"));
     of_lightmap(
         command.add_flag("--own-charts", lightmap.own_charts, "Ignore lightmap coordinates of the scene's file"));
     of_lightmap(command.add_flag("--lightmap-groups", lightmap.groups,

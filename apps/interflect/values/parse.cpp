@@ -237,6 +237,15 @@ Dimmed parse_dimmed(const std::string& text) {
     return {std::move(group), static_cast<float>(factor)};
 }
 
+TexelDensity parse_density(const std::string& text) {
+    constexpr const char* expected = "PATTERN=N, such as chair*=50, with 1e-6 to 1e6 texels per metre";
+    auto [pattern, value] = name_and_value(text, expected);
+    std::string_view rest = value;
+    double density = 0;
+    if (!take_number(rest, density) || !rest.empty() || !(density >= 1e-6 && density <= 1e6)) refuse(text, expected);
+    return {std::move(pattern), static_cast<float>(density)};
+}
+
 Sky parse_sky(const std::string& text) {
     constexpr const char* expected =
         "overcast, intermediate, clear, uniform or cie-1 to cie-16, each with :LUX or without, or "

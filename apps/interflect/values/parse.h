@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "interflect/core.h"
+#include "interflect/export.h"
 #include "interflect/load.h"
 #include "interflect/measure.h"
 #include "interflect/scene.h"
@@ -61,6 +62,8 @@ struct Dimmed {
     float factor = 1;
 };
 Dimmed parse_dimmed(const std::string& text);
+/// "chair*=50" -> 50 texels per metre on objects or materials that match "chair*".
+TexelDensity parse_density(const std::string& text);
 /// "overcast", "clear:9000" -> CIE sky, with its horizontal illuminance [lx]; "perez:600,120" -> Perez sky with these
 /// irradiances [W/m^2].
 struct Sky {

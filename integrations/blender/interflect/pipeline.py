@@ -41,7 +41,8 @@ def stages(scene: Path, solution: Path, lit: Path, settings: Settings) -> list[S
         solve += ["--view", view]
     export = [str(solution), "-o", str(lit), "--up", "0,1,0"]
     if settings.kind == "LIGHTMAP":
-        export += ["--lightmap", "--texels-per-metre", f"{settings.texels_per_metre:g}"]
+        # Both sides of a sheet need light of their own, which the file of the scene itself has no place for.
+        export += ["--lightmap", "--rewrite", "--texels-per-metre", f"{settings.texels_per_metre:g}"]
         if settings.gather:
             export += ["--shading", "gather"]
     return [

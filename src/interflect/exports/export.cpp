@@ -10,7 +10,7 @@
 #include "interflect/elements/forest.h"
 #include "interflect/exports/files/mesh_files.h"
 #include "interflect/exports/files/write_files.h"
-#include "interflect/exports/gltf/lit_gltf.h"
+#include "interflect/exports/lit_gltf.h"
 #include "interflect/exports/probe_files.h"
 #include "interflect/formats/text/extension.h"
 #include "interflect/render/pictures/camera_samples.h"
@@ -41,6 +41,9 @@ void require_usable(const LightmapOptions& options) {
     };
     require(options.texels_per_metre > 0 && std::isfinite(options.texels_per_metre),
             fmt::format("texels_per_metre is {}, expected a number above 0", options.texels_per_metre));
+    for (const auto& [pattern, density] : options.densities)
+        require(density > 0 && std::isfinite(density),
+                fmt::format("the density of '{}' is {}, expected a number above 0", pattern, density));
     require(options.max_size >= 64 && options.max_size <= 16384 && options.max_size % 4 == 0,
             fmt::format("max_size is {}, expected a multiple of 4 from 64 to 16384", options.max_size));
     require(options.gutter >= 1 && options.gutter <= 64, fmt::format("gutter is {}, expected 1 to 64", options.gutter));

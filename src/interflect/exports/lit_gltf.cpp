@@ -1,5 +1,11 @@
-#include "interflect/exports/gltf/lit_gltf.h"
+#include "interflect/exports/lit_gltf.h"
 
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "interflect/exports/authored/patched_gltf.h"
+#include "interflect/exports/authored/source_gltf.h"
 #include "interflect/exports/gltf/gltf_document.h"
 #include "interflect/exports/gltf/gltf_lightmap.h"
 #include "interflect/exports/gltf/gltf_vertex_light.h"
@@ -8,14 +14,32 @@ namespace interflect::detail {
 
 namespace {
 
+/// Returns the glTF file to which a lightmap is added; null if the scene is written anew.
+std::unique_ptr<SourceGltf> kept_file(const Scene& scene, const std::filesystem::path& folder,
+                                      const ExportOptions& options) {
+    if (!options.lightmap || !options.lightmap->keep_file) return nullptr;
+    Warnings ignored;
+    return source_of(scene, folder, options.warnings ? *options.warnings : ignored);
+}
+
 std::vector<ExportedFile> make(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                const ExportOptions& options, std::string (GltfDocument::*encode)() const) {
     GltfDocument document;
     std::vector<ExportedFile> files;
-    if (options.lightmap)
+    if (const std::unique_ptr<SourceGltf> source = kept_file(scene, path.parent_path(), options)) {
+        try {
+            document = source->document();
+            files = add_lightmap(document, *source, path, scene, solution, options);
+        } catch (const nlohmann::json::exception& fault) {  // in parts that the reader of scenes skips
+            throw InputError(scene.files.front(), 0, fmt::format("no valid glTF: {}", fault.what()));
+        } catch (const GltfFault& fault) {
+            throw InputError(scene.files.front(), 0, fault.what());
+        }
+    } else if (options.lightmap) {
         files = add_lightmap(document, path, scene, solution, options);
-    else
+    } else {
         add_vertex_light(document, scene, solution, options);
+    }
     files.push_back({path, (document.*encode)()});
     return files;
 }

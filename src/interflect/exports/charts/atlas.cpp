@@ -1,4 +1,6 @@
-#include "interflect/exports/lightmap/lightmap_atlas.h"
+#include "interflect/exports/charts/atlas.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +8,8 @@
 #include <limits>
 #include <optional>
 #include <utility>
+
+#include "interflect/core.h"
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic push
@@ -100,27 +104,90 @@ void turn(LightmapChart& chart) {
     std::swap(chart.columns, chart.rows);
 }
 
+std::vector<int> from_to(std::size_t begin, std::size_t end) {
+    std::vector<int> numbers;
+    for (std::size_t i = begin; i < end; ++i) numbers.push_back(static_cast<int>(i));
+    return numbers;
+}
+
+/// Moves charts to their places in image `page`. Returns those that are not in the packing.
+std::vector<int> place(const Packing& packing, int page, int gutter, std::vector<LightmapChart>& charts) {
+    std::vector<int> left;
+    for (const stbrp_rect& r : packing.rectangles) {
+        if (!r.was_packed) {
+            left.push_back(r.id);
+            continue;
+        }
+        LightmapChart& chart = charts[static_cast<std::size_t>(r.id)];
+        if (chart.columns + 2 * gutter != r.w) turn(chart);
+        chart.page = page;
+        chart.left = r.x + gutter;
+        chart.top = r.y + gutter;
+    }
+    return left;
+}
+
+/// Halves the resolution of a chart. Returns whether it changed.
+bool halve(LightmapChart& chart) {
+    const bool is_smallest = chart.columns == 2 && chart.rows == 2;
+    chart.columns = std::max(2, chart.columns / 2);
+    chart.rows = std::max(2, chart.rows / 2);
+    return !is_smallest;
+}
+
 }  // namespace
 
 std::vector<Imath::V2i> pack_charts(std::vector<LightmapChart>& charts, int gutter, int max_size) {
     std::vector<Imath::V2i> sizes;
-    std::vector<int> left(charts.size());
-    for (std::size_t i = 0; i < left.size(); ++i) left[i] = static_cast<int>(i);
+    std::vector<int> left = from_to(0, charts.size());
     while (!left.empty()) {
         const Packing packing = best_packing(charts, left, gutter, max_size);
-        left.clear();
-        for (const stbrp_rect& r : packing.rectangles) {
-            if (!r.was_packed) {
-                left.push_back(r.id);
-                continue;
-            }
-            LightmapChart& chart = charts[static_cast<std::size_t>(r.id)];
-            if (chart.columns + 2 * gutter != r.w) turn(chart);
-            chart.page = static_cast<int>(sizes.size());
-            chart.left = r.x + gutter;
-            chart.top = r.y + gutter;
-        }
+        left = place(packing, static_cast<int>(sizes.size()), gutter, charts);
         sizes.push_back(packing.size);
+    }
+    return sizes;
+}
+
+std::vector<Imath::V2i> pack_groups(std::vector<LightmapChart>& charts, const std::vector<std::uint32_t>& first,
+                                    int gutter, int max_size) {
+    std::vector<Imath::V2i> sizes;
+    const auto begin_of = [&](std::size_t group) { return group < first.size() ? first[group] : charts.size(); };
+    std::size_t next = 0;
+    while (next < first.size()) {
+        const auto packed_to = [&](std::size_t end) {
+            return best_packing(charts, from_to(begin_of(next), begin_of(end)), gutter, max_size);
+        };
+        // The largest number of groups that fit, by bisection.
+        std::size_t end = first.size();
+        Packing packing = packed_to(end);
+        if (!packing.is_complete) {
+            std::size_t too_many = end;
+            for (end = next; too_many > end + 1;) {
+                const std::size_t middle = (end + too_many) / 2;
+                Packing tried = packed_to(middle);
+                if (!tried.is_complete) {
+                    too_many = middle;
+                    continue;
+                }
+                end = middle;
+                packing = std::move(tried);
+            }
+        }
+        if (end == next) {
+            bool is_smaller = false;
+            for (const int i : from_to(begin_of(next), begin_of(next + 1)))
+                is_smaller |= halve(charts[static_cast<std::size_t>(i)]);
+            if (!is_smaller)
+                throw InputError(
+                    Fault{.text = fmt::format("lightmap: an object of {} charts does not fit into an image "
+                                              "of {} x {} texels: expected a larger max_size",
+                                              begin_of(next + 1) - begin_of(next), max_size, max_size),
+                          .setting = "max_size"});
+            continue;
+        }
+        place(packing, static_cast<int>(sizes.size()), gutter, charts);
+        sizes.push_back(packing.size);
+        next = end;
     }
     return sizes;
 }

@@ -1,4 +1,4 @@
-#include "interflect/exports/lightmap/lightmap_charts.h"
+#include "interflect/exports/charts/charts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "interflect/exports/lightmap/lightmap_layouts.h"
-#include "interflect/exports/lightmap/unfolding.h"
+#include "interflect/exports/charts/layouts.h"
+#include "interflect/exports/charts/unfolding.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/geometry/search/box_tree.h"
 #include "interflect/geometry/surfaces/flat_surfaces.h"
@@ -232,15 +232,24 @@ int texels_along(double length, double texels_per_metre, int most) {
     return static_cast<int>(std::clamp(count, 2.0, static_cast<double>(most)));
 }
 
+float density_of(const Scene& scene, PatchIndex patch, const LightmapOptions& options) {
+    const std::string& object = scene.objects[scene.patches[patch].object];
+    const std::string& material = scene.materials[scene.patches[patch].material].name;
+    for (const auto& [pattern, texels_per_metre] : options.densities)
+        if (matches_object(pattern, object) || matches(pattern, material)) return texels_per_metre;
+    return options.texels_per_metre;
+}
+
 /// Makes a chart. The smallest coordinates of the patches must be 0.
-LightmapChart chart_of(FlatPatches patches, const LightmapOptions& options) {
+LightmapChart chart_of(const Scene& scene, FlatPatches patches, const LightmapOptions& options) {
     LightmapChart chart{std::move(patches), {0, 0}};
     for (const FlatPatch& flat : chart.patches)
         for (const Imath::V2d& corner : flat.outline())
             chart.size = {std::max(chart.size.x, corner.x), std::max(chart.size.y, corner.y)};
     const int most = options.max_size - 2 * options.gutter;
-    chart.columns = texels_along(chart.size.x, options.texels_per_metre, most);
-    chart.rows = texels_along(chart.size.y, options.texels_per_metre, most);
+    const float density = density_of(scene, chart.patches.front().patch, options);
+    chart.columns = texels_along(chart.size.x, density, most);
+    chart.rows = texels_along(chart.size.y, density, most);
     return chart;
 }
 
@@ -275,6 +284,13 @@ std::vector<FlatPatches> smooth_layouts(const Scene& scene, const std::vector<bo
 
 }  // namespace
 
+V2f LightmapChart::coordinate(const Imath::V2d& at, const std::vector<Image>& images) const {
+    const Image& image = images[static_cast<std::size_t>(page)];
+    const Imath::V2d texel = at / spacing();
+    return {static_cast<float>((left + texel.x + 0.5) / image.width),
+            static_cast<float>((top + texel.y + 0.5) / image.height)};
+}
+
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,
                                        Warnings* warnings) {
     std::vector<LightmapChart> charts;
@@ -282,11 +298,11 @@ std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> sho
         for (FlatPatches& layout : kept_layouts(scene, shown, warnings)) {
             for (const FlatPatch& flat : layout) shown[flat.patch] = false;
             const Rectangle rectangle = bounding_rectangle(layout);
-            charts.push_back(chart_of(moved_into(rectangle, std::move(layout)), options));
+            charts.push_back(chart_of(scene, moved_into(rectangle, std::move(layout)), options));
         }
     for (FlatPatches& layout : smooth_layouts(scene, shown, narrow_gap / options.texels_per_metre)) {
         const Rectangle rectangle = smallest_rectangle(convex_hull(corners_of(layout)));
-        charts.push_back(chart_of(moved_into(rectangle, std::move(layout)), options));
+        charts.push_back(chart_of(scene, moved_into(rectangle, std::move(layout)), options));
     }
     return charts;
 }

@@ -5,6 +5,7 @@
 
 #include "interflect/export.h"
 #include "interflect/exports/mesh/flat_patches.h"
+#include "interflect/image.h"
 #include "interflect/scene.h"
 
 namespace interflect::detail {
@@ -17,6 +18,8 @@ struct LightmapChart {
     int page = 0, left = 0, top = 0;  ///< Image and position of texel (0, 0), set by pack_charts().
 
     Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
+    /// Returns the texture coordinate of a point of the chart [m]; (0, 0) is the upper left corner of its image.
+    V2f coordinate(const Imath::V2d& at, const std::vector<Image>& images) const;
 };
 
 /// Makes charts of the `shown` patches. Objects with a layout of their own keep it (kept_layouts()). Other smooth

@@ -1,4 +1,4 @@
-#include "interflect/exports/lightmap/lightmap_layouts.h"
+#include "interflect/exports/charts/layouts.h"
 
 #include <fmt/format.h>
 

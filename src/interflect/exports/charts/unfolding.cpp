@@ -1,4 +1,4 @@
-#include "interflect/exports/lightmap/unfolding.h"
+#include "interflect/exports/charts/unfolding.h"
 
 #include <algorithm>
 #include <cmath>

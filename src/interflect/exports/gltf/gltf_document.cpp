@@ -72,6 +72,14 @@ int GltfDocument::add_accessor(const char* type, int component_type, std::size_t
                {{"bufferView", view}, {"componentType", component_type}, {"count", count}, {"type", type}});
 }
 
+int GltfDocument::add_elements(Json accessor, std::string_view bytes, std::size_t stride) {
+    const int view = add_buffer_view(bytes);
+    json["bufferViews"][view]["byteStride"] = stride;
+    json["bufferViews"][view]["target"] = vertex_target;
+    accessor["bufferView"] = view;
+    return add("accessors", std::move(accessor));
+}
+
 int GltfDocument::add_positions(std::span<const V3f> values) {
     V3f low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
     for (const V3f& value : values)
@@ -113,9 +121,9 @@ int GltfDocument::add_texture(const Image& image, const std::string& name, bool 
 Json GltfDocument::complete(bool with_data) const {
     Json result = json;
     if (buffer_.empty()) return result;
-    Json buffer{{"byteLength", buffer_.size()}};
+    Json& buffer = result["buffers"][0];
+    buffer["byteLength"] = buffer_.size();
     if (with_data) buffer["uri"] = "data:application/octet-stream;base64," + base64(buffer_);
-    result["buffers"] = Json::array({buffer});
     return result;
 }
 

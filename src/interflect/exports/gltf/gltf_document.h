@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "interflect/core.h"
 #include "interflect/exports/records/json_text.h"
@@ -16,8 +17,10 @@ namespace interflect::detail {
 class GltfDocument {
   public:
     GltfDocument();
+    /// Continues a file. @param buffer  Bytes of its first buffer.
+    GltfDocument(Json file, std::string buffer) : json(std::move(file)), buffer_(std::move(buffer)) {}
 
-    /// The JSON without the description of the buffer.
+    /// The JSON without the description of the first buffer.
     Json json;
 
     /// Appends an object to an array such as "materials". Returns its index.
@@ -29,6 +32,9 @@ class GltfDocument {
     int add_attribute(std::span<const Rgb> values);
     int add_attribute(std::span<const V2f> values);
     int add_indices(std::span<const std::uint32_t> values);
+    /// @param accessor  Its JSON without the place of its data. @param stride  From element to element [bytes].
+    int add_elements(Json accessor, std::string_view bytes, std::size_t stride);
+    int add_buffer_view(std::string_view bytes);
 
     /// Adds a texture as 8-bit sRGB PNG, clamped to [0, 1]. Returns its index.
     /// @param opacity  Alpha in [0, 1]; empty: no alpha channel.
@@ -42,7 +48,6 @@ class GltfDocument {
 
   private:
     int add_accessor(const char* type, int component_type, std::size_t count, std::string_view bytes, int target);
-    int add_buffer_view(std::string_view bytes);
     Json complete(bool with_data) const;
 
     std::string buffer_;

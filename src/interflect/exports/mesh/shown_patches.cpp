@@ -38,23 +38,30 @@ std::vector<bool> at_most(const std::vector<float>& light, double limit) {
 
 }  // namespace
 
-std::vector<bool> shown_patches(const Scene& scene, const Solution& solution) {
+PatchVisibility patch_visibility(const Scene& scene, const Solution& solution) {
     const bool is_dimmed = !solution.undimmed_light.empty();
     const std::vector<float> light = is_dimmed ? solution.undimmed_light : patch_light(scene, solution.irradiance);
     const double mean = mean_of(scene, light);
-    const std::vector<bool> dark = at_most(light, std::min(max_dark, max_dark_of_mean * mean));
+    PatchVisibility result{at_most(light, std::min(max_dark, max_dark_of_mean * mean)), {}};
+    result.lit.flip();
     const RayCaster ray_caster(scene);
-    std::vector<bool> shown(scene.patches.size(), true);
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) result.hidden.push_back(ray_caster.uncovered_share(p) == 0);
+    if (std::find(result.lit.begin(), result.lit.end(), true) == result.lit.end())
+        return result;  // a scene without light keeps all faces
+    const std::vector<bool> encased = encased_patches(scene, ray_caster, at_most(light, max_stray_of_mean * mean));
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
+        if (encased[p]) result.hidden[p] = true;
+    return result;
+}
+
+std::vector<bool> shown_patches(const Scene& scene, const Solution& solution) {
+    const PatchVisibility found = patch_visibility(scene, solution);
+    std::vector<bool> shown(scene.patches.size());
     for (PatchIndex p{0}; p < shown.size(); ++p) {
         const PatchIndex other = scene.patches[p].other_side;
-        if (other != none && dark[p]) shown[p] = dark[other] && p < other;
-        if (ray_caster.uncovered_share(p) == 0) shown[p] = false;
+        const bool is_first_of_dark_face = other == none || (!found.lit[other] && p < other);
+        shown[p] = !found.hidden[p] && (found.lit[p] || is_first_of_dark_face);
     }
-    if (std::find(dark.begin(), dark.end(), false) == dark.end())
-        return shown;  // a scene without light keeps all faces
-    const std::vector<bool> encased = encased_patches(scene, ray_caster, at_most(light, max_stray_of_mean * mean));
-    for (PatchIndex p{0}; p < shown.size(); ++p)
-        if (encased[p]) shown[p] = false;
     return shown;
 }
 

@@ -7,6 +7,13 @@
 
 namespace interflect::detail {
 
+struct PatchVisibility {
+    std::vector<bool> lit;     ///< Patches with more than stray light. The light is undimmed.
+    std::vector<bool> hidden;  ///< Patches covered by coincident faces, and encased_patches().
+};
+
+PatchVisibility patch_visibility(const Scene& scene, const Solution& solution);
+
 /// Returns which patches are exported: not those covered by coincident faces, dark sides of faces, and
 /// encased_patches(). If both sides of a face are dark, the first is exported. The light is undimmed, so that all
 /// states of dimming export the same patches.

@@ -23,12 +23,20 @@ struct Mesh {
     std::vector<std::uint32_t> face_sizes;  ///< Corners per face, >= 3; empty: triangles.
     std::uint32_t material = 0;
     bool back_emits = true;
+
+    /// Where a glTF file has it: the indices of the mesh and its primitive, and of each vertex in the primitive.
+    /// A primitive of several colours (COLOR_0) is several meshes.
+    struct Source {
+        std::uint32_t mesh = none, primitive = none;
+        std::vector<std::uint32_t> vertices{};
+    } source{};
 };
 
 struct MeshInstance {
     std::uint32_t mesh = 0;
     Imath::M44d to_world;  ///< For row vectors; to metres. Mirroring keeps the front.
     std::uint32_t object = 0;
+    std::uint32_t node = none;  ///< Index in a glTF file.
 };
 
 struct PlacedLight {

@@ -124,7 +124,7 @@ class SceneReader {
         // A skinned mesh ignores the node's transform.
         for (const M44d& place : places)
             for (const std::uint32_t primitive : primitives)
-                asset_.model.instances.push_back({primitive, pose.skin != none ? M44d() : place, object});
+                asset_.model.instances.push_back({primitive, pose.skin != none ? M44d() : place, object, node.index});
     }
 
     void require_room(const GltfValue& node, std::uint64_t copies, std::uint64_t faces) {
@@ -219,12 +219,16 @@ Model model_of(std::string_view bytes, const fs::path& path, const ReadOptions& 
 
 }  // namespace
 
-Scene read_gltf_bytes(std::string_view bytes, const fs::path& path, const ReadOptions& options) {
+Model read_gltf_model(std::string_view bytes, const fs::path& path, const ReadOptions& options) {
     try {
-        return scene_of(model_of(bytes, path, options), options);
+        return model_of(bytes, path, options);
     } catch (const GltfFault& fault) {
         throw InputError(Fault{.text = fault.what(), .setting = fault.setting, .file = path});
     }
+}
+
+Scene read_gltf_bytes(std::string_view bytes, const fs::path& path, const ReadOptions& options) {
+    return scene_of(read_gltf_model(bytes, path, options), options);
 }
 
 Scene read_gltf(const fs::path& path, const ReadOptions& options) {

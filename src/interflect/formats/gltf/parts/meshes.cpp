@@ -316,6 +316,7 @@ Mesh GltfMeshes::mesh_of(const GltfValue& primitive, const Vertices& vertices, c
     const std::vector<std::uint32_t> used = compact(mesh.indices, vertices.positions.count);
     mesh.positions.reserve(used.size());
     for (const std::uint32_t v : used) mesh.positions.push_back(vertices.position(v, primitive));
+    mesh.source.vertices = used;
     if (vertices.normals && vertices.targets.empty() && vertices.joints.empty())  // the mesh is not deformed
         for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
@@ -357,8 +358,16 @@ const std::vector<std::uint32_t>& GltfMeshes::meshes(std::uint32_t index, const 
     GltfPose resolved_pose = pose;
     if (resolved_pose.weights.empty()) resolved_pose.weights = owner.numbers("weights");
     const auto [entry, is_new] = mesh_cache_.try_emplace({index, resolved_pose.weights, resolved_pose.skin});
-    if (is_new)
-        for (const GltfValue& primitive : owner.objects("primitives")) add(primitive, resolved_pose, entry->second);
+    if (!is_new) return entry->second;
+    const std::vector<GltfValue> primitives = owner.objects("primitives");
+    for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+        const std::size_t first = asset_.model.meshes.size();
+        add(primitives[i], resolved_pose, entry->second);
+        for (std::size_t k = first; k < asset_.model.meshes.size(); ++k) {
+            asset_.model.meshes[k].source.mesh = index;
+            asset_.model.meshes[k].source.primitive = i;
+        }
+    }
     return entry->second;
 }
 

@@ -100,7 +100,7 @@ std::vector<GltfNode> GltfNodes::in_scene() const {
     traverse(roots_of_scene(), [&](std::uint32_t i) {
         place[i] = static_cast<std::uint32_t>(result.size());
         const std::string outer = parents_[i] == none ? "" : result[place[parents_[i]]].dotted;
-        GltfNode node{&values_[i], to_world_[i], values_[i].text("name").substr(0, asset_.options().max_name_length),
+        GltfNode node{i, &values_[i], to_world_[i], values_[i].text("name").substr(0, asset_.options().max_name_length),
                       outer};
         if (!node.name.empty()) node.dotted += (outer.empty() ? "" : ".") + node.name;
         if (node.dotted.size() > longest) {

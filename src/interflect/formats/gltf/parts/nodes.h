@@ -9,6 +9,7 @@
 namespace interflect::detail {
 
 struct GltfNode {
+    std::uint32_t index = 0;
     const GltfValue* value = nullptr;
     Imath::M44d to_world;
     std::string name;

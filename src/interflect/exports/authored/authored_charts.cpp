@@ -1,0 +1,159 @@
+#include "interflect/exports/authored/authored_charts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "interflect/geometry/search/vertex_weld.h"
+
+namespace interflect::detail {
+
+namespace {
+
+using Imath::M44d;
+using Imath::V3d;
+
+V3d to_world(const V3d& x, const M44d& matrix) {
+    V3d result;
+    matrix.multVecMatrix(x, result);
+    return result;
+}
+
+/// Scalar products of the images of the axes. Equal ones mean the same shape, turned or mirrored.
+std::array<double, 6> metric_of(const M44d& m) {
+    const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
+    return {x.dot(x), y.dot(y), z.dot(z), x.dot(y), y.dot(z), z.dot(x)};
+}
+
+bool are_alike(const std::array<double, 6>& a, const std::array<double, 6>& b) {
+    constexpr double rounding = 1e-4;
+    const double size = std::max({a[0], a[1], a[2]});
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (std::abs(a[i] - b[i]) > rounding * size) return false;
+    return true;
+}
+
+/// Adds the triangles of a mesh to a scene, in which they are relative to `origin`.
+void add_triangles(const Model& model, std::uint32_t index, const M44d& matrix, const V3d& origin, VertexWeld& weld,
+                   Scene& scene, AuthoredShape& shape) {
+    const Mesh& mesh = model.meshes[index];
+    std::vector<std::uint32_t> vertices;
+    vertices.reserve(mesh.positions.size());
+    const M44d normals = matrix.inverse().transposed();
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        VertexCoordinates coordinates;
+        if (!mesh.lightmap_coordinates.empty()) coordinates.lightmap = mesh.lightmap_coordinates[v];
+        if (!mesh.normals.empty()) {
+            V3d normal;
+            normals.multDirMatrix(mesh.normals[v], normal);
+            coordinates.normal = welded_normal(normal);
+        }
+        vertices.push_back(weld.vertex(V3f(to_world(mesh.positions[v], matrix) - origin), coordinates));
+    }
+    for (std::uint32_t first = 0; first < mesh.indices.size(); first += 3) {
+        Patch patch;
+        for (std::uint32_t c = 0; c < 3; ++c) patch.vertices[c] = vertices[mesh.indices[first + c]];
+        patch.material = mesh.material;
+        patch.other_side = PatchIndex(none);
+        const V3f& a = scene.vertices[patch.vertices[0]];
+        const V3f u = scene.vertices[patch.vertices[1]] - a, v = scene.vertices[patch.vertices[2]] - a;
+        constexpr float thin = 1e-6f;  // height over length, at which single precision knows no plane
+        if (!(u.cross(v).length() > thin * std::max({u.length2(), v.length2(), (v - u).length2()}))) continue;
+        scene.patches.push_back(patch);
+        shape.triangles.push_back({index, first});
+    }
+}
+
+AuthoredShape shape_of(const Model& model, std::vector<std::uint32_t> meshes, const M44d& matrix,
+                       const std::string& object, const LightmapOptions& options, Warnings& warnings) {
+    AuthoredShape shape;
+    Scene scene;
+    scene.materials = model.materials;
+    scene.objects = {object};
+    VertexWeld weld(scene);
+    const V3d origin = to_world(model.meshes[meshes.front()].positions.front(), matrix);
+    for (const std::uint32_t mesh : meshes) add_triangles(model, mesh, matrix, origin, weld, scene, shape);
+    shape.meshes = std::move(meshes);
+    shape.charts = make_charts(scene, std::vector<bool>(scene.patches.size(), true), options, &warnings);
+    return shape;
+}
+
+std::vector<bool> matching_densities(const std::string& object, const LightmapOptions& options) {
+    std::vector<bool> matching;
+    for (const TexelDensity& density : options.densities) matching.push_back(matches_object(density.pattern, object));
+    return matching;
+}
+
+/// The primitives of one node at one place.
+struct ShownMesh {
+    const MeshInstance* first;
+    std::vector<std::uint32_t> meshes;
+};
+
+std::vector<ShownMesh> shown_meshes(const Model& model, Warnings& warnings) {
+    std::vector<ShownMesh> shown;
+    std::map<std::uint32_t, int> places;
+    for (const MeshInstance& instance : model.instances) {
+        const bool continues = !shown.empty() && shown.back().first->node == instance.node &&
+                               shown.back().first->to_world == instance.to_world;
+        if (!continues) {
+            shown.push_back({&instance, {}});
+            ++places[instance.node];
+        }
+        shown.back().meshes.push_back(instance.mesh);
+    }
+    std::erase_if(shown, [&](const ShownMesh& one) {
+        const bool is_copied = places[one.first->node] > 1;
+        if (is_copied)
+            warnings.add("lightmap-instances",
+                         "copies by EXT_mesh_gpu_instancing get no lightmap: they have one set of coordinates",
+                         model.objects[one.first->object]);
+        return is_copied;
+    });
+    return shown;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> AuthoredCharts::first_charts() const {
+    std::vector<std::uint32_t> first;
+    for (const AuthoredObject& object : objects) first.push_back(object.first_chart);
+    return first;
+}
+
+std::array<V3d, 3> AuthoredCharts::corners(const AuthoredObject& object, PatchIndex patch) const {
+    const auto& [index, first] = shapes[object.shape].triangles[patch];
+    const Mesh& mesh = model.meshes[index];
+    std::array<V3d, 3> result;
+    for (std::uint32_t c = 0; c < 3; ++c)
+        result[c] = to_world(mesh.positions[mesh.indices[first + c]], object.to_world);
+    return result;
+}
+
+AuthoredCharts authored_charts(Model model, const LightmapOptions& options, Warnings& warnings) {
+    AuthoredCharts result;
+    using Sizes = std::vector<std::pair<std::array<double, 6>, std::uint32_t>>;  // metric and shape
+    std::map<std::pair<std::vector<std::uint32_t>, std::vector<bool>>, Sizes> known;
+    for (const auto& [instance, meshes] : shown_meshes(model, warnings)) {
+        const std::array<double, 6> metric = metric_of(instance->to_world);
+        const std::string& object = model.objects[instance->object];
+        Sizes& sizes = known[{meshes, matching_densities(object, options)}];
+        const auto same = [&](const auto& size) { return are_alike(metric, size.first); };
+        auto found = std::find_if(sizes.begin(), sizes.end(), same);
+        if (found == sizes.end()) {
+            sizes.emplace_back(metric, static_cast<std::uint32_t>(result.shapes.size()));
+            found = std::prev(sizes.end());
+            result.shapes.push_back(shape_of(model, meshes, instance->to_world, object, options, warnings));
+        }
+        const std::vector<LightmapChart>& charts = result.shapes[found->second].charts;
+        result.objects.push_back({instance->node, found->second, instance->object,
+                                  static_cast<std::uint32_t>(result.charts.size()), instance->to_world});
+        result.charts.insert(result.charts.end(), charts.begin(), charts.end());
+    }
+    result.model = std::move(model);
+    return result;
+}
+
+}  // namespace interflect::detail

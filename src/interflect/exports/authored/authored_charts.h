@@ -1,0 +1,50 @@
+#pragma once
+
+#include <ImathMatrix.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "interflect/exports/charts/charts.h"
+#include "interflect/formats/build/model.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// The mesh of a node, in the size in which the node shows it. Each triangle of the file is a patch.
+struct AuthoredShape {
+    /// Place of a patch in the file.
+    struct Triangle {
+        std::uint32_t mesh;   ///< Index into Model::meshes.
+        std::uint32_t first;  ///< Index of its first corner in Mesh::indices.
+    };
+
+    std::vector<std::uint32_t> meshes;  ///< Indices into Model::meshes, the primitives of one mesh of the file.
+    PerPatch<Triangle> triangles;       ///< Triangles without area are left out.
+    std::vector<LightmapChart> charts;
+};
+
+/// A node that shows a mesh.
+struct AuthoredObject {
+    std::uint32_t node, shape;
+    std::uint32_t object;       ///< Index into Model::objects.
+    std::uint32_t first_chart;  ///< Its charts are as many as its shape's, in the same order.
+    Imath::M44d to_world;
+};
+
+/// Charts of a glTF file that depend on its geometry alone. Nodes that show one mesh have copies of the same charts.
+struct AuthoredCharts {
+    Model model;
+    std::vector<AuthoredShape> shapes;
+    std::vector<AuthoredObject> objects;
+    std::vector<LightmapChart> charts;  ///< Of all objects.
+
+    std::vector<std::uint32_t> first_charts() const;  ///< AuthoredObject::first_chart of each object.
+    /// Returns the corners of a patch in the world [m].
+    std::array<Imath::V3d, 3> corners(const AuthoredObject& object, PatchIndex patch) const;
+};
+
+/// @param warnings  Receives a warning for what gets no lightmap (EXT_mesh_gpu_instancing), and as in make_charts().
+AuthoredCharts authored_charts(Model model, const LightmapOptions& options, Warnings& warnings);
+
+}  // namespace interflect::detail

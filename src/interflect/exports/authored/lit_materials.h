@@ -1,0 +1,42 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "interflect/exports/gltf/gltf_document.h"
+#include "interflect/exports/gltf/lightmap_images.h"
+
+namespace interflect::detail {
+
+/// The materials of a glTF file, lit by the images of a lightmap. A material whose surfaces lie in several images is
+/// listed once for each. Materials without light (KHR_materials_unlit) stay.
+///
+/// Irradiance is a reference in the material (MOZ_lightmap). Radiance is an unlit material in place of the file's own,
+/// which stays as the variant "authored" (KHR_materials_variants); glass, metal and surfaces with holes keep theirs,
+/// since they show other light than that of diffuse surfaces.
+class LitMaterials {
+  public:
+    /// Multiplies emission by the exposure.
+    LitMaterials(GltfDocument& document, const LightmapImages& images);
+
+    /// Number of the set of texture coordinates for lightmaps: above those that materials use, at least 1.
+    int set() const { return set_; }
+    /// Refers a primitive, with all of its variants, to the materials with an image.
+    void light(Json& primitive, int page);
+
+  private:
+    int lit(int material, int page);
+    Json with_irradiance(Json material, int page) const;
+    Json as_radiance(const Json& material, int page) const;
+    void add_variants(Json& primitive, int authored, int lit);
+
+    GltfDocument& document_;
+    const LightmapImages& images_;
+    int set_ = 1;
+    std::map<std::pair<int, int>, int> lit_;  // by material, or -1 for none, and image
+    std::map<int, int> first_page_;
+    std::optional<int> first_variant_;  // of the two that radiance needs
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,131 @@
+#include "interflect/exports/authored/moved_texels.h"
+
+#include <ImathBoxAlgo.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "interflect/base/threads/parallel.h"
+
+namespace interflect::detail {
+
+namespace {
+
+using Imath::V3d;
+
+/// Returns parameters (a, b) with a edge_u + b edge_v nearest to a vector in the plane of the patch.
+Parameters along(const PatchGeometry::Shape& shape, const V3d& vector) {
+    const V3d u(shape.edge_u), v(shape.edge_v);
+    const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), determinant = uu * vv - uv * uv;
+    const double x = vector.dot(u), y = vector.dot(v);
+    return {static_cast<float>((x * vv - y * uv) / determinant), static_cast<float>((y * uu - x * uv) / determinant)};
+}
+
+std::uint32_t face_of(std::uint32_t index, const Patch& patch) { return std::min(index, patch.other_side.value); }
+
+bool is_inside(const PatchGeometry& geometry, Parameters p) {
+    constexpr float margin = 1e-3f;  // points on a common border are in neither face
+    const float most = geometry.is_triangle() ? p.u + p.v : std::max(p.u, p.v);
+    return std::min(p.u, p.v) > margin && most < 1 - margin;
+}
+
+/// Distance that rounding of positions may move a face, and merging of triangles that are nearly in one plane [m].
+float rounding_of(const Scene& scene) {
+    constexpr float relative = 1e-5f;
+    float largest = 0;
+    for (const V3f& x : scene.vertices) largest = std::max({largest, std::abs(x.x), std::abs(x.y), std::abs(x.z)});
+    return relative * largest;
+}
+
+}  // namespace
+
+TexelMover::TexelMover(const AuthoredCharts& authored, const Scene& solved, const PatchVisibility& visibility)
+    : authored_(authored),
+      solved_(solved),
+      visibility_(visibility),
+      reach_(rounding_of(solved)),
+      sides_(authored.objects.size()) {
+    for (std::uint32_t i = 0; i < authored.objects.size(); ++i)
+        object_of_chart_.insert(object_of_chart_.end(), authored.shapes[authored.objects[i].shape].charts.size(), i);
+    geometries_.reserve(solved.patches.size());
+    for (PatchIndex p{0}; p < solved.patches.size(); ++p) {
+        const Patch& patch = solved.patches[p];
+        geometries_.emplace_back(solved, patch);
+        Imath::Box3f box;
+        for (int c = 0; c < patch.vertex_count(); ++c) box.extendBy(solved.vertices[patch.vertices[c]]);
+        tree_.push_back({box, p});
+    }
+    arrange_box_tree(tree_);
+}
+
+TexelMover::Faces TexelMover::find(const V3f& x, const V3f& normal, std::uint32_t object) const {
+    constexpr float parallel = 0.9f;  // cosine, for triangles that are too thin for an exact normal
+    const auto is_near = [&](const Imath::Box3f& box) {
+        return (Imath::closestPointInBox(x, box) - x).length2() <= reach_ * reach_;
+    };
+    using Match = std::tuple<bool, bool, std::uint32_t>;  // is hidden, is another object's, patch
+    Match front{true, true, none}, back = front;
+    std::array<std::uint32_t, 4>
+        around{};  // faces with the point inside their border: the texel's own, and touching ones
+    std::size_t count = 0;
+    visit_box_tree(std::span<const Boxed>(tree_), is_near, [&](std::uint32_t i) {
+        const PatchGeometry& geometry = geometries_[i];
+        const float cosine = geometry.normal().dot(normal);
+        const Parameters at = geometry.parameters_of(x);
+        if (std::abs(cosine) < parallel || !is_near({geometry.point(at)})) return;
+        const Patch& patch = solved_.patches[PatchIndex(i)];
+        Match& best = cosine > 0 ? front : back;
+        best = std::min(best, Match(visibility_.hidden[i], patch.object != object, i));
+        if (is_inside(geometry, at) && count < around.size()) around[count++] = face_of(i, patch);
+    });
+    Faces result{PatchIndex(std::get<2>(front)), PatchIndex(std::get<2>(back)), false};
+    for (const std::uint32_t face : std::span(around).first(count))
+        result.touches |= result.front != none && face != face_of(result.front, solved_.patches[result.front]);
+    return result;
+}
+
+TexelMover::Surface TexelMover::surface_of(const AuthoredObject& object, const TexelPlace& place) const {
+    const std::array<V3d, 3> corners = authored_.corners(object, place.patch);
+    const V3d u = corners[1] - corners[0], v = corners[2] - corners[0];
+    return {u, v, V3f(corners[0] + u * place.at.u + v * place.at.v - solved_.origin)};
+}
+
+void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
+    const std::uint32_t number = object_of_chart_[chart];
+    const AuthoredObject& object = authored_.objects[number];
+    const double sign = object.to_world.determinant() < 0 ? -1 : 1;  // a mirrored mesh keeps its front
+    std::vector<Faces> faces(places.size());
+    const auto for_each_near = [&](const auto& use) {
+        constexpr std::size_t texels_per_task = 1 << 10;
+        parallel_for_ranges(places.size(), texels_per_task, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (places[i].is_near) use(i);
+        });
+    };
+    for_each_near([&](std::size_t i) {
+        const auto& [u, v, x] = surface_of(object, places[i]);
+        faces[i] = find(x, V3f(u.cross(v).normalized() * sign), object.object);
+    });
+    const auto shows = [&](PatchIndex p) { return p != none && visibility_.lit[p] && !visibility_.hidden[p]; };
+    const bool has_front = std::any_of(faces.begin(), faces.end(), [&](const Faces& f) { return shows(f.front); });
+    for_each_near([&](std::size_t i) {
+        TexelPlace& place = places[i];
+        const PatchIndex patch = has_front ? faces[i].front : faces[i].back;
+        const bool is_open = patch != none && (visibility_.lit[patch] || !faces[i].touches);
+        place.is_near = is_open && !visibility_.hidden[patch];
+        if (!place.is_near) return;
+        const auto& [u, v, x] = surface_of(object, place);
+        const PatchGeometry& geometry = geometries_[patch];
+        place.patch = patch;
+        place.at = geometry.parameters_of(x);
+        for (Parameters& side : place.sides) side = along(geometry.shape(), u * side.u + v * side.v);
+    });
+    for (const Faces& one : faces) {
+        sides_[number].front += shows(one.front);
+        sides_[number].both += shows(one.front) && shows(one.back);
+    }
+}
+
+}  // namespace interflect::detail

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/exports/authored/authored_charts.h"
+#include "interflect/exports/lightmap/texels.h"
+#include "interflect/exports/mesh/shown_patches.h"
+#include "interflect/geometry/search/box_tree.h"
+#include "interflect/scene.h"
+
+namespace interflect::detail {
+
+/// Moves texels from the triangles of a file to the patches of the solved scene, which contacts have cut into pieces.
+/// A texel gets the light of the front, or of the back in charts whose fronts are unlit or hidden. Texels that are
+/// hidden, or unlit where another face touches theirs, lose TexelPlace::is_near: they copy the light beside them.
+class TexelMover {
+  public:
+    /// Refers to its arguments. @param visibility  Of the patches of the solved scene.
+    TexelMover(const AuthoredCharts& authored, const Scene& solved, const PatchVisibility& visibility);
+
+    void move(std::size_t chart, std::span<TexelPlace> places);
+
+    /// Whether both sides of most of an object are lit, of which its lightmap has one.
+    bool is_lit_on_both_sides(std::size_t object) const { return 2 * sides_[object].both > sides_[object].front; }
+
+  private:
+    /// The patches at a point of a face.
+    struct Faces {
+        PatchIndex front, back;
+        bool touches;  ///< Whether another face lies at this point, so that one side is covered.
+    };
+    /// Edges of a triangle, and the point of a texel from Scene::origin [m].
+    struct Surface {
+        Imath::V3d u, v;
+        V3f x;
+    };
+    /// Numbers of texels.
+    struct LitSides {
+        std::uint64_t front = 0, both = 0;
+    };
+    Faces find(const V3f& x, const V3f& normal, std::uint32_t object) const;
+    Surface surface_of(const AuthoredObject& object, const TexelPlace& place) const;
+
+    const AuthoredCharts& authored_;
+    const Scene& solved_;
+    const PatchVisibility& visibility_;
+    std::vector<std::uint32_t> object_of_chart_;
+    std::vector<PatchGeometry> geometries_;
+    std::vector<Boxed> tree_;
+    float reach_ = 0;              // [m]
+    std::vector<LitSides> sides_;  // of each object
+};
+
+}  // namespace interflect::detail

@@ -1,0 +1,244 @@
+#include "interflect/exports/authored/patched_gltf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "interflect/exports/authored/authored_charts.h"
+#include "interflect/exports/authored/lit_materials.h"
+#include "interflect/exports/authored/moved_texels.h"
+#include "interflect/exports/authored/vertex_splits.h"
+#include "interflect/exports/charts/atlas.h"
+#include "interflect/exports/gltf/lightmap_images.h"
+#include "interflect/exports/mesh/shown_patches.h"
+
+namespace interflect::detail {
+
+namespace {
+
+constexpr const char* draco = "KHR_draco_mesh_compression";
+
+// Unsigned types of components; the signed ones are one less. Others have 4 bytes.
+constexpr int byte_type = 5121, short_type = 5123, float_type = 5126;
+
+std::size_t component_bytes(int component_type) {
+    return component_type <= byte_type ? 1 : component_type <= short_type ? 2 : 4;
+}
+
+void remove_extension(Json& owner, const char* name) {
+    if (!owner.contains("extensions")) return;
+    owner["extensions"].erase(name);
+    if (owner["extensions"].empty()) owner.erase("extensions");
+}
+
+/// Writes meshes with lightmap coordinates.
+class LitMeshes {
+  public:
+    LitMeshes(GltfDocument& document, SourceGltf& source, const AuthoredCharts& authored, const BakedImages& baked,
+              LitMaterials& materials)
+        : document_(document),
+          source_(source),
+          authored_(authored),
+          baked_(baked),
+          materials_(materials),
+          meshes_(document.json["meshes"]) {}
+
+    void light(const AuthoredObject& object) {
+        const AuthoredShape& shape = authored_.shapes[object.shape];
+        if (shape.charts.empty()) return;  // all its triangles are without area
+        const std::uint32_t number = authored_.model.meshes[shape.meshes.front()].source.mesh;
+        Json mesh = meshes_[number];
+        std::vector<bool> is_lit(mesh["primitives"].size(), false);
+        for (const std::uint32_t index : shape.meshes) {
+            const std::uint32_t primitive = authored_.model.meshes[index].source.primitive;
+            if (!is_lit[primitive]) light(mesh["primitives"][primitive], object, primitive);
+            is_lit[primitive] = true;
+        }
+        if (is_written_.insert(number).second)
+            document_.json["meshes"][number] = std::move(mesh);
+        else
+            document_.json["nodes"][object.node]["mesh"] = document_.add("meshes", std::move(mesh));
+    }
+
+  private:
+    struct Split {
+        SplitVertices vertices;
+        Json primitive;  // with the copied vertices
+    };
+
+    void light(Json& primitive, const AuthoredObject& object, std::uint32_t number) {
+        const Split& split = split_of(primitive, object.shape, number);
+        primitive = split.primitive;
+        const std::vector<LightmapChart>& charts = authored_.charts;
+        std::vector<V2f> coordinates;
+        for (const SplitVertices::Place& place : split.vertices.places) {
+            coordinates.emplace_back(0.0f, 0.0f);
+            if (place.chart == none) continue;
+            const LightmapChart& chart = charts[object.first_chart + place.chart];
+            coordinates.back() = chart.coordinate(chart.patches[place.patch].corners[place.corner], baked_.images);
+        }
+        const int accessor = document_.add_attribute(coordinates);
+        Json& attributes = primitive["attributes"];
+        for (int set = 0; set <= materials_.set(); ++set)  // glTF allows no gaps
+            if (const std::string name = fmt::format("TEXCOORD_{}", set);
+                set == materials_.set() || !attributes.contains(name))
+                attributes[name] = accessor;
+        materials_.light(primitive, charts[object.first_chart].page);
+    }
+
+    const Split& split_of(const Json& primitive, std::uint32_t shape, std::uint32_t number) {
+        const auto [entry, is_new] = splits_.try_emplace({shape, number});
+        Split& split = entry->second;
+        if (!is_new) return split;
+        const std::uint32_t position = primitive["attributes"]["POSITION"];
+        const std::uint32_t count = document_.json["accessors"][position]["count"];
+        split.vertices = split_vertices(authored_.model, authored_.shapes[shape], number, count);
+        split.primitive = primitive;
+        if (split.vertices.copied.empty()) return split;
+        const bool is_compressed = primitive.contains("extensions") && primitive["extensions"].contains(draco);
+        if (is_compressed) decompress(split.primitive, shape, number, split.vertices.copied);
+        const auto copy_all = [&](Json& attributes, const Json& compressed) {
+            for (auto& [name, accessor] : attributes.items())
+                if (!compressed.contains(name))
+                    accessor = with_copies(source_.elements(accessor), accessor, split.vertices.copied);
+        };
+        copy_all(split.primitive["attributes"],
+                 is_compressed ? primitive["extensions"][draco]["attributes"] : Json::object());
+        if (split.primitive.contains("targets"))
+            for (Json& target : split.primitive["targets"]) copy_all(target, Json::object());
+        split.primitive["indices"] = document_.add_indices(split.vertices.corners);
+        split.primitive.erase("mode");  // triangles
+        return split;
+    }
+
+    /// Replaces compressed attributes by ones in single precision, or whole numbers for joints.
+    void decompress(Json& primitive, std::uint32_t shape, std::uint32_t number,
+                    const std::vector<std::uint32_t>& copied) {
+        const std::uint32_t mesh = authored_.model.meshes[authored_.shapes[shape].meshes.front()].source.mesh;
+        for (auto& [name, values] : source_.decompressed(mesh, number)) {
+            std::vector<std::uint16_t> joints;
+            const auto components = static_cast<std::size_t>(values.components);
+            GltfElements elements{.first = reinterpret_cast<const char*>(values.values.data()),
+                                  .stride = components * sizeof(float),
+                                  .count = values.values.size() / components,
+                                  .component_type = float_type,
+                                  .components = values.components};
+            if (name.starts_with("JOINTS_")) {
+                joints.assign(values.values.begin(), values.values.end());
+                elements.first = reinterpret_cast<const char*>(joints.data());
+                elements.stride = components * sizeof(std::uint16_t);
+                elements.component_type = short_type;
+            }
+            Json& accessor = primitive["attributes"][name];
+            accessor = with_copies(elements, accessor, copied);
+        }
+        remove_extension(primitive, draco);
+    }
+
+    /// Adds an accessor with further copies of some elements.
+    /// @param described  Accessor that has the other properties.
+    int with_copies(const GltfElements& elements, std::uint32_t described, const std::vector<std::uint32_t>& copied) {
+        const std::size_t size =
+            component_bytes(elements.component_type) * static_cast<std::size_t>(elements.components);
+        constexpr std::size_t alignment = 4;
+        const std::size_t stride = (size + alignment - 1) / alignment * alignment;
+        std::string bytes((elements.count + copied.size()) * stride, '\0');
+        const auto copy = [&](std::uint64_t from, std::size_t to) {
+            if (elements.first) bytes.replace(to * stride, size, elements.first + from * elements.stride, size);
+        };
+        for (std::uint64_t i = 0; i < elements.count; ++i) copy(i, i);
+        for (std::size_t i = 0; i < copied.size(); ++i) copy(copied[i], elements.count + i);
+        Json json = document_.json["accessors"][described];
+        for (const char* place : {"bufferView", "byteOffset", "sparse"}) json.erase(place);
+        if (!elements.normalized) json.erase("normalized");
+        json["componentType"] = elements.component_type;
+        json["count"] = elements.count + copied.size();
+        return document_.add_elements(std::move(json), bytes, stride);
+    }
+
+    GltfDocument& document_;
+    SourceGltf& source_;
+    const AuthoredCharts& authored_;
+    const BakedImages& baked_;
+    LitMaterials& materials_;
+    const Json meshes_;                                                // of the file
+    std::set<std::uint32_t> is_written_;                               // indices of meshes
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Split> splits_;  // by shape and primitive
+};
+
+/// Warns of objects whose lightmap has the light of one side although the other can be seen and is lit.
+void warn_of_backs(const Json& file, const AuthoredCharts& authored, const TexelMover& mover, Warnings& warnings) {
+    const auto shows_back = [&](std::uint32_t mesh) {
+        const auto& [number, primitive, vertices] = authored.model.meshes[mesh].source;
+        const Json& json = file["meshes"][number]["primitives"][primitive];
+        return json.contains("material") &&
+               file["materials"][json["material"].get<std::size_t>()].value("doubleSided", false);
+    };
+    for (std::size_t i = 0; i < authored.objects.size(); ++i) {
+        const std::vector<std::uint32_t>& meshes = authored.shapes[authored.objects[i].shape].meshes;
+        if (mover.is_lit_on_both_sides(i) && std::any_of(meshes.begin(), meshes.end(), shows_back))
+            warnings.add("lightmap-sides", "the object is lit on both sides: its lightmap has the light of its front",
+                         authored.model.objects[authored.objects[i].object]);
+    }
+}
+
+void stop_use(Json& file, const char* extension) {
+    for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
+        if (!file.contains(list)) continue;
+        Json& names = file[list];
+        names.erase(std::remove(names.begin(), names.end(), extension), names.end());
+        if (names.empty()) file.erase(list);
+    }
+}
+
+void remove_lights(Json& file) {
+    for (const char* name : {"KHR_lights_punctual", "EXT_lights_ies"}) {
+        remove_extension(file, name);
+        if (file.contains("nodes"))
+            for (Json& node : file["nodes"]) remove_extension(node, name);
+        stop_use(file, name);
+    }
+}
+
+bool uses_draco(const Json& file) {
+    for (const Json& mesh : file["meshes"])
+        for (const Json& primitive : mesh["primitives"])
+            if (primitive.contains("extensions") && primitive["extensions"].contains(draco)) return true;
+    return false;
+}
+
+}  // namespace
+
+std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& source, const std::filesystem::path& path,
+                                       const Scene& scene, const Solution& solution, const ExportOptions& options) {
+    const LightmapOptions& chosen = *options.lightmap;
+    Warnings ignored;
+    Warnings& warnings = options.warnings ? *options.warnings : ignored;
+    AuthoredCharts authored = authored_charts(source.model(), chosen, warnings);
+    const PatchVisibility visibility = patch_visibility(scene, solution);
+    TexelMover mover(authored, scene, visibility);
+    const PackCharts pack = [&](std::vector<LightmapChart>& charts) {
+        return pack_groups(charts, authored.first_charts(), chosen.gutter, chosen.max_size);
+    };
+    const MoveTexels move = [&](std::size_t chart, std::span<TexelPlace> places) { mover.move(chart, places); };
+    const BakedImages baked = bake_charts(authored.charts, pack, move, scene, solution, options);
+    warn_of_backs(document.json, authored, mover, warnings);
+
+    LightmapImages images = add_lightmap_images(document, path, baked, solution.group_names, options);
+    LitMaterials materials(document, images);
+    LitMeshes meshes(document, source, authored, baked, materials);
+    for (const AuthoredObject& object : authored.objects) meshes.light(object);
+    if (!uses_draco(document.json)) stop_use(document.json, draco);
+    if (!chosen.keep_lights) remove_lights(document.json);
+    Json& extras = document.json["asset"]["extras"];
+    if (!extras.is_object()) extras = Json::object();
+    extras["interflect"] = std::move(images.description);
+    return std::move(images.files);
+}
+
+}  // namespace interflect::detail

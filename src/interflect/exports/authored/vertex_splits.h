@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interflect/exports/authored/authored_charts.h"
+
+namespace interflect::detail {
+
+/// The vertices of a primitive of a glTF file, copied where charts meet. The first ones are those of the file.
+struct SplitVertices {
+    /// Corner of a patch in a chart of the shape, at which a vertex has its coordinate.
+    struct Place {
+        std::uint32_t chart = none, patch = 0, corner = 0;  ///< LightmapChart::patches[patch].corners[corner].
+    };
+
+    std::vector<Place> places;           ///< Of each vertex; chart `none` for one without a triangle.
+    std::vector<std::uint32_t> copied;   ///< Vertices of the file that follow the file's own.
+    std::vector<std::uint32_t> corners;  ///< Vertex of each corner, three per triangle.
+};
+
+/// @param primitive  Index in the mesh of the file. @param vertex_count  In the file.
+SplitVertices split_vertices(const Model& model, const AuthoredShape& shape, std::uint32_t primitive,
+                             std::uint32_t vertex_count);
+
+}  // namespace interflect::detail

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "interflect/exports/charts/charts.h"
+#include "interflect/exports/lightmap/baked_light.h"
+
+namespace interflect::detail {
+
+/// The point of a patch that is nearest to the centre of a texel.
+struct TexelPlace : BakedPoint {
+    bool is_inside = false;  ///< Whether the centre is on the patch.
+    bool is_near = false;  ///< Whether it is less than a texel from the patch, so that bilinear interpolation uses it.
+};
+
+/// Returns the places of the texels of a chart and its gutter, row by row.
+std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter);
+
+/// A texel without any texel near a patch.
+inline constexpr auto no_texel = static_cast<std::size_t>(-1);
+
+/// Returns, for each texel, the texel near a patch whose light it copies, found by flood fill. Texels near a patch copy
+/// themselves. If no texel is near a patch, all are `no_texel`.
+std::vector<std::size_t> copied_texels(std::span<const TexelPlace> places, std::size_t columns);
+
+}  // namespace interflect::detail
