@@ -159,6 +159,10 @@ class Light(LitFiles):
         expected = 2 * INTENSITY / np.linalg.norm(lit.positions[below] - lamp, axis=1) ** 3
         self.assertGreater(below.sum(), 10)
         np.testing.assert_allclose(lit.irradiance[below, 1], expected, rtol=0.1)
+        # The bottom of the crate, which nobody sees but multisampling at its edges, has the light at its edges.
+        bottom = (lit.names == "crate") & (lit.normals[:, 2] < -0.9) & (x > 0.46) & (np.abs(y) < 0.4)
+        self.assertGreater(bottom.sum(), 10)
+        self.assertGreater(lit.irradiance[bottom, 1].min(), 0.5 * expected.min())
 
 
 class File(LitFiles):

@@ -67,6 +67,7 @@ TexelMover::Faces TexelMover::find(const V3f& x, const V3f& normal, std::uint32_
     };
     using Match = std::tuple<bool, bool, std::uint32_t>;  // is hidden, is another object's, patch
     Match front{true, true, none}, back = front;
+    Faces result{};
     std::array<std::uint32_t, 4>
         around{};  // faces with the point inside their border: the texel's own, and touching ones
     std::size_t count = 0;
@@ -79,8 +80,11 @@ TexelMover::Faces TexelMover::find(const V3f& x, const V3f& normal, std::uint32_
         Match& best = cosine > 0 ? front : back;
         best = std::min(best, Match(visibility_.hidden[i], patch.object != object, i));
         if (is_inside(geometry, at) && count < around.size()) around[count++] = face_of(i, patch);
+        if (const bool is_front = face_of(i, patch) == i; is_front && patch.object != object)
+            (cosine > 0 ? result.meets_back : result.meets_front) = true;
     });
-    Faces result{PatchIndex(std::get<2>(front)), PatchIndex(std::get<2>(back)), false};
+    result.front = PatchIndex(std::get<2>(front));
+    result.back = PatchIndex(std::get<2>(back));
     for (const std::uint32_t face : std::span(around).first(count))
         result.touches |= result.front != none && face != face_of(result.front, solved_.patches[result.front]);
     return result;
@@ -96,6 +100,8 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
     const std::uint32_t number = object_of_chart_[chart];
     const AuthoredObject& object = authored_.objects[number];
     const double sign = object.to_world.determinant() < 0 ? -1 : 1;  // a mirrored mesh keeps its front
+    for (TexelPlace& place : places)
+        if (!place.is_near) place.patch = no_patch;
     std::vector<Faces> faces(places.size());
     const auto for_each_near = [&](const auto& use) {
         constexpr std::size_t texels_per_task = 1 << 10;
@@ -110,21 +116,27 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
     });
     const auto shows = [&](PatchIndex p) { return p != none && visibility_.lit[p] && !visibility_.hidden[p]; };
     const bool has_front = std::any_of(faces.begin(), faces.end(), [&](const Faces& f) { return shows(f.front); });
+    const bool has_back = std::any_of(faces.begin(), faces.end(), [&](const Faces& f) { return shows(f.back); });
+    const bool takes_back = has_back && !has_front, is_unlit = !has_back && !has_front;
     for_each_near([&](std::size_t i) {
         TexelPlace& place = places[i];
-        const PatchIndex patch = has_front ? faces[i].front : faces[i].back;
-        const bool is_open = patch != none && (visibility_.lit[patch] || !faces[i].touches);
-        place.is_near = is_open && !visibility_.hidden[patch];
-        if (!place.is_near) return;
         const auto& [u, v, x] = surface_of(object, place);
-        const PatchGeometry& geometry = geometries_[patch];
+        const PatchIndex patch = takes_back ? faces[i].back : faces[i].front;
+        const bool is_covered =
+            (!takes_back && faces[i].meets_front) || ((takes_back || is_unlit) && faces[i].meets_back);
+        const bool is_open = patch != none && (visibility_.lit[patch] || !faces[i].touches);
+        place.is_near = is_open && !is_covered && !visibility_.hidden[patch];
         place.patch = patch;
+        if (patch == none) return;
+        const PatchGeometry& geometry = geometries_[patch];
         place.at = geometry.parameters_of(x);
         for (Parameters& side : place.sides) side = along(geometry.shape(), u * side.u + v * side.v);
     });
+    constexpr float noticed = 0.05f;  // of the light of the front; less may be stray light in a solid
     for (const Faces& one : faces) {
-        sides_[number].front += shows(one.front);
-        sides_[number].both += shows(one.front) && shows(one.back);
+        if (!shows(one.front)) continue;
+        ++sides_[number].front;
+        sides_[number].both += shows(one.back) && visibility_.light[one.back] > noticed * visibility_.light[one.front];
     }
 }
 

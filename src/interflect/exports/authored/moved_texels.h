@@ -14,7 +14,8 @@ namespace interflect::detail {
 
 /// Moves texels from the triangles of a file to the patches of the solved scene, which contacts have cut into pieces.
 /// A texel gets the light of the front, or of the back in charts whose fronts are unlit or hidden. Texels that are
-/// hidden, or unlit where another face touches theirs, lose TexelPlace::is_near: they copy the light beside them.
+/// hidden, between two objects, or unlit where another face touches theirs, lose TexelPlace::is_near: they copy the
+/// light beside them.
 class TexelMover {
   public:
     /// Refers to its arguments. @param visibility  Of the patches of the solved scene.
@@ -29,7 +30,8 @@ class TexelMover {
     /// The patches at a point of a face.
     struct Faces {
         PatchIndex front, back;
-        bool touches;  ///< Whether another face lies at this point, so that one side is covered.
+        bool touches;                  ///< Whether another face lies at this point, so that one side is covered.
+        bool meets_front, meets_back;  ///< Whether the front of another object's face faces this side, at distance 0.
     };
     /// Edges of a triangle, and the point of a texel from Scene::origin [m].
     struct Surface {

@@ -1,14 +1,18 @@
 #include "interflect/exports/lightmap/bake.h"
 
+#include <ImathBoxAlgo.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "interflect/base/threads/monitor_section.h"
 #include "interflect/core.h"
 #include "interflect/exports/lightmap/baked_light.h"
+#include "interflect/geometry/search/box_tree.h"
 #include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/measure.h"
 #include "interflect/render/pictures/path_picture.h"
@@ -38,6 +42,8 @@ class LightmapTexels {
     void add(const LightmapChart& chart, std::span<const TexelPlace> places) {
         const int columns = chart.columns + 2 * options_.gutter;
         const std::vector<std::size_t> copied = copied_texels(places, static_cast<std::size_t>(columns));
+        if (std::find_if(copied.begin(), copied.end(), [](std::size_t i) { return i != no_texel; }) == copied.end())
+            return add_hidden(chart, places, columns);
         std::vector<std::size_t> place_index(places.size());
         PointGrid grid{columns, std::vector<std::uint32_t>(places.size(), none)};
         for (std::size_t i = 0; i < places.size(); ++i) {
@@ -49,10 +55,28 @@ class LightmapTexels {
         }
         grids_.push_back(std::move(grid));
         for (std::size_t i = 0; i < places.size(); ++i) {
-            if (copied[i] == no_texel) continue;  // it stays black
-            const int column = chart.left - options_.gutter + static_cast<int>(i) % columns;
-            const int row = chart.top - options_.gutter + static_cast<int>(i) / columns;
-            targets_.push_back({static_cast<std::size_t>(chart.page), place_index[copied[i]], column, row});
+            targets_.push_back(target_of(chart, i, columns));
+            targets_.back().place = place_index[copied[i]];
+        }
+    }
+    /// Lets hidden texels copy the nearest ones that are not. Call it after all charts have been added.
+    void fill_hidden(const Scene& scene) {
+        if (hidden_.empty() || places_.empty()) return;
+        std::vector<Boxed> tree;
+        for (std::uint32_t i = 0; i < places_.size(); ++i)
+            tree.push_back({Imath::Box3f(position_of(scene, places_[i])), i});
+        arrange_box_tree(tree);
+        for (auto& [target, point] : hidden_) {
+            const V3f x = position_of(scene, point);
+            std::pair nearest(std::numeric_limits<float>::max(), none);  // squared distance [m^2], and place
+            const auto is_near = [&](const Imath::Box3f& box) {
+                return (Imath::closestPointInBox(x, box) - x).length2() <= nearest.first;
+            };
+            visit_box_tree(std::span<const Boxed>(tree), is_near, [&](std::uint32_t i) {
+                nearest = std::min(nearest, std::pair((position_of(scene, places_[i]) - x).length2(), i));
+            });
+            target.place = nearest.second;
+            targets_.push_back(target);
         }
     }
     void evaluate(const Scene& scene, const BakedLight& light, const Monitor& monitor,
@@ -71,10 +95,24 @@ class LightmapTexels {
         int column, row;
     };
 
+    Target target_of(const LightmapChart& chart, std::size_t i, int columns) const {
+        const int column = chart.left - options_.gutter + static_cast<int>(i) % columns;
+        const int row = chart.top - options_.gutter + static_cast<int>(i) / columns;
+        return {static_cast<std::size_t>(chart.page), 0, column, row};
+    }
+    void add_hidden(const LightmapChart& chart, std::span<const TexelPlace> places, int columns) {
+        for (std::size_t i = 0; i < places.size(); ++i)
+            if (places[i].patch != none) hidden_.push_back({target_of(chart, i, columns), places[i]});
+    }
+    static V3f position_of(const Scene& scene, const BakedPoint& point) {
+        return PatchGeometry(scene, scene.patches[point.patch]).point(point.at);
+    }
+
     const LightmapOptions& options_;
     std::vector<BakedPoint> places_;
     std::vector<PointGrid> grids_;  // one for each chart
     std::vector<Target> targets_;
+    std::vector<std::pair<Target, BakedPoint>> hidden_;  // texels of charts without any other texels
     std::int64_t texels_inside_ = 0;
 };
 
@@ -160,6 +198,7 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
         move(i, places);
         texels.add(charts[i], places);
     }
+    texels.fill_hidden(scene);
     if (lightmap.groups)
         evaluate_groups(texels, scene, solution, options, baked);
     else

@@ -20,8 +20,8 @@ struct BakedImages {
 /// Packs charts into images; returns the sizes of the images.
 using PackCharts = std::function<std::vector<Imath::V2i>(std::vector<LightmapChart>& charts)>;
 
-/// Moves the texels of a chart, given by its index, to patches of the solved scene. Texels that are moved nowhere lose
-/// TexelPlace::is_near.
+/// Moves the texels of a chart, given by its index, to patches of the solved scene. Hidden texels lose
+/// TexelPlace::is_near; if all of a chart are hidden, they copy the nearest light in space.
 using MoveTexels = std::function<void(std::size_t chart, std::span<TexelPlace> places)>;
 
 /// Packs charts, then evaluates light at texel centres or, outside the patches, at the nearest point of a patch. Direct

@@ -40,15 +40,17 @@ std::vector<bool> at_most(const std::vector<float>& light, double limit) {
 
 PatchVisibility patch_visibility(const Scene& scene, const Solution& solution) {
     const bool is_dimmed = !solution.undimmed_light.empty();
-    const std::vector<float> light = is_dimmed ? solution.undimmed_light : patch_light(scene, solution.irradiance);
-    const double mean = mean_of(scene, light);
-    PatchVisibility result{at_most(light, std::min(max_dark, max_dark_of_mean * mean)), {}};
+    PatchVisibility result;
+    result.light = is_dimmed ? solution.undimmed_light : patch_light(scene, solution.irradiance);
+    const double mean = mean_of(scene, result.light);
+    result.lit = at_most(result.light, std::min(max_dark, max_dark_of_mean * mean));
     result.lit.flip();
     const RayCaster ray_caster(scene);
     for (PatchIndex p{0}; p < scene.patches.size(); ++p) result.hidden.push_back(ray_caster.uncovered_share(p) == 0);
     if (std::find(result.lit.begin(), result.lit.end(), true) == result.lit.end())
         return result;  // a scene without light keeps all faces
-    const std::vector<bool> encased = encased_patches(scene, ray_caster, at_most(light, max_stray_of_mean * mean));
+    const std::vector<bool> encased =
+        encased_patches(scene, ray_caster, at_most(result.light, max_stray_of_mean * mean));
     for (PatchIndex p{0}; p < scene.patches.size(); ++p)
         if (encased[p]) result.hidden[p] = true;
     return result;

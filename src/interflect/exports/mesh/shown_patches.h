@@ -8,7 +8,8 @@
 namespace interflect::detail {
 
 struct PatchVisibility {
-    std::vector<bool> lit;     ///< Patches with more than stray light. The light is undimmed.
+    std::vector<float> light;  ///< Undimmed [lm/m^2].
+    std::vector<bool> lit;     ///< Patches with more than stray light.
     std::vector<bool> hidden;  ///< Patches covered by coincident faces, and encased_patches().
 };
 
