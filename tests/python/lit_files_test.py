@@ -113,17 +113,19 @@ class Light(LitFiles):
                 self.assertEqual(primitive["attributes"]["TEXCOORD_1"], coordinates)
 
     def test_of_a_wall_with_two_lit_sides_is_that_of_its_front(self):
-        glb = plates()
-        glb.json["materials"][0]["doubleSided"] = True
-        lights = glb.json["extensions"]["KHR_lights_punctual"]["lights"]
-        lights.append({"type": "point", "intensity": INTENSITY})
-        glb.json["nodes"].append({"translation": [0, 0, -4], "extensions": {"KHR_lights_punctual": {"light": 1}}})
-        glb.json["scenes"][0]["nodes"] = [0, 6, 8]  # the plate "below" between two lamps
-        with self.assertWarnsRegex(ifl.Warning, "below.*lit on both sides|lit on both sides.*below"):
-            path = self.lit(glb)[1]
-        lit = LitPoints(path)
-        np.testing.assert_allclose(lit.irradiance[lit.normals[:, 2] > 0, 1].max(), INTENSITY / 4, rtol=0.01)
-
+        """A plate between two lamps, of which the one behind it is brighter; also mirrored, which keeps the front."""
+        for x in (1, -1):
+            with self.subTest(scale=x):
+                glb = plates()
+                glb.json["materials"][0]["doubleSided"] = True
+                lights = glb.json["extensions"]["KHR_lights_punctual"]["lights"]
+                lights.append({"type": "point", "intensity": 4 * INTENSITY})
+                glb.json["nodes"][0]["scale"] = [x, 1, 1]
+                glb.json["nodes"].append({"translation": [0, 0, -4], "extensions": {"KHR_lights_punctual": {"light": 1}}})
+                glb.json["scenes"][0]["nodes"] = [0, 6, 8]
+                with self.assertWarnsRegex(ifl.Warning, "below.*lit on both sides"):
+                    path = self.lit(glb)[1]
+                np.testing.assert_allclose(LitPoints(path).irradiance[:, 1].max(), INTENSITY / 4, rtol=0.01)
 
     def test_of_a_floor_is_dark_behind_a_wall_even_if_its_back_is_lit(self):
         """One lamp on one side of the wall, one below the floor."""

@@ -132,7 +132,7 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
         place.at = geometry.parameters_of(x);
         for (Parameters& side : place.sides) side = along(geometry.shape(), u * side.u + v * side.v);
     });
-    constexpr float noticed = 0.05f;  // of the light of the front; less may be stray light in a solid
+    constexpr float noticed = 0.25f;  // of the light of the front; less may be light that seams let into a solid
     for (const Faces& one : faces) {
         if (!shows(one.front)) continue;
         ++sides_[number].front;
