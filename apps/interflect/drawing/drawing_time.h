@@ -36,7 +36,7 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
                                      const View& view, const PictureOptions& options);
 
 /// Drawing takes at most this share of the time that is left.
-constexpr double largest_drawing_share = 0.8;
+constexpr double largest_drawing_share = 0.9;
 
 /// Returns the part of `left` [s] that solving leaves to drawing: for paths, whose noise more samples reduce, three
 /// quarters, as in the default run of an office; at least the predicted time.

@@ -95,7 +95,8 @@ int LitMaterials::lit(int material, int page) {
     const auto [entry, is_new] = lit_.try_emplace({material, page}, material);
     if (!is_new) return entry->second;
     const bool is_first = first_page_.try_emplace(material, page).first->second == page;
-    const Json json = material < 0 ? unnamed_material() : document_.json["materials"][material];
+    const Json json =
+        material < 0 ? unnamed_material() : document_.json.at("materials").at(static_cast<std::size_t>(material));
     if (has_extension(json, unlit)) return material;
     if (images_.encoding.content == LightmapContent::radiance) {
         if (!is_diffuse(json)) return material;

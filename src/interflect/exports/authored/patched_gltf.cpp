@@ -101,11 +101,11 @@ class LitMeshes {
         split.primitive = primitive;
         if (split.vertices.copied.empty()) return split;
         const bool is_compressed = primitive.contains("extensions") && primitive["extensions"].contains(draco);
-        if (is_compressed) decompress(split.primitive, shape, number, split.vertices.copied);
+        if (is_compressed) decompress(split.primitive, shape, number, split.vertices);
         const auto copy_all = [&](Json& attributes, const Json& compressed) {
             for (auto& [name, accessor] : attributes.items())
                 if (!compressed.contains(name))
-                    accessor = with_copies(source_.elements(accessor), accessor, split.vertices.copied);
+                    accessor = with_copies(source_.elements(accessor), accessor, split.vertices);
         };
         copy_all(split.primitive["attributes"],
                  is_compressed ? primitive["extensions"][draco]["attributes"] : Json::object());
@@ -117,8 +117,7 @@ class LitMeshes {
     }
 
     /// Replaces compressed attributes by ones in single precision, or whole numbers for joints.
-    void decompress(Json& primitive, std::uint32_t shape, std::uint32_t number,
-                    const std::vector<std::uint32_t>& copied) {
+    void decompress(Json& primitive, std::uint32_t shape, std::uint32_t number, const SplitVertices& vertices) {
         const std::uint32_t mesh = authored_.model.meshes[authored_.shapes[shape].meshes.front()].source.mesh;
         for (auto& [name, values] : source_.decompressed(mesh, number)) {
             std::vector<std::uint16_t> joints;
@@ -129,20 +128,25 @@ class LitMeshes {
                                   .component_type = float_type,
                                   .components = values.components};
             if (name.starts_with("JOINTS_")) {
-                joints.assign(values.values.begin(), values.values.end());
+                for (const float joint : values.values)
+                    joints.push_back(joint > 0 ? static_cast<std::uint16_t>(std::min(joint, 65535.0f)) : 0);
                 elements.first = reinterpret_cast<const char*>(joints.data());
                 elements.stride = components * sizeof(std::uint16_t);
                 elements.component_type = short_type;
             }
             Json& accessor = primitive["attributes"][name];
-            accessor = with_copies(elements, accessor, copied);
+            accessor = with_copies(elements, accessor, vertices);
         }
         remove_extension(primitive, draco);
     }
 
     /// Adds an accessor with further copies of some elements.
     /// @param described  Accessor that has the other properties.
-    int with_copies(const GltfElements& elements, std::uint32_t described, const std::vector<std::uint32_t>& copied) {
+    int with_copies(const GltfElements& elements, std::uint32_t described, const SplitVertices& vertices) {
+        const std::vector<std::uint32_t>& copied = vertices.copied;
+        const std::size_t count = vertices.places.size() - copied.size();
+        if (elements.count != count)
+            throw GltfFault(fmt::format("an attribute has {} elements for {} vertices", elements.count, count));
         const std::size_t size =
             component_bytes(elements.component_type) * static_cast<std::size_t>(elements.components);
         constexpr std::size_t alignment = 4;
@@ -153,7 +157,7 @@ class LitMeshes {
         };
         for (std::uint64_t i = 0; i < elements.count; ++i) copy(i, i);
         for (std::size_t i = 0; i < copied.size(); ++i) copy(copied[i], elements.count + i);
-        Json json = document_.json["accessors"][described];
+        Json json = document_.json["accessors"].at(described);
         for (const char* place : {"bufferView", "byteOffset", "sparse"}) json.erase(place);
         if (!elements.normalized) json.erase("normalized");
         json["componentType"] = elements.component_type;
@@ -175,9 +179,9 @@ class LitMeshes {
 void warn_of_backs(const Json& file, const AuthoredCharts& authored, const TexelMover& mover, Warnings& warnings) {
     const auto shows_back = [&](std::uint32_t mesh) {
         const auto& [number, primitive, vertices] = authored.model.meshes[mesh].source;
-        const Json& json = file["meshes"][number]["primitives"][primitive];
+        const Json& json = file.at("meshes").at(number).at("primitives").at(primitive);
         return json.contains("material") &&
-               file["materials"][json["material"].get<std::size_t>()].value("doubleSided", false);
+               file.at("materials").at(json["material"].get<std::size_t>()).value("doubleSided", false);
     };
     for (std::size_t i = 0; i < authored.objects.size(); ++i) {
         const std::vector<std::uint32_t>& meshes = authored.shapes[authored.objects[i].shape].meshes;
@@ -206,8 +210,8 @@ void remove_lights(Json& file) {
 }
 
 bool uses_draco(const Json& file) {
-    for (const Json& mesh : file["meshes"])
-        for (const Json& primitive : mesh["primitives"])
+    for (const Json& mesh : file.at("meshes"))
+        for (const Json& primitive : mesh.at("primitives"))
             if (primitive.contains("extensions") && primitive["extensions"].contains(draco)) return true;
     return false;
 }

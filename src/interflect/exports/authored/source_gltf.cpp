@@ -74,9 +74,10 @@ const char* mime_type_of(std::string_view bytes) {
 
 void move_view(Json& view, const std::vector<int>& new_buffer, const std::vector<std::size_t>& offset) {
     const std::size_t buffer = view.at("buffer");
-    if (const std::size_t moved = offset.at(buffer))
-        view["byteOffset"] = view.value("byteOffset", std::size_t{0}) + moved;
-    view["buffer"] = new_buffer.at(buffer);
+    if (buffer >= offset.size())
+        throw GltfFault(fmt::format("a buffer view has buffer {} of {}", buffer, offset.size()));
+    if (const std::size_t moved = offset[buffer]) view["byteOffset"] = view.value("byteOffset", std::size_t{0}) + moved;
+    view["buffer"] = new_buffer[buffer];
 }
 
 }  // namespace
@@ -92,6 +93,8 @@ SourceGltf::SourceGltf(const fs::path& path, std::string bytes, const ReadOption
       accessors_(asset_, buffers_) {}
 
 GltfElements SourceGltf::elements(std::uint32_t accessor) {
+    if (accessor >= accessors_.count())
+        throw GltfFault(fmt::format("an attribute has accessor {} of {}", accessor, accessors_.count()));
     return accessors_.elements(accessor, "SCALAR VEC2 VEC3 VEC4", asset_.root());
 }
 

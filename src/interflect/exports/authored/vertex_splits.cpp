@@ -37,17 +37,17 @@ SplitVertices split_vertices(const Model& model, const AuthoredShape& shape, std
     const auto triangles = places_of_triangles(shape);
     SplitVertices result;
     result.places.resize(vertex_count);
-    std::vector<std::vector<std::uint32_t>> variants(vertex_count);  // copies of each vertex
+    std::vector<std::vector<std::uint32_t>> copies(vertex_count);  // of each vertex
     const auto vertex_at = [&](std::uint32_t vertex, const Place& place) {
         if (place.chart == none) return vertex;
         if (result.places[vertex].chart == none) result.places[vertex] = place;
         if (are_equal(shape, result.places[vertex], place)) return vertex;
-        for (const std::uint32_t copy : variants[vertex])
+        for (const std::uint32_t copy : copies[vertex])
             if (are_equal(shape, result.places[copy], place)) return copy;
         const auto copy = static_cast<std::uint32_t>(result.places.size());
         result.places.push_back(place);
         result.copied.push_back(vertex);
-        variants[vertex].push_back(copy);
+        copies[vertex].push_back(copy);
         return copy;
     };
     for (const std::uint32_t index : shape.meshes) {
