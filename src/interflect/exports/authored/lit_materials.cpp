@@ -14,10 +14,10 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr const char* lightmap = "MOZ_lightmap";
-constexpr const char* emissive_strength = "KHR_materials_emissive_strength";
-constexpr const char* unlit = "KHR_materials_unlit";
-constexpr const char* variants = "KHR_materials_variants";
+constexpr const char* moz_lightmap = "MOZ_lightmap";
+constexpr const char* khr_emissive_strength = "KHR_materials_emissive_strength";
+constexpr const char* khr_unlit = "KHR_materials_unlit";
+constexpr const char* khr_variants = "KHR_materials_variants";
 
 bool has_extension(const Json& json, const char* name) {
     return json.contains("extensions") && json["extensions"].contains(name);
@@ -28,7 +28,7 @@ int highest_set(const Json& json) {
     int highest = 0;
     if (!json.is_structured()) return highest;
     for (const auto& [key, value] : json.items()) {
-        if (key == lightmap || key == "extras") continue;
+        if (key == moz_lightmap || key == "extras") continue;
         highest =
             std::max(highest, key == "texCoord" && value.is_number_integer() ? value.get<int>() : highest_set(value));
     }
@@ -64,20 +64,20 @@ LitMaterials::LitMaterials(GltfDocument& document, const LightmapImages& images)
                                      set_ - 1, most_sets - 2));
     bool emits = false;
     for (Json& material : materials) {
-        if (!material.contains("emissiveFactor") || has_extension(material, unlit)) continue;
+        if (!material.contains("emissiveFactor") || has_extension(material, khr_unlit)) continue;
         const auto& factor = material["emissiveFactor"];
         if (std::none_of(factor.begin(), factor.end(), [](const Json& x) { return x.get<double>() > 0; })) continue;
-        Json& strength = material["extensions"][emissive_strength]["emissiveStrength"];
+        Json& strength = material["extensions"][khr_emissive_strength]["emissiveStrength"];
         strength = (strength.is_number() ? strength.get<double>() : 1.0) * std::exp2(images.encoding.exposure);
         emits = true;
     }
-    if (emits) document.use_extension(emissive_strength);
+    if (emits) document.use_extension(khr_emissive_strength);
 }
 
 Json LitMaterials::with_irradiance(Json material, int page) const {
-    material["extensions"][lightmap] = {{"index", images_.textures[static_cast<std::size_t>(page)]},
-                                        {"texCoord", set_},
-                                        {"intensity", images_.encoding.intensity()}};
+    material["extensions"][moz_lightmap] = {{"index", images_.textures[static_cast<std::size_t>(page)]},
+                                            {"texCoord", set_},
+                                            {"intensity", images_.encoding.intensity()}};
     return material;
 }
 
@@ -87,7 +87,7 @@ Json LitMaterials::as_radiance(const Json& material, int page) const {
     const Json texture = {{"index", images_.textures[static_cast<std::size_t>(page)]}, {"texCoord", set_}};
     json["pbrMetallicRoughness"] = {{"baseColorTexture", texture}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
     if (material.contains("doubleSided")) json["doubleSided"] = material["doubleSided"];
-    json["extensions"][unlit] = Json::object();
+    json["extensions"][khr_unlit] = Json::object();
     return json;
 }
 
@@ -97,13 +97,13 @@ int LitMaterials::lit(int material, int page) {
     const bool is_first = first_page_.try_emplace(material, page).first->second == page;
     const Json json =
         material < 0 ? unnamed_material() : document_.json.at("materials").at(static_cast<std::size_t>(material));
-    if (has_extension(json, unlit)) return material;
+    if (has_extension(json, khr_unlit)) return material;
     if (images_.encoding.content == LightmapContent::radiance) {
         if (!is_diffuse(json)) return material;
-        document_.use_extension(unlit);
+        document_.use_extension(khr_unlit);
         return entry->second = document_.add("materials", as_radiance(json, page));
     }
-    document_.use_extension(lightmap);
+    document_.use_extension(moz_lightmap);
     if (material < 0 || !is_first) return entry->second = document_.add("materials", with_irradiance(json, page));
     document_.json["materials"][material] = with_irradiance(json, page);
     return material;
@@ -111,13 +111,13 @@ int LitMaterials::lit(int material, int page) {
 
 void LitMaterials::add_variants(Json& primitive, int authored, int lit) {
     if (!first_variant_) {
-        Json& names = document_.json["extensions"][variants]["variants"];
+        Json& names = document_.json["extensions"][khr_variants]["variants"];
         first_variant_ = static_cast<int>(names.size());
         names.push_back({{"name", "lit"}});
         names.push_back({{"name", "authored"}});
-        document_.use_extension(variants);
+        document_.use_extension(khr_variants);
     }
-    Json& mappings = primitive["extensions"][variants]["mappings"];
+    Json& mappings = primitive["extensions"][khr_variants]["mappings"];
     mappings.push_back({{"material", lit}, {"variants", {*first_variant_}}});
     mappings.push_back({{"material", authored}, {"variants", {*first_variant_ + 1}}});
 }
@@ -127,8 +127,8 @@ void LitMaterials::light(Json& primitive, int page) {
     if (material >= 0) primitive["material"] = material;
     if (images_.encoding.content == LightmapContent::radiance) {
         if (own >= 0 && material != own) add_variants(primitive, own, material);
-    } else if (has_extension(primitive, variants)) {
-        for (Json& mapping : primitive["extensions"][variants]["mappings"])
+    } else if (has_extension(primitive, khr_variants)) {
+        for (Json& mapping : primitive["extensions"][khr_variants]["mappings"])
             mapping["material"] = lit(mapping["material"].get<int>(), page);
     }
 }

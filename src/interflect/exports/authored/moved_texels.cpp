@@ -68,8 +68,8 @@ TexelMover::Faces TexelMover::find(const V3f& x, const V3f& normal, std::uint32_
     using Match = std::tuple<bool, bool, std::uint32_t>;  // is hidden, is another object's, patch
     Match front{true, true, none}, back = front;
     Faces result{};
-    std::array<std::uint32_t, 4>
-        around{};  // faces with the point inside their border: the texel's own, and touching ones
+    // Faces with the point inside their border: the texel's own, and touching ones.
+    std::array<std::uint32_t, 4> around{};
     std::size_t count = 0;
     visit_box_tree(std::span<const Boxed>(tree_), is_near, [&](std::uint32_t i) {
         const PatchGeometry& geometry = geometries_[i];
@@ -114,7 +114,6 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
         const auto& [u, v, x] = surface_of(object, places[i]);
         faces[i] = find(x, V3f(u.cross(v).normalized() * sign), object.object);
     });
-    const auto shows = [&](PatchIndex p) { return p != none && visibility_.lit[p] && !visibility_.hidden[p]; };
     const bool has_front = std::any_of(faces.begin(), faces.end(), [&](const Faces& f) { return shows(f.front); });
     const bool has_back = std::any_of(faces.begin(), faces.end(), [&](const Faces& f) { return shows(f.back); });
     const bool takes_back = has_back && !has_front, is_unlit = !has_back && !has_front;
@@ -132,11 +131,15 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
         place.at = geometry.parameters_of(x);
         for (Parameters& side : place.sides) side = along(geometry.shape(), u * side.u + v * side.v);
     });
+    count_sides(faces, sides_[number]);
+}
+
+void TexelMover::count_sides(std::span<const Faces> faces, LitSides& sides) const {
     constexpr float noticed = 0.25f;  // of the light of the front; less may be light that seams let into a solid
     for (const Faces& one : faces) {
         if (!shows(one.front)) continue;
-        ++sides_[number].front;
-        sides_[number].both += shows(one.back) && visibility_.light[one.back] > noticed * visibility_.light[one.front];
+        ++sides.front;
+        sides.both += shows(one.back) && visibility_.light[one.back] > noticed * visibility_.light[one.front];
     }
 }
 

@@ -43,6 +43,8 @@ class TexelMover {
         std::uint64_t front = 0, both = 0;
     };
     Faces find(const V3f& x, const V3f& normal, std::uint32_t object) const;
+    bool shows(PatchIndex p) const { return p != none && visibility_.lit[p] && !visibility_.hidden[p]; }
+    void count_sides(std::span<const Faces> faces, LitSides& sides) const;
     Surface surface_of(const AuthoredObject& object, const TexelPlace& place) const;
 
     const AuthoredCharts& authored_;

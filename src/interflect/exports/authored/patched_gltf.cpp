@@ -21,13 +21,13 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr const char* draco = "KHR_draco_mesh_compression";
+constexpr const char* khr_draco = "KHR_draco_mesh_compression";
 
 // Unsigned types of components; the signed ones are one less. Others have 4 bytes.
-constexpr int byte_type = 5121, short_type = 5123, float_type = 5126;
+constexpr int unsigned_byte = 5121, unsigned_short = 5123, single_precision = 5126;
 
 std::size_t component_bytes(int component_type) {
-    return component_type <= byte_type ? 1 : component_type <= short_type ? 2 : 4;
+    return component_type <= unsigned_byte ? 1 : component_type <= unsigned_short ? 2 : 4;
 }
 
 void remove_extension(Json& owner, const char* name) {
@@ -66,17 +66,15 @@ class LitMeshes {
     }
 
   private:
-    struct Split {
-        SplitVertices vertices;
-        Json primitive;  // with the copied vertices
-    };
+    using Key = std::pair<std::uint32_t, std::uint32_t>;  // shape and primitive
 
     void light(Json& primitive, const AuthoredObject& object, std::uint32_t number) {
-        const Split& split = split_of(primitive, object.shape, number);
-        primitive = split.primitive;
+        const Key key{object.shape, number};
+        if (!split_primitives_.contains(key)) split(primitive, key);
+        primitive = split_primitives_[key];
         const std::vector<LightmapChart>& charts = authored_.charts;
         std::vector<V2f> coordinates;
-        for (const SplitVertices::Place& place : split.vertices.places) {
+        for (const SplitVertices::Place& place : vertices_[key].places) {
             coordinates.emplace_back(0.0f, 0.0f);
             if (place.chart == none) continue;
             const LightmapChart& chart = charts[object.first_chart + place.chart];
@@ -91,29 +89,27 @@ class LitMeshes {
         materials_.light(primitive, charts[object.first_chart].page);
     }
 
-    const Split& split_of(const Json& primitive, std::uint32_t shape, std::uint32_t number) {
-        const auto [entry, is_new] = splits_.try_emplace({shape, number});
-        Split& split = entry->second;
-        if (!is_new) return split;
+    /// Copies vertices where charts meet.
+    void split(const Json& primitive, const Key& key) {
+        const auto& [shape, number] = key;
         const std::uint32_t position = primitive["attributes"]["POSITION"];
         const std::uint32_t count = document_.json["accessors"][position]["count"];
-        split.vertices = split_vertices(authored_.model, authored_.shapes[shape], number, count);
-        split.primitive = primitive;
-        if (split.vertices.copied.empty()) return split;
-        const bool is_compressed = primitive.contains("extensions") && primitive["extensions"].contains(draco);
-        if (is_compressed) decompress(split.primitive, shape, number, split.vertices);
+        SplitVertices& vertices = vertices_[key];
+        vertices = split_vertices(authored_.model, authored_.shapes[shape], number, count);
+        Json& result = split_primitives_[key] = primitive;
+        if (vertices.copied.empty()) return;
+        const bool is_compressed = primitive.contains("extensions") && primitive["extensions"].contains(khr_draco);
+        if (is_compressed) decompress(result, shape, number, vertices);
         const auto copy_all = [&](Json& attributes, const Json& compressed) {
             for (auto& [name, accessor] : attributes.items())
-                if (!compressed.contains(name))
-                    accessor = with_copies(source_.elements(accessor), accessor, split.vertices);
+                if (!compressed.contains(name)) accessor = with_copies(source_.elements(accessor), accessor, vertices);
         };
-        copy_all(split.primitive["attributes"],
-                 is_compressed ? primitive["extensions"][draco]["attributes"] : Json::object());
-        if (split.primitive.contains("targets"))
-            for (Json& target : split.primitive["targets"]) copy_all(target, Json::object());
-        split.primitive["indices"] = document_.add_indices(split.vertices.corners);
-        split.primitive.erase("mode");  // triangles
-        return split;
+        copy_all(result["attributes"],
+                 is_compressed ? primitive["extensions"][khr_draco]["attributes"] : Json::object());
+        if (result.contains("targets"))
+            for (Json& target : result["targets"]) copy_all(target, Json::object());
+        result["indices"] = document_.add_indices(vertices.corners);
+        result.erase("mode");  // triangles
     }
 
     /// Replaces compressed attributes by ones in single precision, or whole numbers for joints.
@@ -125,19 +121,19 @@ class LitMeshes {
             GltfElements elements{.first = reinterpret_cast<const char*>(values.values.data()),
                                   .stride = components * sizeof(float),
                                   .count = values.values.size() / components,
-                                  .component_type = float_type,
+                                  .component_type = single_precision,
                                   .components = values.components};
             if (name.starts_with("JOINTS_")) {
                 for (const float joint : values.values)
                     joints.push_back(joint > 0 ? static_cast<std::uint16_t>(std::min(joint, 65535.0f)) : 0);
                 elements.first = reinterpret_cast<const char*>(joints.data());
                 elements.stride = components * sizeof(std::uint16_t);
-                elements.component_type = short_type;
+                elements.component_type = unsigned_short;
             }
             Json& accessor = primitive["attributes"][name];
             accessor = with_copies(elements, accessor, vertices);
         }
-        remove_extension(primitive, draco);
+        remove_extension(primitive, khr_draco);
     }
 
     /// Adds an accessor with further copies of some elements.
@@ -170,9 +166,10 @@ class LitMeshes {
     const AuthoredCharts& authored_;
     const BakedImages& baked_;
     LitMaterials& materials_;
-    const Json meshes_;                                                // of the file
-    std::set<std::uint32_t> is_written_;                               // indices of meshes
-    std::map<std::pair<std::uint32_t, std::uint32_t>, Split> splits_;  // by shape and primitive
+    const Json meshes_;                   // of the file
+    std::set<std::uint32_t> is_written_;  // indices of meshes
+    std::map<Key, SplitVertices> vertices_;
+    std::map<Key, Json> split_primitives_;
 };
 
 /// Warns of objects whose lightmap has the light of one side although the other can be seen and is lit.
@@ -212,7 +209,7 @@ void remove_lights(Json& file) {
 bool uses_draco(const Json& file) {
     for (const Json& mesh : file.at("meshes"))
         for (const Json& primitive : mesh.at("primitives"))
-            if (primitive.contains("extensions") && primitive["extensions"].contains(draco)) return true;
+            if (primitive.contains("extensions") && primitive["extensions"].contains(khr_draco)) return true;
     return false;
 }
 
@@ -237,7 +234,7 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& sourc
     LitMaterials materials(document, images);
     LitMeshes meshes(document, source, authored, baked, materials);
     for (const AuthoredObject& object : authored.objects) meshes.light(object);
-    if (!uses_draco(document.json)) stop_use(document.json, draco);
+    if (!uses_draco(document.json)) stop_use(document.json, khr_draco);
     if (!chosen.keep_lights) remove_lights(document.json);
     Json& extras = document.json["asset"]["extras"];
     if (!extras.is_object()) extras = Json::object();
