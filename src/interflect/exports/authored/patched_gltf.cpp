@@ -236,9 +236,6 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& sourc
     for (const AuthoredObject& object : authored.objects) meshes.light(object);
     if (!uses_draco(document.json)) stop_use(document.json, khr_draco);
     if (!chosen.keep_lights) remove_lights(document.json);
-    Json& extras = document.json["asset"]["extras"];
-    if (!extras.is_object()) extras = Json::object();
-    extras["interflect"] = std::move(images.description);
     return std::move(images.files);
 }
 

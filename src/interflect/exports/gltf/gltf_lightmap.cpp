@@ -116,7 +116,6 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesy
         json["material"] = entry->second;
         written[object].push_back(std::move(json));
     }
-    document.json["asset"]["extras"]["interflect"] = std::move(images.description);
     add_nodes(document, scene, written, options.up);
     return std::move(images.files);
 }

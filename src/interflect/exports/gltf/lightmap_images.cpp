@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "interflect/base/files/escapes.h"
 #include "interflect/exports/mesh/display_range.h"
@@ -100,10 +101,12 @@ LightmapImages add_lightmap_images(GltfDocument& document, const std::filesystem
         result.files.push_back(
             {path.parent_path() / (name + chosen.image), encode_beside(baked.images[page], chosen.image, quantity)});
     }
-    result.description = description_of(baked, result.encoding, result.files);
+    Json description = description_of(baked, result.encoding, result.files);
     if (!baked.groups.empty())
-        result.description["lightmap"]["groups"] =
-            add_groups(path, baked, groups, chosen.image, quantity, result.files);
+        description["lightmap"]["groups"] = add_groups(path, baked, groups, chosen.image, quantity, result.files);
+    Json& extras = document.json["asset"]["extras"];
+    if (!extras.is_object()) extras = Json::object();
+    extras["interflect"] = std::move(description);
     return result;
 }
 

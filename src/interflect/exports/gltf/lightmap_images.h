@@ -25,10 +25,10 @@ struct LightmapImages {
     LightmapEncoding encoding;
     std::vector<int> textures;        ///< In the document, one per image.
     std::vector<ExportedFile> files;  ///< Unclamped images, also of light groups.
-    Json description;                 ///< Of the numbers in the file, for `asset.extras.interflect`.
 };
 
-/// Adds the images to the document, clamped to the display's range, and encodes the unclamped ones.
+/// Adds the images to the document, clamped to the display's range, describes them in `asset.extras.interflect`, and
+/// encodes the unclamped ones.
 /// @param path  Of the document. @param groups  Names of the solution's light groups.
 LightmapImages add_lightmap_images(GltfDocument& document, const std::filesystem::path& path, const BakedImages& baked,
                                    const std::vector<std::string>& groups, const ExportOptions& options);
