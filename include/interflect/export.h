@@ -47,13 +47,13 @@ enum class LightmapContent {
 
 /// Resolution of lightmaps on some surfaces.
 struct TexelDensity {
-    std::string pattern;     ///< Of names of objects, as in LightGroup, or of materials.
+    std::string pattern;     ///< Pattern of object names (see LightGroup) or material names.
     float texels_per_metre;  ///< > 0.
 };
 
 struct LightmapOptions {
     float texels_per_metre = 20;  ///< Minimum resolution, > 0; lower only on surfaces that would not fit into an image.
-    std::vector<TexelDensity> densities;  ///< Exceptions, of which the first that matches counts.
+    std::vector<TexelDensity> densities;  ///< Exceptions; the first matching one applies.
     int max_size = 4096;                  ///< Maximum side of an image [texels], 64 to 16384, a multiple of 4.
     int gutter = 2;                       ///< Margin of each chart, filled from its edge [texels], 1 to 64.
     LightmapContent content = LightmapContent::irradiance;

@@ -1,4 +1,4 @@
-"""Lightmaps that are added to the glTF file of a scene: what stays, and the light against closed forms."""
+"""Lightmaps added to the glTF file of a scene: parts of the file that stay, and irradiance against closed forms."""
 
 import copy
 import unittest
@@ -37,7 +37,7 @@ def black(name, **more):
 
 
 def plates():
-    """Black surfaces around a point light, which see nothing but it: H = I cos / r^2. A plate in the file is four nodes;
+    """Black surfaces that see only a point light: H = I cos / r^2. Four nodes show the same plate;
     the corners of the cube are shared by its faces, and have a label and an offset of a morph target."""
     glb = Glb()
     plate = {"POSITION": glb.add(PLATE, bounds=True)}
@@ -113,7 +113,7 @@ class Light(LitFiles):
                 self.assertEqual(primitive["attributes"]["TEXCOORD_1"], coordinates)
 
     def test_of_a_wall_with_two_lit_sides_is_that_of_its_front(self):
-        """A plate between two lamps, of which the one behind it is brighter; also mirrored, which keeps the front."""
+        """The lamp behind the plate is brighter than the lamp in front. Mirroring does not swap front and back."""
         for x in (1, -1):
             with self.subTest(scale=x):
                 glb = plates()
@@ -146,7 +146,7 @@ class Light(LitFiles):
         self.assertGreater(lit.irradiance[floor & (x > 0.1), 1].min(), 50)
 
     def test_of_a_floor_continues_below_a_crate(self):
-        """Else the texels below it, which are dark, would darken those that its edge crosses."""
+        """Dark texels below the crate would darken the interpolated light at its edges."""
         glb = plates()
         lamp = np.array((2, 0, -1))
         glb.json["nodes"] = [
@@ -161,7 +161,7 @@ class Light(LitFiles):
         expected = 2 * INTENSITY / np.linalg.norm(lit.positions[below] - lamp, axis=1) ** 3
         self.assertGreater(below.sum(), 10)
         np.testing.assert_allclose(lit.irradiance[below, 1], expected, rtol=0.1)
-        # The bottom of the crate, which nobody sees but multisampling at its edges, has the light at its edges.
+        # Multisampling shows the bottom of the crate along its edges.
         bottom = (lit.names == "crate") & (lit.normals[:, 2] < -0.9) & (x > 0.46) & (np.abs(y) < 0.4)
         self.assertGreater(bottom.sum(), 10)
         self.assertGreater(lit.irradiance[bottom, 1].min(), 0.5 * expected.min())

@@ -28,7 +28,7 @@ struct AuthoredShape {
 struct AuthoredObject {
     std::uint32_t node, shape;
     std::uint32_t object;       ///< Index into Model::objects.
-    std::uint32_t first_chart;  ///< Its charts are as many as its shape's, in the same order.
+    std::uint32_t first_chart;  ///< Index of its first chart; the order is that of its shape's charts.
     Imath::M44d to_world;
 };
 
@@ -37,14 +37,16 @@ struct AuthoredCharts {
     Model model;
     std::vector<AuthoredShape> shapes;
     std::vector<AuthoredObject> objects;
-    std::vector<LightmapChart> charts;  ///< Of all objects.
+    std::vector<LightmapChart> charts;  ///< Charts of all objects.
 
     std::vector<std::uint32_t> first_charts() const;  ///< AuthoredObject::first_chart of each object.
     /// Returns the corners of a patch in the world [m].
     std::array<Imath::V3d, 3> corners(const AuthoredObject& object, PatchIndex patch) const;
 };
 
-/// @param warnings  Receives a warning for what gets no lightmap (EXT_mesh_gpu_instancing), and as in make_charts().
+/// @param warnings  Receives the warnings of make_charts(), and one for each node with EXT_mesh_gpu_instancing, which
+/// gets
+///                  no lightmap.
 AuthoredCharts authored_charts(Model model, const LightmapOptions& options, Warnings& warnings);
 
 }  // namespace interflect::detail

@@ -14,13 +14,13 @@ namespace interflect::detail {
 ///
 /// Irradiance is a reference in the material (MOZ_lightmap). Radiance is an unlit material in place of the file's own,
 /// which stays as the variant "authored" (KHR_materials_variants); glass, metal and surfaces with holes keep theirs,
-/// since they show other light than that of diffuse surfaces.
+/// because the lightmap contains diffuse light only.
 class LitMaterials {
   public:
     /// Multiplies emission by the exposure.
     LitMaterials(GltfDocument& document, const LightmapImages& images);
 
-    /// Number of the set of texture coordinates for lightmaps: above those that materials use, at least 1.
+    /// Index of the texture coordinates for lightmaps (TEXCOORD_n): the first one above 0 that no material uses.
     int set() const { return set_; }
     /// Refers a primitive, with all of its variants, to the materials with an image.
     void light(Json& primitive, int page);
@@ -34,7 +34,7 @@ class LitMaterials {
     GltfDocument& document_;
     const LightmapImages& images_;
     int set_ = 1;
-    std::map<std::pair<int, int>, int> lit_;  // by material, or -1 for none, and image
+    std::map<std::pair<int, int>, int> lit_;  // keys: material (-1: none) and image
     std::map<int, int> first_page_;
     std::optional<int> first_variant_;  // of the two that radiance needs
 };

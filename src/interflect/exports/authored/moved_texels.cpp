@@ -135,7 +135,7 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
 }
 
 void TexelMover::count_sides(std::span<const Faces> faces, LitSides& sides) const {
-    constexpr float noticed = 0.25f;  // of the light of the front; less may be light that seams let into a solid
+    constexpr float noticed = 0.25f;  // share of the front's light; weaker light may come through seams of a solid
     for (const Faces& one : faces) {
         if (!shows(one.front)) continue;
         ++sides.front;

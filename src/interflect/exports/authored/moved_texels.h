@@ -23,14 +23,14 @@ class TexelMover {
 
     void move(std::size_t chart, std::span<TexelPlace> places);
 
-    /// Whether both sides of most of an object are lit, of which its lightmap has one.
+    /// Returns whether most of an object is lit on both sides. Its lightmap contains one side.
     bool is_lit_on_both_sides(std::size_t object) const { return 2 * sides_[object].both > sides_[object].front; }
 
   private:
     /// The patches at a point of a face.
     struct Faces {
         PatchIndex front, back;
-        bool touches;                  ///< Whether another face lies at this point, so that one side is covered.
+        bool touches;                  ///< Whether another face touches this one at the point.
         bool meets_front, meets_back;  ///< Whether the front of another object's face faces this side, at distance 0.
     };
     /// Edges of a triangle, and the point of a texel from Scene::origin [m].

@@ -59,7 +59,7 @@ bool has_bounds(const Scene& scene, const Imath::Box3d& bounds) {
     for (const Patch& patch : scene.patches)
         for (int c = 0; c < patch.vertex_count(); ++c)
             own.extendBy(Imath::V3d(scene.vertices[patch.vertices[c]]) + scene.origin);
-    constexpr double rounding = 1e-3;  // far above that of single precision, far below what another unit changes
+    constexpr double rounding = 1e-3;  // above the error of single precision; another unit changes far more
     const double most = rounding * bounds.size().length();
     return (own.min - bounds.min).length() <= most && (own.max - bounds.max).length() <= most;
 }

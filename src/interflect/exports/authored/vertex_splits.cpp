@@ -19,7 +19,7 @@ bool are_equal(const AuthoredShape& shape, const Place& a, const Place& b) {
     return a.chart == b.chart && (texel_at(shape, a) - texel_at(shape, b)).length() < rounding;
 }
 
-/// Places of the first corners of all triangles; chart `none` for triangles without area.
+/// Returns the place of the first corner of each triangle with an area. Keys: mesh, index of the corner.
 std::map<std::pair<std::uint32_t, std::uint32_t>, Place> places_of_triangles(const AuthoredShape& shape) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, Place> places;
     for (std::uint32_t c = 0; c < shape.charts.size(); ++c)

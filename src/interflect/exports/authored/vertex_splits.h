@@ -8,14 +8,14 @@
 
 namespace interflect::detail {
 
-/// The vertices of a primitive of a glTF file, copied where charts meet. The first ones are those of the file.
+/// Vertices of a primitive of a glTF file: those of the file, then copies of vertices at which charts meet.
 struct SplitVertices {
     /// Corner of a patch in a chart of the shape, at which a vertex has its coordinate.
     struct Place {
         std::uint32_t chart = none, patch = 0, corner = 0;  ///< LightmapChart::patches[patch].corners[corner].
     };
 
-    std::vector<Place> places;           ///< Of each vertex; chart `none` for one without a triangle.
+    std::vector<Place> places;           ///< Place of each vertex; its chart is `none` if no triangle uses it.
     std::vector<std::uint32_t> copied;   ///< Vertices of the file that follow the file's own.
     std::vector<std::uint32_t> corners;  ///< Vertex of each corner, three per triangle.
 };

@@ -110,7 +110,7 @@ std::vector<int> from_to(std::size_t begin, std::size_t end) {
     return numbers;
 }
 
-/// Moves charts to their places in image `page`. Returns those that are not in the packing.
+/// Moves charts to their places in image `page`. Returns the charts that were not packed.
 std::vector<int> place(const Packing& packing, int page, int gutter, std::vector<LightmapChart>& charts) {
     std::vector<int> left;
     for (const stbrp_rect& r : packing.rectangles) {

@@ -59,7 +59,7 @@ class LightmapTexels {
             targets_.back().place = place_index[copied[i]];
         }
     }
-    /// Lets hidden texels copy the nearest ones that are not. Call it after all charts have been added.
+    /// Makes hidden texels copy the nearest visible ones. Call it after all charts have been added.
     void fill_hidden(const Scene& scene) {
         if (hidden_.empty() || places_.empty()) return;
         std::vector<Boxed> tree;

@@ -12,7 +12,7 @@ namespace interflect::detail {
 /// The point of a patch that is nearest to the centre of a texel.
 struct TexelPlace : BakedPoint {
     bool is_inside = false;  ///< Whether the centre is on the patch.
-    bool is_near = false;  ///< Whether it is less than a texel from the patch, so that bilinear interpolation uses it.
+    bool is_near = false;    ///< Whether it is within a texel of the patch; bilinear interpolation uses such texels.
 };
 
 /// Returns the places of the texels of a chart and its gutter, row by row.
