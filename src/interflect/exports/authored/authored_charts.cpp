@@ -66,11 +66,13 @@ void add_triangles(const Model& model, std::uint32_t index, const M44d& matrix, 
     }
 }
 
+/// @param scene  Contains the materials; the rest is replaced.
 AuthoredShape shape_of(const Model& model, std::vector<std::uint32_t> meshes, const M44d& matrix,
-                       const std::string& object, const LightmapOptions& options, Warnings& warnings) {
+                       const std::string& object, const LightmapOptions& options, Scene& scene, Warnings& warnings) {
     AuthoredShape shape;
-    Scene scene;
-    scene.materials = model.materials;
+    std::vector<Material> materials = std::move(scene.materials);
+    scene = Scene();
+    scene.materials = std::move(materials);
     scene.objects = {object};
     VertexWeld weld(scene);
     const V3d origin = to_world(model.meshes[meshes.front()].positions.front(), matrix);
@@ -134,6 +136,8 @@ std::array<V3d, 3> AuthoredCharts::corners(const AuthoredObject& object, PatchIn
 
 AuthoredCharts authored_charts(Model model, const LightmapOptions& options, Warnings& warnings) {
     AuthoredCharts result;
+    Scene scene;
+    scene.materials = model.materials;
     using Sizes = std::vector<std::pair<std::array<double, 6>, std::uint32_t>>;  // metric and shape
     std::map<std::pair<std::vector<std::uint32_t>, std::vector<bool>>, Sizes> known;
     for (const auto& [instance, meshes] : shown_meshes(model, warnings)) {
@@ -145,7 +149,7 @@ AuthoredCharts authored_charts(Model model, const LightmapOptions& options, Warn
         if (found == sizes.end()) {
             sizes.emplace_back(metric, static_cast<std::uint32_t>(result.shapes.size()));
             found = std::prev(sizes.end());
-            result.shapes.push_back(shape_of(model, meshes, instance->to_world, object, options, warnings));
+            result.shapes.push_back(shape_of(model, meshes, instance->to_world, object, options, scene, warnings));
         }
         const std::vector<LightmapChart>& charts = result.shapes[found->second].charts;
         result.objects.push_back({instance->node, found->second, instance->object,

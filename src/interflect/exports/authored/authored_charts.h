@@ -44,9 +44,8 @@ struct AuthoredCharts {
     std::array<Imath::V3d, 3> corners(const AuthoredObject& object, PatchIndex patch) const;
 };
 
-/// @param warnings  Receives the warnings of make_charts(), and one for each node with EXT_mesh_gpu_instancing, which
-/// gets
-///                  no lightmap.
+/// @param warnings  Receives the warnings of make_charts(), and one for each node without a lightmap
+///                  (EXT_mesh_gpu_instancing).
 AuthoredCharts authored_charts(Model model, const LightmapOptions& options, Warnings& warnings);
 
 }  // namespace interflect::detail

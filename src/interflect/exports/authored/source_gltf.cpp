@@ -42,15 +42,17 @@ int nesting_of(std::string_view json) {
     return deepest;
 }
 
-/// Corners of the file's meshes in the world.
+/// Returns the bounds of the file's faces in the world.
 Imath::Box3d bounds_of(const Model& model) {
     Imath::Box3d bounds;
-    for (const MeshInstance& instance : model.instances)
-        for (const Imath::V3d& local : model.meshes[instance.mesh].positions) {
+    for (const MeshInstance& instance : model.instances) {
+        const Mesh& mesh = model.meshes[instance.mesh];
+        for (const std::uint32_t v : mesh.indices) {  // not all vertices of a file belong to faces
             Imath::V3d x;
-            instance.to_world.multVecMatrix(local, x);
+            instance.to_world.multVecMatrix(mesh.positions[v], x);
             bounds.extendBy(x);
         }
+    }
     return bounds;
 }
 

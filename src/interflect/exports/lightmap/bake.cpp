@@ -157,7 +157,8 @@ void require_memory(double image_texels, double chart_texels, const LightmapOpti
     // Each texel of an image is stored twice, the second time to be encoded, and once encoded.
     constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
     // A texel of a chart needs two copies of its place, its target and its light.
-    constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb),
+    // Its light may be searched from hidden texels.
+    constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb) + sizeof(Boxed),
                      hybrid_bytes = sizeof(SurfacePoint) + sizeof(Gauge) + sizeof(GaugeLight) + sizeof(Rgb),
                      gathered_bytes =
                          path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);
