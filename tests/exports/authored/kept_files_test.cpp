@@ -12,6 +12,8 @@
 #include "tests/formats/gltf/builder.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using lightmap_testing::at;
@@ -129,6 +131,36 @@ TEST_F(KeptFiles, WithInvalidPartsThatTheReaderSkipsAreRefused) {
         {{"material", "none"}}};
     const std::filesystem::path source = write(file);
     EXPECT_THROW(lit(source), InputError);
+}
+
+TEST_F(KeptFiles, WithSolidsThatAreTurnedInsideOutShowTheLightOfTheirOutside) {
+    GltfBuilder file;  // a board whose faces have their fronts inside
+    std::vector<V3f> corners;
+    for (const float z : {0.0f, 0.01f})
+        for (const float y : {0.0f, 1.0f})
+            for (const float x : {0.0f, 1.0f}) corners.push_back({x, y, z});
+    const int positions = file.add_vectors(corners);
+    const int indices = file.add_indices(
+        {0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3});
+    file.add_node({{"mesh", file.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}});
+    const Scene scene = load_scene(write(file));
+    Solution solution = uniform(scene, 100);
+    int narrow = 0;
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
+        if (p < scene.patches[p].other_side) {
+            const V3f& normal = PatchGeometry(scene, scene.patches[p]).normal();
+            const bool has_seam = normal.x > 0.9f;
+            narrow += has_seam;
+            solution.irradiance[ElementIndex(p.value)] = Rgb(has_seam ? 5 : 1);  // light that leaked in
+        }
+    EXPECT_EQ(narrow, 1);
+    ExportOptions options = at(20);
+    export_solution(folder_ / "lit.glb", scene, solution, options);
+    const Image light = read_image(folder_ / "lit.lightmap-0.exr");
+    for (const Rgb& texel : light.pixels)
+        if (texel != Rgb(0)) {
+            EXPECT_NEAR(texel.y, light.at(0, 0).y, 1e-3f * light.at(0, 0).y);
+        }
 }
 
 }  // namespace

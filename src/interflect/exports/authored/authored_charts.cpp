@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "interflect/geometry/search/disjoint_sets.h"
 #include "interflect/geometry/search/vertex_weld.h"
 
 namespace interflect::detail {
@@ -66,6 +67,21 @@ void add_triangles(const Model& model, std::uint32_t index, const M44d& matrix, 
     }
 }
 
+PerPatch<std::uint32_t> parts_of(const Scene& scene) {
+    Scene points;  // the vertices without normals and coordinates
+    VertexWeld weld(points);
+    std::vector<std::uint32_t> point_of;
+    point_of.reserve(scene.vertices.size());
+    for (const V3f& x : scene.vertices) point_of.push_back(weld.vertex(x));
+    DisjointSets sets(points.vertices.size());
+    for (const Patch& patch : scene.patches)
+        for (int c = 1; c < patch.vertex_count(); ++c)
+            sets.unite(point_of[patch.vertices[0]], point_of[patch.vertices[c]]);
+    PerPatch<std::uint32_t> parts;
+    for (const Patch& patch : scene.patches) parts.push_back(sets.find(point_of[patch.vertices[0]]));
+    return parts;
+}
+
 /// @param scene  Contains the materials; the rest is replaced.
 AuthoredShape shape_of(const Model& model, std::vector<std::uint32_t> meshes, const M44d& matrix,
                        const std::string& object, const LightmapOptions& options, Scene& scene, Warnings& warnings) {
@@ -78,6 +94,7 @@ AuthoredShape shape_of(const Model& model, std::vector<std::uint32_t> meshes, co
     const V3d origin = to_world(model.meshes[meshes.front()].positions.front(), matrix);
     for (const std::uint32_t mesh : meshes) add_triangles(model, mesh, matrix, origin, weld, scene, shape);
     shape.meshes = std::move(meshes);
+    shape.parts = parts_of(scene);
     shape.charts = make_charts(scene, std::vector<bool>(scene.patches.size(), true), options, &warnings);
     return shape;
 }

@@ -21,6 +21,7 @@ struct AuthoredShape {
 
     std::vector<std::uint32_t> meshes;  ///< Indices into Model::meshes, the primitives of one mesh of the file.
     PerPatch<Triangle> triangles;       ///< Triangles without area are left out.
+    PerPatch<std::uint32_t> parts;      ///< Number of each patch's part; parts have no common corners.
     std::vector<LightmapChart> charts;
 };
 

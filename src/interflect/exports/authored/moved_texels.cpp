@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 #include "interflect/base/threads/parallel.h"
@@ -39,6 +40,11 @@ float rounding_of(const Scene& scene) {
     return relative * largest;
 }
 
+/// Returns the normal of a triangle's front. A mirrored mesh keeps its front.
+V3f front_of(const AuthoredObject& object, const V3d& u, const V3d& v) {
+    return V3f(u.cross(v).normalized() * (object.to_world.determinant() < 0 ? -1 : 1));
+}
+
 }  // namespace
 
 TexelMover::TexelMover(const AuthoredCharts& authored, const Scene& solved, const PatchVisibility& visibility)
@@ -58,6 +64,26 @@ TexelMover::TexelMover(const AuthoredCharts& authored, const Scene& solved, cons
         tree_.push_back({box, p});
     }
     arrange_box_tree(tree_);
+    for (const AuthoredObject& object : authored.objects) find_inverted_parts(object);
+}
+
+void TexelMover::find_inverted_parts(const AuthoredObject& object) {
+    const AuthoredShape& shape = authored_.shapes[object.shape];
+    std::vector<double> areas(shape.parts.size());
+    std::vector<char> encased(shape.parts.size());  // not bool, because threads write to neighbouring entries
+    constexpr std::size_t patches_per_task = 1 << 8;
+    parallel_for_ranges(areas.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
+        for (PatchIndex p(static_cast<std::uint32_t>(begin)); p < end; ++p) {
+            const auto& [u, v, x] = surface_of(object, p, {1 / 3.0f, 1 / 3.0f});
+            areas[p] = u.cross(v).length();
+            const PatchIndex front = find(x, front_of(object, u, v), object.object).front;
+            encased[p] = front != none && visibility_.encased[front] ? 1 : 0;
+        }
+    });
+    std::map<std::uint32_t, double> excess;  // area in solids minus other area, of each part
+    for (PatchIndex p{0}; p < areas.size(); ++p) excess[shape.parts[p]] += encased[p] != 0 ? areas[p] : -areas[p];
+    for (const LightmapChart& chart : shape.charts)
+        is_inverted_.push_back(excess[shape.parts[chart.patches.front().patch]] > 0);
 }
 
 TexelMover::Faces TexelMover::find(const V3f& x, const V3f& normal, std::uint32_t object) const {
@@ -90,16 +116,15 @@ TexelMover::Faces TexelMover::find(const V3f& x, const V3f& normal, std::uint32_
     return result;
 }
 
-TexelMover::Surface TexelMover::surface_of(const AuthoredObject& object, const TexelPlace& place) const {
-    const std::array<V3d, 3> corners = authored_.corners(object, place.patch);
+TexelMover::Surface TexelMover::surface_of(const AuthoredObject& object, PatchIndex patch, Parameters at) const {
+    const std::array<V3d, 3> corners = authored_.corners(object, patch);
     const V3d u = corners[1] - corners[0], v = corners[2] - corners[0];
-    return {u, v, V3f(corners[0] + u * place.at.u + v * place.at.v - solved_.origin)};
+    return {u, v, V3f(corners[0] + u * at.u + v * at.v - solved_.origin)};
 }
 
 void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
     const std::uint32_t number = object_of_chart_[chart];
     const AuthoredObject& object = authored_.objects[number];
-    const double sign = object.to_world.determinant() < 0 ? -1 : 1;  // a mirrored mesh keeps its front
     for (TexelPlace& place : places)
         if (!place.is_near) place.patch = no_patch;
     std::vector<Faces> faces(places.size());
@@ -111,15 +136,16 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
         });
     };
     for_each_near([&](std::size_t i) {
-        const auto& [u, v, x] = surface_of(object, places[i]);
-        faces[i] = find(x, V3f(u.cross(v).normalized() * sign), object.object);
+        const auto& [u, v, x] = surface_of(object, places[i].patch, places[i].at);
+        faces[i] = find(x, front_of(object, u, v), object.object);
     });
-    const bool has_front = std::any_of(faces.begin(), faces.end(), [&](const Faces& f) { return shows(f.front); });
-    const bool has_back = std::any_of(faces.begin(), faces.end(), [&](const Faces& f) { return shows(f.back); });
-    const bool takes_back = has_back && !has_front, is_unlit = !has_back && !has_front;
+    const auto count = [&](const auto& is_counted) { return std::count_if(faces.begin(), faces.end(), is_counted); };
+    const auto fronts = count([&](const Faces& f) { return shows(f.front); });
+    const auto backs = count([&](const Faces& f) { return shows(f.back); });
+    const bool takes_back = backs > 0 && (fronts == 0 || is_inverted_[chart]), is_unlit = fronts == 0 && backs == 0;
     for_each_near([&](std::size_t i) {
         TexelPlace& place = places[i];
-        const auto& [u, v, x] = surface_of(object, place);
+        const auto& [u, v, x] = surface_of(object, place.patch, place.at);
         const PatchIndex patch = takes_back ? faces[i].back : faces[i].front;
         const bool is_covered =
             (!takes_back && faces[i].meets_front) || ((takes_back || is_unlit) && faces[i].meets_back);

@@ -13,9 +13,9 @@
 namespace interflect::detail {
 
 /// Moves texels from the triangles of a file to the patches of the solved scene, which contacts have cut into pieces.
-/// A texel gets the light of the front, or of the back in charts whose fronts are unlit or hidden. Texels that are
-/// hidden, between two objects, or unlit where another face touches theirs, lose TexelPlace::is_near: they copy the
-/// light beside them.
+/// A texel gets the light of the front, or of the back in charts whose fronts are unlit, and on solids that are turned
+/// inside out. Texels that are hidden, between two objects, or unlit where another face touches theirs, lose
+/// TexelPlace::is_near: they copy the light beside them.
 class TexelMover {
   public:
     /// Refers to its arguments. @param visibility  Of the patches of the solved scene.
@@ -33,7 +33,7 @@ class TexelMover {
         bool touches;                  ///< Whether another face touches this one at the point.
         bool meets_front, meets_back;  ///< Whether the front of another object's face faces this side, at distance 0.
     };
-    /// Edges of a triangle, and the point of a texel from Scene::origin [m].
+    /// Edges of a triangle, and a point on it from Scene::origin [m].
     struct Surface {
         Imath::V3d u, v;
         V3f x;
@@ -45,7 +45,8 @@ class TexelMover {
     Faces find(const V3f& x, const V3f& normal, std::uint32_t object) const;
     bool shows(PatchIndex p) const { return p != none && visibility_.lit[p] && !visibility_.hidden[p]; }
     void count_sides(std::span<const Faces> faces, LitSides& sides) const;
-    Surface surface_of(const AuthoredObject& object, const TexelPlace& place) const;
+    Surface surface_of(const AuthoredObject& object, PatchIndex patch, Parameters at) const;
+    void find_inverted_parts(const AuthoredObject& object);
 
     const AuthoredCharts& authored_;
     const Scene& solved_;
@@ -53,8 +54,9 @@ class TexelMover {
     std::vector<std::uint32_t> object_of_chart_;
     std::vector<PatchGeometry> geometries_;
     std::vector<Boxed> tree_;
-    float reach_ = 0;              // [m]
-    std::vector<LitSides> sides_;  // of each object
+    float reach_ = 0;                // [m]
+    std::vector<bool> is_inverted_;  // of each chart: whether the fronts of its part are inside a solid
+    std::vector<LitSides> sides_;    // of each object
 };
 
 }  // namespace interflect::detail

@@ -18,6 +18,8 @@ constexpr double max_dark_of_mean = 1e-4;
 /// Maximum light inside solids, relative to the mean. It is invisible, but exceeds the light of stray rays at seams
 /// (2e-4 in a room with 5 million rays).
 constexpr double max_stray_of_mean = 1e-3;
+/// Maximum light inside solids, relative to the other side of the same face: bright surroundings leave more.
+constexpr float max_stray_of_outside = 0.02f;
 
 double mean_of(const Scene& scene, const std::vector<float>& light) {
     double sum = 0, area = 0;
@@ -36,6 +38,16 @@ std::vector<bool> at_most(const std::vector<float>& light, double limit) {
     return dark;
 }
 
+/// Returns which patches are dark enough to be inside a solid.
+std::vector<bool> may_be_inside(const Scene& scene, const std::vector<float>& light, double mean) {
+    std::vector<bool> result = at_most(light, max_stray_of_mean * mean);
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
+        const PatchIndex outside = scene.patches[p].other_side;
+        if (outside != none && light[p] <= max_stray_of_outside * light[outside]) result[p] = true;
+    }
+    return result;
+}
+
 }  // namespace
 
 PatchVisibility patch_visibility(const Scene& scene, const Solution& solution) {
@@ -47,12 +59,12 @@ PatchVisibility patch_visibility(const Scene& scene, const Solution& solution) {
     result.lit.flip();
     const RayCaster ray_caster(scene);
     for (PatchIndex p{0}; p < scene.patches.size(); ++p) result.hidden.push_back(ray_caster.uncovered_share(p) == 0);
+    result.encased.resize(scene.patches.size());
     if (std::find(result.lit.begin(), result.lit.end(), true) == result.lit.end())
         return result;  // a scene without light keeps all faces
-    const std::vector<bool> encased =
-        encased_patches(scene, ray_caster, at_most(result.light, max_stray_of_mean * mean));
+    result.encased = encased_patches(scene, ray_caster, may_be_inside(scene, result.light, mean));
     for (PatchIndex p{0}; p < scene.patches.size(); ++p)
-        if (encased[p]) result.hidden[p] = true;
+        if (result.encased[p]) result.hidden[p] = true;
     return result;
 }
 
