@@ -2,6 +2,7 @@
 
 import json
 import math
+import shutil
 import subprocess
 import unittest
 
@@ -126,6 +127,35 @@ class ThreeTest(GltfTest):
             blocks = self.json("compare", f"{file}.png", "render.png")["blocks"]
             relative_rmse = next(b["relative_rmse"] for b in blocks if b["block"] == 9)  # edges differ in single pixels
             self.assertLess(relative_rmse, largest, name)
+
+
+class TransformTest(GltfTest):
+    """integrations/gltf-transform in the command of glTF Transform, which drops other extensions that it does not know."""
+
+    def optimized(self, file, *options):
+        modules = self.folder / "node_modules"
+        if not modules.exists():
+            modules.symlink_to(WEB / "node_modules")
+            for script in ("lightmap.mjs", "config.mjs"):
+                shutil.copy(ROOT / "integrations" / "gltf-transform" / script, self.folder)
+        small = self.folder / f"small-{file.name}"
+        self.run_tool(modules / ".bin" / "gltf-transform", "optimize", file, small, *options)
+        return small
+
+    def test_keeps_lightmaps_of_files_that_it_optimizes(self):
+        self.textured()
+        view = self.json("info", "scene.h5")["views"][0]["name"]
+        file = self.export("irradiance", "--exposure", "-7")
+        small = self.optimized(file, "--config", "config.mjs")
+        before, after = (drawn["pixels"] for drawn in self.draw([file, small], view, 160, 90))
+        differences = [abs(a - b) for p, q in zip(before, after, strict=True) for a, b in zip(p, q, strict=True)]
+        self.assertGreater(sum(map(sum, before)), 0)
+        self.assertLess(sum(differences) / len(differences), 1.5)  # of 255; rounded coordinates move edges
+
+    def test_loses_lightmaps_without_the_extension(self):
+        self.textured()
+        small = self.optimized(self.export("irradiance"))
+        self.assertNotIn(b"MOZ_lightmap", small.read_bytes())
 
 
 class EdgesTest(GltfTest):
