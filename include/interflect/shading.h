@@ -69,7 +69,7 @@ struct DefaultSamples {
 inline constexpr std::array<DefaultSamples, 6> default_samples{{
     {.pixel = 16},                                            // flat
     {.pixel = 16, .texel = 1, .vertex = 1},                   // smooth
-    {.pixel = 32, .texel = 16, .vertex = 64},                 // hybrid
+    {.pixel = 32, .texel = 128, .vertex = 64},                // hybrid
     {.pixel = 16, .texel = 64, .vertex = 64, .point = 4096},  // gather
     {.pixel = 64, .point = 4096},                             // path
     {.pixel = 64},                                            // instant

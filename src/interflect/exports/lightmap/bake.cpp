@@ -25,7 +25,8 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr DirectSampling texel_sampling{&DefaultSamples::texel, hybrid_target, /*is_tested=*/false};
+/// Noise of 3% a texel is 0.5% after the filter, in a furnished room with a window; 6% left visible grain on its walls.
+constexpr DirectSampling texel_sampling{&DefaultSamples::texel, 0.03, /*is_tested=*/false};
 
 Rgb content_of(const Scene& scene, const BakedPoint& place, const Rgb& irradiance, LightmapContent content) {
     if (content == LightmapContent::irradiance) return irradiance;

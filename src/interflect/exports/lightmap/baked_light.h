@@ -26,7 +26,7 @@ struct BakedPoint {
 /// Sampling of direct light in hybrid shading.
 struct DirectSampling {
     LightUse use;      ///< Selects the default number of samples.
-    double max_noise;  ///< Estimated relative error below which a quarter of the samples suffices.
+    double max_noise;  ///< Estimated relative error below which fewer samples suffice.
     bool is_tested;    ///< Whether BakedLight::direct() will be called.
 };
 

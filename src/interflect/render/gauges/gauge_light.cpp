@@ -19,8 +19,10 @@ namespace {
 
 constexpr std::size_t gauges_per_tile = 256;
 constexpr std::size_t tiles_per_report = 256;  // tiles that each rank traces between two reports
-/// Every gauge receives this fraction of its samples, 1 / 4, before its neighbours decide on the rest.
-constexpr std::uint32_t first_divisor = 4;
+/// Every gauge receives this fraction of its samples, 1 / 8, before its neighbours decide on the rest.
+constexpr std::uint32_t first_divisor = 8;
+/// A half of one sample has no usable estimate of its error.
+constexpr std::uint32_t least_first = 2;
 
 /// Gauges of one tile.
 class GaugeTile {
@@ -31,11 +33,12 @@ class GaugeTile {
     /// Returns the number of rays.
     std::int64_t trace() {
         const auto samples = static_cast<std::uint32_t>(plan_.options.samples);
-        const std::uint32_t all = std::max(1u, samples / 2), some = std::max(1u, all / first_divisor);
+        const std::uint32_t all = std::max(1u, samples / 2),
+                            some = std::min(all, std::max(least_first, all / first_divisor));
         trace_more(std::vector<std::uint32_t>(pixels_.size(), some));
-        std::vector<std::uint32_t> wanted(pixels_.size(), some);
-        for (std::size_t i = 0; i < pixels_.size(); ++i)
-            if (are_neighbours_noisy(i)) wanted[i] = all;
+        std::vector<std::uint32_t> wanted;
+        wanted.reserve(pixels_.size());
+        for (std::size_t i = 0; i < pixels_.size(); ++i) wanted.push_back(std::min(all, some * needed_factor(i)));
         trace_more(wanted);
         return rays_;
     }
@@ -61,20 +64,23 @@ class GaugeTile {
         for (const SampleBatch& b : batches) pixels_[b.pixel - first_].add(b, ErrorSource::halves);
     }
 
-    /// Tests the gauges next to gauge i in the list, which are usually near it in space. Excludes gauge i itself: a
+    /// Returns the factor, a power of two, by which more samples would reduce the error to the target. Estimates it
+    /// from the gauges next to gauge i in the list, which are usually near it in space. Excludes gauge i itself: a
     /// number of samples that depends on them would bias its mean.
-    bool are_neighbours_noisy(std::size_t i) const {
+    std::uint32_t needed_factor(std::size_t i) const {
         constexpr std::size_t reach = 4;
         const double target = plan_.options.until > 0 ? plan_.options.until : hybrid_target;
-        double error = 0, light = 0;
+        double error = 0, light = 0, count = 0;
         for (std::size_t k = i - std::min(i, reach); k < std::min(pixels_.size(), i + reach + 1); ++k) {
             if (k == i) continue;
             error += mean_channel(pixels_[k].direct_squared_error());
             light += pixels_[k].reflected();
+            ++count;
         }
-        const double count =
-            static_cast<double>(std::min(pixels_.size(), i + reach + 1) - (i - std::min(i, reach)) - 1);
-        return count == 0 || error * count > target * target * light * light;
+        std::uint32_t factor = 1;
+        while (factor < first_divisor && (count == 0 || error * count > factor * target * target * light * light))
+            factor *= 2;
+        return factor;
     }
 
     const PathPlan& plan_;
