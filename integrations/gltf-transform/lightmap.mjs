@@ -1,12 +1,13 @@
 // Interflect's lightmaps in glTF Transform, which otherwise drops extensions that it does not know:
 // `new NodeIO().registerExtensions([LightmapExtension])`. A material's extension MOZ_lightmap {index, texCoord, intensity}
-// becomes a Lightmap.
+// becomes a Lightmap, with the gain of bright texels in extras.gain {index, stops}.
 import { Extension, ExtensionProperty, PropertyType, TextureChannel, TextureInfo } from "@gltf-transform/core";
 
 const NAME = "MOZ_lightmap";
 const DEFAULT_SET = 1; // of texture coordinates, as in three.js
+const RGB = TextureChannel.R | TextureChannel.G | TextureChannel.B;
 
-/** Irradiance on a material: texture x intensity. */
+/** Irradiance on a material: texture x 2^(gain texture x stops) x intensity. */
 export class Lightmap extends ExtensionProperty {
   static EXTENSION_NAME = NAME;
 
@@ -19,7 +20,9 @@ export class Lightmap extends ExtensionProperty {
   getDefaults() {
     // glTF Transform finds the coordinates of a texture "x" by the name "xInfo".
     const textureInfo = new TextureInfo(this.graph, "textureInfo").setTexCoord(DEFAULT_SET);
-    return { ...super.getDefaults(), texture: null, textureInfo, intensity: 1 };
+    const gainTextureInfo = new TextureInfo(this.graph, "gainTextureInfo").setTexCoord(DEFAULT_SET);
+    const textures = { texture: null, textureInfo, gainTexture: null, gainTextureInfo };
+    return { ...super.getDefaults(), ...textures, intensity: 1, stops: 0 };
   }
 
   getIntensity() {
@@ -32,12 +35,26 @@ export class Lightmap extends ExtensionProperty {
     return this.getRef("texture");
   }
   setTexture(texture) {
-    const { R, G, B } = TextureChannel;
-    return this.setRef("texture", texture, { channels: R | G | B, isColor: true });
+    return this.setRef("texture", texture, { channels: RGB, isColor: true });
   }
   /** Null without a texture, as in other properties. */
   getTextureInfo() {
     return this.getTexture() ? this.getRef("textureInfo") : null;
+  }
+  getStops() {
+    return this.get("stops");
+  }
+  setStops(stops) {
+    return this.set("stops", stops);
+  }
+  getGainTexture() {
+    return this.getRef("gainTexture");
+  }
+  setGainTexture(texture) {
+    return this.setRef("gainTexture", texture, { channels: RGB });
+  }
+  getGainTextureInfo() {
+    return this.getGainTexture() ? this.getRef("gainTextureInfo") : null;
   }
 }
 
@@ -54,9 +71,14 @@ export class LightmapExtension extends Extension {
     (json.materials ?? []).forEach((material, i) => {
       const source = material.extensions?.[NAME];
       if (!source) return;
-      const lightmap = this.createLightmap().setIntensity(source.intensity ?? 1);
-      lightmap.setTexture(context.textures[json.textures[source.index].source]);
-      context.setTextureInfo(lightmap.getTextureInfo(), { ...source, texCoord: source.texCoord ?? DEFAULT_SET });
+      const { index, texCoord = DEFAULT_SET, intensity = 1, extras: { gain, ...extras } = {} } = source;
+      const texture = (of) => context.textures[json.textures[of].source];
+      const lightmap = this.createLightmap().setIntensity(intensity).setTexture(texture(index)).setExtras(extras);
+      context.setTextureInfo(lightmap.getTextureInfo(), { index, texCoord });
+      if (gain) {
+        lightmap.setStops(gain.stops).setGainTexture(texture(gain.index));
+        context.setTextureInfo(lightmap.getGainTextureInfo(), { index: gain.index, texCoord });
+      }
       context.materials[i].setExtension(NAME, lightmap);
     });
     return this;
@@ -67,11 +89,15 @@ export class LightmapExtension extends Extension {
       const lightmap = material.getExtension(NAME);
       if (!lightmap?.getTexture()) continue;
       const info = context.createTextureInfoDef(lightmap.getTexture(), lightmap.getTextureInfo());
+      const json = { texCoord: 0, ...info, intensity: lightmap.getIntensity(), extras: { ...lightmap.getExtras() } };
+      const gain = lightmap.getGainTexture();
+      if (gain) {
+        const { index } = context.createTextureInfoDef(gain, lightmap.getGainTextureInfo());
+        json.extras.gain = { index, stops: lightmap.getStops() };
+      }
+      if (!Object.keys(json.extras).length) delete json.extras;
       const target = context.jsonDoc.json.materials[context.materialIndexMap.get(material)];
-      target.extensions = {
-        ...target.extensions,
-        [NAME]: { texCoord: 0, ...info, intensity: lightmap.getIntensity() },
-      };
+      target.extensions = { ...target.extensions, [NAME]: json };
     }
     return this;
   }

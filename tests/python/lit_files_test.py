@@ -31,6 +31,10 @@ def quads(faces):
     return np.array([(a, b, c, a, c, d) for a, b, c, d in faces], np.uint16).ravel()
 
 
+def encoded(linear):
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
+
+
 def black(name, **more):
     surface = {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0, "roughnessFactor": 0.25}
     return {"name": name, "pbrMetallicRoughness": surface, **more}
@@ -236,6 +240,26 @@ class File(LitFiles):
         mappings = plate["extensions"]["KHR_materials_variants"]["mappings"]
         shown = {variants[mapping["variants"][0]]: mapping["material"] for mapping in mappings}
         self.assertEqual(shown, {"lit": plate["material"], "authored": 0})
+
+    def test_has_the_gain_of_texels_that_are_too_bright_for_8_bits(self):
+        self.lit(plates())
+        ifl.export(ifl.open_solution(self.folder / "lit.h5"), self.folder / "lit.glb", lightmap=True, exposure=-1)
+        file = Glb.read(self.folder / "lit.glb")
+        lightmap = file.json["materials"][0]["extensions"]["MOZ_lightmap"]
+        gain = lightmap["extras"]["gain"]
+        texels, gains = (self.picture(file, index) for index in (lightmap["index"], gain["index"]))
+        light = ifl.read_image(self.folder / "lit.lightmap-0.exr") * 2.0**-1  # as the viewer shows it
+        self.assertGreater(light.max(), 8 * np.pi)  # the limit without a gain
+        found = texels * 2 ** (gain["stops"] * encoded(gains)) * lightmap["intensity"]
+        bright = light > 0.05 * light.max()
+        np.testing.assert_allclose(found[bright], light[bright], rtol=0.01)
+        self.assertAlmostEqual(float(encoded(gains).max()), 1, places=5)
+
+    def picture(self, file, texture):
+        view = file.json["bufferViews"][file.json["images"][file.json["textures"][texture]["source"]]["bufferView"]]
+        path = self.folder / "picture.png"
+        path.write_bytes(file.binary[view.get("byteOffset", 0) :][: view["byteLength"]])
+        return ifl.read_image(path)
 
     def test_is_written_anew_if_it_has_changed(self):
         glb = plates()

@@ -116,6 +116,15 @@ class ThreeTest(GltfTest):
     def test_shows_the_same_radiance_at_a_grazing_angle(self):
         self.check_radiance({**VIEW, "eye": [2, 0.05, 0.3], "look_at": [2, 2, 0], "fov": 5})
 
+    def test_shows_texels_that_are_too_bright_for_8_bits(self):
+        self.REFLECTANCE, self.EXPOSURE = 0.02, -7  # light is 25 times what is white, 3 times what 8 bits contain
+        self.plate({**VIEW, "eye": [2, 1.9, 1], "look_at": [2, 2, 0]})
+        expected = self.REFLECTANCE * self.SKY_ILLUMINANCE / math.pi * 2**self.EXPOSURE
+        (drawn,) = self.draw([self.export("irradiance", "--exposure", self.EXPOSURE)], "camera", 16, 16)
+        for pixel in drawn["pixels"]:
+            for value in pixel:
+                self.assertAlmostEqual(linear(value) / expected, 1, delta=0.02)
+
     def test_draws_the_picture_that_render_draws(self):
         self.textured()
         view = self.json("info", "scene.h5")["views"][0]["name"]

@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr const char* moz_lightmap = "MOZ_lightmap";
+constexpr const char* lightmap_extension = "MOZ_lightmap";
 constexpr const char* khr_emissive_strength = "KHR_materials_emissive_strength";
 constexpr const char* khr_unlit = "KHR_materials_unlit";
 constexpr const char* khr_variants = "KHR_materials_variants";
@@ -28,7 +28,7 @@ int highest_set(const Json& json) {
     int highest = 0;
     if (!json.is_structured()) return highest;
     for (const auto& [key, value] : json.items()) {
-        if (key == moz_lightmap || key == "extras") continue;
+        if (key == lightmap_extension || key == "extras") continue;
         highest =
             std::max(highest, key == "texCoord" && value.is_number_integer() ? value.get<int>() : highest_set(value));
     }
@@ -75,9 +75,7 @@ LitMaterials::LitMaterials(GltfDocument& document, const LightmapImages& images)
 }
 
 Json LitMaterials::with_irradiance(Json material, int page) const {
-    material["extensions"][moz_lightmap] = {{"index", images_.textures[static_cast<std::size_t>(page)]},
-                                            {"texCoord", set_},
-                                            {"intensity", images_.encoding.intensity()}};
+    material["extensions"][lightmap_extension] = moz_lightmap(images_, page, set_);
     return material;
 }
 
@@ -103,7 +101,7 @@ int LitMaterials::lit(int material, int page) {
         document_.use_extension(khr_unlit);
         return entry->second = document_.add("materials", as_radiance(json, page));
     }
-    document_.use_extension(moz_lightmap);
+    document_.use_extension(lightmap_extension);
     if (material < 0 || !is_first) return entry->second = document_.add("materials", with_irradiance(json, page));
     document_.json["materials"][material] = with_irradiance(json, page);
     return material;

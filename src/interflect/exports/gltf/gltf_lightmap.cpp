@@ -72,12 +72,13 @@ void add_emission(GltfDocument& document, Json& json, GltfTextures& textures, co
     if (material.exitance_texture != none) json["emissiveTexture"] = textures.reference(material.exitance_texture);
 }
 
-int add_material(GltfDocument& document, GltfTextures& textures, const Material& material, int lightmap_texture,
-                 const LightmapEncoding& encoding) {
+int add_material(GltfDocument& document, GltfTextures& textures, const Material& material, const LightmapImages& images,
+                 int page) {
     Json json{{"name", escaped(material.name)}};
-    if (encoding.content == LightmapContent::radiance) {
+    if (images.encoding.content == LightmapContent::radiance) {
+        const int texture = images.textures[static_cast<std::size_t>(page)];
         json["pbrMetallicRoughness"] = {
-            {"baseColorTexture", {{"index", lightmap_texture}}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
+            {"baseColorTexture", {{"index", texture}}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
         json["extensions"] = {{"KHR_materials_unlit", Json::object()}};
         document.use_extension("KHR_materials_unlit");
     } else {
@@ -86,10 +87,9 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
         // The default specular layer would reduce diffuse light.
         json["extensions"]["KHR_materials_specular"] = {{"specularFactor", 0}};
         document.use_extension("KHR_materials_specular");
-        json["extensions"]["MOZ_lightmap"] = {
-            {"index", lightmap_texture}, {"texCoord", 1}, {"intensity", encoding.intensity()}};
+        json["extensions"]["MOZ_lightmap"] = moz_lightmap(images, page, 1);
         document.use_extension("MOZ_lightmap");
-        add_emission(document, json, textures, material, encoding.exposure);
+        add_emission(document, json, textures, material, images.encoding.exposure);
     }
     return document.add("materials", std::move(json));
 }
@@ -108,9 +108,7 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesy
     for (const auto& [key, primitive] : primitives_of(scene, lightmap, mesh)) {
         const auto& [object, material, page] = key;
         const auto [entry, is_new] = materials.try_emplace({material, page}, 0);
-        if (is_new)
-            entry->second = add_material(document, textures, scene.materials[material],
-                                         images.textures[static_cast<std::size_t>(page)], images.encoding);
+        if (is_new) entry->second = add_material(document, textures, scene.materials[material], images, page);
         Json json = write_primitive(document, primitive, mesh.points(), scene.materials[material].is_textured(),
                                     images.encoding.content);
         json["material"] = entry->second;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
@@ -10,19 +11,25 @@
 #include "interflect/exports/mesh/display_range.h"
 #include "interflect/formats/text/extension.h"
 #include "interflect/image/codecs/image_codecs.h"
+#include "interflect/image/codecs/srgb.h"
 
 namespace interflect::detail {
 
 namespace {
+
+float largest_texel(const std::vector<Image>& images) {
+    float largest = 0;
+    for (const Image& image : images)
+        for (const Rgb& texel : image.pixels) largest = std::max(largest, largest_channel(texel));
+    return largest;
+}
 
 /// Returns LightmapEncoding::scale. For irradiance, it is the largest texel, but at most eight times the irradiance
 /// displayed as white: a larger scale would make the steps of 8 bits visible in dark areas.
 float scale_of(const std::vector<Image>& images, LightmapContent content, float exposure) {
     if (content == LightmapContent::radiance) return std::exp2(-exposure);
     constexpr float headroom = 8;
-    float largest = 0;
-    for (const Image& image : images)
-        for (const Rgb& texel : image.pixels) largest = std::max(largest, largest_channel(texel));
+    const float largest = largest_texel(images);
     const float most = headroom * std::numbers::pi_v<float> * std::exp2(-exposure);
     return largest > 0 ? std::min(largest, most) : most;
 }
@@ -39,10 +46,27 @@ std::string name_of_image(const std::filesystem::path& path, std::size_t page, s
     return fmt::format("{}-group-{}", name_of_image(path, page), group);
 }
 
-int add_image(GltfDocument& document, const Image& image, const std::string& name, float scale) {
+/// Adds an image of irradiance, and one of its gains if a texel exceeds the scale. A gain is 2^(stops * byte / 255),
+/// rounded up, so that the texel is at most the scale.
+void add_irradiance(GltfDocument& document, const Image& image, const std::string& name, LightmapImages& images) {
+    Image encoded = image, gains = image;
+    bool has_gain = false;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const Rgb texel = image.pixels[i] / images.encoding.scale;
+        const float over = largest_channel(texel);
+        const float byte = over > 1 ? std::ceil(std::log2(over) / images.stops * 255) : 0;
+        encoded.pixels[i] = within_display_range(texel / std::exp2(images.stops * byte / 255));
+        gains.pixels[i] = Rgb(srgb_decode(byte / 255));  // the codec's inverse: the image contains the byte
+        has_gain |= byte > 0;
+    }
+    images.textures.push_back(document.add_texture(encoded, name, false));
+    images.gains.push_back(has_gain ? document.add_texture(gains, name + "-gain", false) : LightmapImages::no_gain);
+}
+
+void add_radiance(GltfDocument& document, const Image& image, const std::string& name, LightmapImages& images) {
     Image encoded = image;
-    for (Rgb& texel : encoded.pixels) texel = within_display_range(texel / scale);
-    return document.add_texture(encoded, name, false);
+    for (Rgb& texel : encoded.pixels) texel = within_display_range(texel / images.encoding.scale);
+    images.textures.push_back(document.add_texture(encoded, name, false));
 }
 
 std::string encode_beside(const Image& image, const std::string& extension, const std::string& quantity) {
@@ -62,7 +86,8 @@ Json description_of(const BakedImages& baked, const LightmapEncoding& encoding,
             {"lightmap",
              {{"quantity", holds_irradiance ? "irradiance" : "radiance"},
               {"unit", holds_irradiance ? "lm/m^2" : "cd/m^2"},
-              {"encoding", "sRGB, 8 bit; a linear value of 1 stands for `scale`; brighter texels are scaled to it"},
+              {"encoding",
+               "sRGB, 8 bit; a linear value of 1 stands for `scale`; brighter texels are divided by their gain"},
               {"scale", encoding.scale},
               {"unclamped", images},
               {"used", baked.used},
@@ -88,16 +113,26 @@ Json add_groups(const std::filesystem::path& path, const BakedImages& baked, con
 
 }  // namespace
 
+Json moz_lightmap(const LightmapImages& images, int page, int set) {
+    const auto number = static_cast<std::size_t>(page);
+    Json json{{"index", images.textures[number]}, {"texCoord", set}, {"intensity", images.encoding.intensity()}};
+    if (const int gain = images.gains[number]; gain != LightmapImages::no_gain)
+        json["extras"]["gain"] = {{"index", gain}, {"stops", images.stops}};
+    return json;
+}
+
 LightmapImages add_lightmap_images(GltfDocument& document, const std::filesystem::path& path, const BakedImages& baked,
                                    const std::vector<std::string>& groups, const ExportOptions& options) {
     const LightmapOptions& chosen = *options.lightmap;
     LightmapImages result;
     result.encoding = {chosen.content, options.exposure, scale_of(baked.images, chosen.content, options.exposure)};
-    const std::string quantity =
-        chosen.content == LightmapContent::irradiance ? "irradiance [lm/m^2]" : "radiance [cd/m^2]";
+    const bool holds_irradiance = chosen.content == LightmapContent::irradiance;
+    const std::string quantity = holds_irradiance ? "irradiance [lm/m^2]" : "radiance [cd/m^2]";
+    if (holds_irradiance) result.stops = std::max(0.0f, std::log2(largest_texel(baked.images) / result.encoding.scale));
+    const auto add_image = holds_irradiance ? add_irradiance : add_radiance;
     for (std::size_t page = 0; page < baked.images.size(); ++page) {
         const std::string name = name_of_image(path, page);
-        result.textures.push_back(add_image(document, baked.images[page], name, result.encoding.scale));
+        add_image(document, baked.images[page], name, result);
         result.files.push_back(
             {path.parent_path() / (name + chosen.image), encode_beside(baked.images[page], chosen.image, quantity)});
     }

@@ -20,14 +20,23 @@ struct LightmapEncoding {
     float intensity() const { return scale * std::exp2(exposure); }
 };
 
-/// The images of a lightmap in a file and beside it.
+/// The images of a lightmap in a file and beside it. Texels brighter than the encoding's scale are divided by a gain
+/// between 1 and 2^stops, whose logarithm is in another image.
 struct LightmapImages {
     LightmapEncoding encoding;
+    float stops = 0;                  ///< Binary logarithm of the largest gain.
     std::vector<int> textures;        ///< In the document, one per image.
+    std::vector<int> gains;           ///< Textures of the gains, one per image; no_gain if all its texels have 1.
     std::vector<ExportedFile> files;  ///< Unclamped images, also of light groups.
+
+    static constexpr int no_gain = -1;
 };
 
-/// Adds the images to the document, clamped to the display's range, describes them in `asset.extras.interflect`, and
+/// Returns the value of a material's extension MOZ_lightmap. Viewers that do not know its gain show texels that are
+/// clamped to the scale. @param set  Of texture coordinates.
+Json moz_lightmap(const LightmapImages& images, int page, int set);
+
+/// Adds the images to the document, describes them in `asset.extras.interflect`, and
 /// encodes the unclamped ones.
 /// @param path  Of the document. @param groups  Names of the solution's light groups.
 LightmapImages add_lightmap_images(GltfDocument& document, const std::filesystem::path& path, const BakedImages& baked,
