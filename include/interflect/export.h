@@ -48,7 +48,7 @@ enum class LightmapContent {
 /// Resolution of lightmaps on some surfaces.
 struct TexelDensity {
     std::string pattern;     ///< Pattern of object names (see LightGroup) or material names.
-    float texels_per_metre;  ///< > 0.
+    float texels_per_metre;  ///< >= 0; 0: no lightmap, possible only in the scene's own glTF file.
 };
 
 struct LightmapOptions {

@@ -305,6 +305,36 @@ class Density(LitFiles):
         self.assertAlmostEqual(self.area(path, "cube"), 6 * 5**2, delta=1)  # of the material
 
 
+    def test_of_zero_leaves_surfaces_as_they_are(self):
+        source, path = self.lit(plates(), densities={"turned": 10, "cube": 20, "*": 0})
+        before, after = Glb.read(source), Glb.read(path)
+        lit = {name for name, _, p in after.primitives() if "TEXCOORD_1" in p["attributes"]}
+        self.assertEqual(lit, {"turned", "cube"})
+        for (name, _, primitive), (_, _, old) in zip(after.primitives(), before.primitives(), strict=True):
+            material = after.json["materials"][primitive["material"]]
+            self.assertEqual("MOZ_lightmap" in material.get("extensions", {}), name in lit)
+            if name not in lit:
+                self.assertEqual((primitive, material), (old, before.json["materials"][old["material"]]))
+
+    def test_of_zero_on_a_material_leaves_its_primitives_as_they_are(self):
+        glb = plates()
+        cube = glb.json["meshes"][1]["primitives"][0]
+        sides = [{**cube, "indices": glb.add(quads(CUBE_FACES[i::2])), "material": i} for i in range(2)]
+        glb.json["meshes"][1]["primitives"] = sides
+        glb.json["scenes"][0]["nodes"] = [5, 6]
+        file = Glb.read(self.lit(glb, densities={"tin": 0})[1])
+        self.assertEqual([("TEXCOORD_1" in p["attributes"]) for _, _, p in file.primitives()], [False, True])
+        self.assertEqual(file.json["materials"][0], black("tin"))
+
+    def test_of_zero_everywhere_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "no surface gets a lightmap"):
+            self.lit(plates(), densities={"*": 0})
+
+    def test_of_zero_needs_the_scene_s_own_file(self):
+        with self.assertRaisesRegex(ValueError, "the density of '\\*' is 0"):
+            self.lit(plates(), densities={"*": 0}, keep_file=False)
+
+
 class Layout(LitFiles):
     def coordinates(self, path):
         file = Glb.read(path)

@@ -268,8 +268,9 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
                                    "Maximum width and height of the images, at least"))
         ->capture_default_str()
         ->check(number_between(1e-6, 1e6));
-    of_lightmap(add_each(command, "--density", lightmap.densities, parse_density,
-                         "Texels per metre on objects or materials with such a name ('*' stands for anything)"))
+    of_lightmap(
+        add_each(command, "--density", lightmap.densities, parse_density,
+                 "Texels per metre on objects or materials with such a name ('*' stands for anything); 0: no lightmap"))
         ->type_name("PATTERN=N");
     of_lightmap(
         command.add_option("--lightmap-max-size", lightmap.max_size, "Largest side of an image, a multiple of 4"))

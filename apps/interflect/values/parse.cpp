@@ -238,11 +238,13 @@ Dimmed parse_dimmed(const std::string& text) {
 }
 
 TexelDensity parse_density(const std::string& text) {
-    constexpr const char* expected = "PATTERN=N, such as chair*=50, with 1e-6 to 1e6 texels per metre";
+    constexpr const char* expected =
+        "PATTERN=N, such as chair*=50, with 1e-6 to 1e6 texels per metre, or 0 for no lightmap";
     auto [pattern, value] = name_and_value(text, expected);
     std::string_view rest = value;
     double density = 0;
-    if (!take_number(rest, density) || !rest.empty() || !(density >= 1e-6 && density <= 1e6)) refuse(text, expected);
+    if (!take_number(rest, density) || !rest.empty() || !(density == 0 || (density >= 1e-6 && density <= 1e6)))
+        refuse(text, expected);
     return {std::move(pattern), static_cast<float>(density)};
 }
 

@@ -42,8 +42,9 @@ void require_usable(const LightmapOptions& options) {
     require(options.texels_per_metre > 0 && std::isfinite(options.texels_per_metre),
             fmt::format("texels_per_metre is {}, expected a number above 0", options.texels_per_metre));
     for (const auto& [pattern, density] : options.densities)
-        require(density > 0 && std::isfinite(density),
-                fmt::format("the density of '{}' is {}, expected a number above 0", pattern, density));
+        require(density >= 0 && std::isfinite(density),
+                fmt::format("the density of '{}' is {}, expected a number above 0, or 0 for no lightmap", pattern,
+                            density));
     require(options.max_size >= 64 && options.max_size <= 16384 && options.max_size % 4 == 0,
             fmt::format("max_size is {}, expected a multiple of 4 from 64 to 16384", options.max_size));
     require(options.gutter >= 1 && options.gutter <= 64, fmt::format("gutter is {}, expected 1 to 64", options.gutter));

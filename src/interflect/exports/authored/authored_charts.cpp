@@ -95,7 +95,9 @@ AuthoredShape shape_of(const Model& model, std::vector<std::uint32_t> meshes, co
     for (const std::uint32_t mesh : meshes) add_triangles(model, mesh, matrix, origin, weld, scene, shape);
     shape.meshes = std::move(meshes);
     shape.parts = parts_of(scene);
-    shape.charts = make_charts(scene, std::vector<bool>(scene.patches.size(), true), options, &warnings);
+    std::vector<bool> is_lit;
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) is_lit.push_back(density_of(scene, p, options) > 0);
+    shape.charts = make_charts(scene, std::move(is_lit), options, &warnings);
     return shape;
 }
 

@@ -102,7 +102,8 @@ int LitMaterials::lit(int material, int page) {
         return entry->second = document_.add("materials", as_radiance(json, page));
     }
     document_.use_extension(lightmap_extension);
-    if (material < 0 || !is_first) return entry->second = document_.add("materials", with_irradiance(json, page));
+    if (material < 0 || !is_first || kept_.contains(material))
+        return entry->second = document_.add("materials", with_irradiance(json, page));
     document_.json["materials"][material] = with_irradiance(json, page);
     return material;
 }
@@ -118,6 +119,13 @@ void LitMaterials::add_variants(Json& primitive, int authored, int lit) {
     Json& mappings = primitive["extensions"][khr_variants]["mappings"];
     mappings.push_back({{"material", lit}, {"variants", {*first_variant_}}});
     mappings.push_back({{"material", authored}, {"variants", {*first_variant_ + 1}}});
+}
+
+void LitMaterials::keep(const Json& primitive) {
+    kept_.insert(primitive.value("material", -1));
+    if (has_extension(primitive, khr_variants))
+        for (const Json& mapping : primitive["extensions"][khr_variants]["mappings"])
+            kept_.insert(mapping["material"].get<int>());
 }
 
 void LitMaterials::light(Json& primitive, int page) {

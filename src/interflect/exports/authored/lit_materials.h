@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "interflect/exports/gltf/gltf_document.h"
@@ -22,6 +23,8 @@ class LitMaterials {
 
     /// Index of the texture coordinates for lightmaps (TEXCOORD_n): the first one above 0 that no material uses.
     int set() const { return set_; }
+    /// Leaves the materials of a primitive as they are; light() adds copies of them.
+    void keep(const Json& primitive);
     /// Refers a primitive, with all of its variants, to the materials with an image.
     void light(Json& primitive, int page);
 
@@ -36,6 +39,7 @@ class LitMaterials {
     int set_ = 1;
     std::map<std::pair<int, int>, int> lit_;  // keys: material (-1: none) and image
     std::map<int, int> first_page_;
+    std::set<int> kept_;
     std::optional<int> first_variant_;  // of the two that radiance needs
 };
 

@@ -46,11 +46,13 @@ class LitMeshes {
           authored_(authored),
           baked_(baked),
           materials_(materials),
-          meshes_(document.json["meshes"]) {}
+          meshes_(document.json["meshes"]) {
+        keep_unlit();
+    }
 
     void light(const AuthoredObject& object) {
         const AuthoredShape& shape = authored_.shapes[object.shape];
-        if (shape.charts.empty()) return;  // all its triangles are without area
+        if (shape.charts.empty()) return;  // its density is 0, or its triangles have no area
         const std::uint32_t number = authored_.model.meshes[shape.meshes.front()].source.mesh;
         Json mesh = meshes_[number];
         std::vector<bool> is_lit(mesh["primitives"].size(), false);
@@ -59,7 +61,7 @@ class LitMeshes {
             if (!is_lit[primitive]) light(mesh["primitives"][primitive], object, primitive);
             is_lit[primitive] = true;
         }
-        if (is_written_.insert(number).second)
+        if (is_taken_.insert(number).second)
             document_.json["meshes"][number] = std::move(mesh);
         else
             document_.json["nodes"][object.node]["mesh"] = document_.add("meshes", std::move(mesh));
@@ -68,9 +70,32 @@ class LitMeshes {
   private:
     using Key = std::pair<std::uint32_t, std::uint32_t>;  // shape and primitive
 
+    /// Marks the meshes of nodes without a lightmap, and the materials of primitives without one, as not to be changed.
+    void keep_unlit() {
+        std::set<std::pair<std::uint32_t, std::uint32_t>> lit;  // mesh and primitive of the file
+        for (const AuthoredShape& shape : authored_.shapes)
+            for (const LightmapChart& chart : shape.charts)
+                for (const FlatPatch& flat : chart.patches) {
+                    const auto& source = authored_.model.meshes[shape.triangles[flat.patch].mesh].source;
+                    lit.emplace(source.mesh, source.primitive);
+                }
+        std::set<std::uint32_t> lit_nodes;
+        for (const AuthoredObject& object : authored_.objects)
+            if (!authored_.shapes[object.shape].charts.empty()) lit_nodes.insert(object.node);
+        const Json& nodes = document_.json["nodes"];
+        for (std::uint32_t i = 0; i < nodes.size(); ++i)
+            if (nodes[i].contains("mesh") && !lit_nodes.contains(i))
+                is_taken_.insert(nodes[i]["mesh"].get<std::uint32_t>());
+        for (std::uint32_t m = 0; m < meshes_.size(); ++m)
+            for (std::uint32_t k = 0; k < meshes_[m]["primitives"].size(); ++k)
+                if (is_taken_.contains(m) || !lit.contains({m, k})) materials_.keep(meshes_[m]["primitives"][k]);
+    }
+
     void light(Json& primitive, const AuthoredObject& object, std::uint32_t number) {
         const Key key{object.shape, number};
         if (!split_primitives_.contains(key)) split(primitive, key);
+        const auto has_chart = [](const SplitVertices::Place& place) { return place.chart != none; };
+        if (std::none_of(vertices_[key].places.begin(), vertices_[key].places.end(), has_chart)) return;
         primitive = split_primitives_[key];
         const std::vector<LightmapChart>& charts = authored_.charts;
         std::vector<V2f> coordinates;
@@ -166,8 +191,8 @@ class LitMeshes {
     const AuthoredCharts& authored_;
     const BakedImages& baked_;
     LitMaterials& materials_;
-    const Json meshes_;                   // of the file
-    std::set<std::uint32_t> is_written_;  // indices of meshes
+    const Json meshes_;                 // of the file
+    std::set<std::uint32_t> is_taken_;  // meshes that a node shows as they are in the document
     std::map<Key, SplitVertices> vertices_;
     std::map<Key, Json> split_primitives_;
 };
@@ -221,6 +246,8 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& sourc
     Warnings ignored;
     Warnings& warnings = options.warnings ? *options.warnings : ignored;
     AuthoredCharts authored = authored_charts(source.model(), chosen, warnings);
+    if (authored.charts.empty())
+        throw InputError("no surface gets a lightmap: the density of each is 0, or its triangles have no area");
     const PatchVisibility visibility = patch_visibility(scene, solution);
     TexelMover mover(authored, scene, visibility);
     const PackCharts pack = [&](std::vector<LightmapChart>& charts) {

@@ -232,14 +232,6 @@ int texels_along(double length, double texels_per_metre, int most) {
     return static_cast<int>(std::clamp(count, 2.0, static_cast<double>(most)));
 }
 
-float density_of(const Scene& scene, PatchIndex patch, const LightmapOptions& options) {
-    const std::string& object = scene.objects[scene.patches[patch].object];
-    const std::string& material = scene.materials[scene.patches[patch].material].name;
-    for (const auto& [pattern, texels_per_metre] : options.densities)
-        if (matches_object(pattern, object) || matches(pattern, material)) return texels_per_metre;
-    return options.texels_per_metre;
-}
-
 /// Makes a chart. The smallest coordinates of the patches must be 0.
 LightmapChart chart_of(const Scene& scene, FlatPatches patches, const LightmapOptions& options) {
     LightmapChart chart{std::move(patches), {0, 0}};
@@ -283,6 +275,14 @@ std::vector<FlatPatches> smooth_layouts(const Scene& scene, const std::vector<bo
 }
 
 }  // namespace
+
+float density_of(const Scene& scene, PatchIndex patch, const LightmapOptions& options) {
+    const std::string& object = scene.objects[scene.patches[patch].object];
+    const std::string& material = scene.materials[scene.patches[patch].material].name;
+    for (const auto& [pattern, texels_per_metre] : options.densities)
+        if (matches_object(pattern, object) || matches(pattern, material)) return texels_per_metre;
+    return options.texels_per_metre;
+}
 
 V2f LightmapChart::coordinate(const Imath::V2d& at, const std::vector<Image>& images) const {
     const Image& image = images[static_cast<std::size_t>(page)];

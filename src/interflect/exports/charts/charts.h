@@ -22,6 +22,9 @@ struct LightmapChart {
     V2f coordinate(const Imath::V2d& at, const std::vector<Image>& images) const;
 };
 
+/// Returns the texels per metre on a patch.
+float density_of(const Scene& scene, PatchIndex patch, const LightmapOptions& options);
+
 /// Makes charts of the `shown` patches. Objects with a layout of their own keep it (kept_layouts()). Other smooth
 /// surfaces are unfolded(), and split at creases, contacts and gaps narrower than two texels.
 std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> shown, const LightmapOptions& options,

@@ -1,5 +1,7 @@
 #include "interflect/exports/lightmap/lightmap.h"
 
+#include <fmt/format.h>
+
 #include "interflect/exports/charts/atlas.h"
 #include "interflect/exports/mesh/shown_patches.h"
 
@@ -12,6 +14,12 @@ V2f Lightmap::coordinate(PatchIndex patch, Parameters at) const {
 
 Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options) {
     const LightmapOptions& chosen = *options.lightmap;
+    for (const auto& [pattern, density] : chosen.densities)
+        if (density == 0)
+            throw InputError(
+                fmt::format("lightmap: the density of '{}' is 0: only lightmaps in the scene's own glTF file "
+                            "leave surfaces out, and this file is written anew",
+                            pattern));
     Lightmap lightmap;
     lightmap.charts = make_charts(scene, shown_patches(scene, solution), chosen, options.warnings);
     const PackCharts pack = [&](std::vector<LightmapChart>& charts) {
