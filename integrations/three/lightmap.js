@@ -2,7 +2,15 @@
 // A material's extension MOZ_lightmap {index, texCoord, intensity} becomes its lightMap. Texels that are too bright for
 // 8 bits have a gain in another texture, extras.gain {index, stops}: irradiance = texel x 2^(stops x gain) x intensity.
 import {
-  ClampToEdgeWrapping, DataTexture, DataUtils, HalfFloatType, LinearFilter, LinearSRGBColorSpace, RGBAFormat, SRGBColorSpace,
+  ClampToEdgeWrapping,
+  DataTexture,
+  DataUtils,
+  HalfFloatType,
+  LinearFilter,
+  LinearSRGBColorSpace,
+  PMREMGenerator,
+  RGBAFormat,
+  SRGBColorSpace,
 } from "three";
 
 export class LightmapExtension {
@@ -27,9 +35,11 @@ export class LightmapExtension {
   async load(index, texCoord, { index: gainIndex, stops }) {
     const load = (i) => this.parser.getDependency("texture", i);
     const [texels, gains] = (await Promise.all([load(index), load(gainIndex)])).map(bytesOf);
-    const data = new Uint16Array(texels.data.length), linear = Float32Array.from({ length: 256 }, (_, i) => fromSRGB(i / 255));
-    const opaque = DataUtils.toHalfFloat(1), factor = Float32Array.from({ length: 256 }, (_, i) => 2 ** ((stops * i) / 255));
-    const dim = Uint16Array.from(linear, DataUtils.toHalfFloat); // most texels have no gain
+    const bytes = Float32Array.from({ length: 256 }, (_, i) => i / 255);
+    const linear = bytes.map(fromSRGB), factor = bytes.map((x) => 2 ** (stops * x));
+    const dim = Uint16Array.from(linear, (x) => DataUtils.toHalfFloat(x)); // most texels have no gain
+    const opaque = DataUtils.toHalfFloat(1);
+    const data = new Uint16Array(texels.data.length);
     for (let i = 0; i < data.length; i += 4) {
       const gain = gains.data[i];
       for (let c = i; c < i + 3; ++c)
@@ -44,6 +54,19 @@ export class LightmapExtension {
     texture.needsUpdate = true;
     return texture;
   }
+}
+
+/** Metals reflect the lit scene around a point; they have no diffuse part for a lightmap, and would be black. */
+export function addReflections(renderer, scene, position) {
+  const metals = new Set();
+  scene.traverse(({ material }) => {
+    for (const each of [material].flat()) if (each?.metalness > 0.5) metals.add(each);
+  });
+  if (!metals.size) return;
+  const generator = new PMREMGenerator(renderer), near = 0.01, far = 1000; // [m]
+  const surroundings = generator.fromScene(scene, 0, near, far, { position }).texture;
+  for (const metal of metals) metal.envMap = surroundings;
+  generator.dispose();
 }
 
 function fromSRGB(value) {
