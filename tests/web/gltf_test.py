@@ -117,7 +117,7 @@ class ThreeTest(GltfTest):
         self.check_radiance({**VIEW, "eye": [2, 0.05, 0.3], "look_at": [2, 2, 0], "fov": 5})
 
     def test_shows_texels_that_are_too_bright_for_8_bits(self):
-        self.REFLECTANCE, self.EXPOSURE = 0.02, -7  # light is 25 times what is white, 3 times what 8 bits contain
+        self.REFLECTANCE, self.EXPOSURE = 0.02, -7  # light is 25 times white, 3 times the largest value of 8 bits
         self.plate({**VIEW, "eye": [2, 1.9, 1], "look_at": [2, 2, 0]})
         expected = self.REFLECTANCE * self.SKY_ILLUMINANCE / math.pi * 2**self.EXPOSURE
         (drawn,) = self.draw([self.export("irradiance", "--exposure", self.EXPOSURE)], "camera", 16, 16)

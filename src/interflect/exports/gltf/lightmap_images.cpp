@@ -46,8 +46,8 @@ std::string name_of_image(const std::filesystem::path& path, std::size_t page, s
     return fmt::format("{}-group-{}", name_of_image(path, page), group);
 }
 
-/// Adds an image of irradiance, and one of its gains if a texel exceeds the scale. A gain is 2^(stops * byte / 255),
-/// rounded up, so that the texel is at most the scale.
+/// Adds an image of irradiance and, if a texel exceeds the scale, an image of gains, 2^(stops * byte / 255). Gains are
+/// rounded up: a texel divided by its gain is at most the scale.
 void add_irradiance(GltfDocument& document, const Image& image, const std::string& name, LightmapImages& images) {
     Image encoded = image, gains = image;
     bool has_gain = false;

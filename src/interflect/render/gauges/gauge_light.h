@@ -25,9 +25,10 @@ struct GaugeLight {
 };
 
 /// Computes the irradiance of gauges by hybrid shading, with at most options.samples paths for each gauge, an even
-/// number. A gauge gets an eighth of them, and then as many as its neighbours in the list need for a small estimated
-/// error of direct light, relative to all their light: options.until or, if that is 0, hybrid_target. Direct light is
-/// unbiased, because the number of samples of a gauge does not depend on its own samples.
+/// number. A gauge first gets an eighth of them. Its neighbours in the list determine the number of further samples,
+/// which reduce the estimated error of their direct light, relative to all their light, to options.until or, if that is
+/// 0, hybrid_target. Direct light is unbiased, because the number of samples of a gauge does not depend on its own
+/// samples.
 /// @param known  Irradiance with is_interpolated set.
 /// @return       Per gauge, in rank 0 only; the same bits for any number of threads and ranks. Collective.
 /// @throws Stopped, in all ranks.
