@@ -246,7 +246,7 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& sourc
     Warnings ignored;
     Warnings& warnings = options.warnings ? *options.warnings : ignored;
     AuthoredCharts authored = authored_charts(source.model(), chosen, warnings);
-    if (authored.charts.empty())
+    if (authored.charts.empty() && !authored.objects.empty())
         throw InputError("no surface gets a lightmap: the density of each is 0, or its triangles have no area");
     const PatchVisibility visibility = patch_visibility(scene, solution);
     TexelMover mover(authored, scene, visibility);
