@@ -37,13 +37,13 @@ export class LightmapExtension {
     const [texels, gains] = (await Promise.all([load(index), load(gainIndex)])).map(bytesOf);
     const bytes = Float32Array.from({ length: 256 }, (_, i) => i / 255);
     const linear = bytes.map(fromSRGB), factor = bytes.map((x) => 2 ** (stops * x));
-    const dim = Uint16Array.from(linear, (x) => DataUtils.toHalfFloat(x)); // most texels have no gain
-    const opaque = DataUtils.toHalfFloat(1);
+    const largest = 65504, half = (x) => DataUtils.toHalfFloat(Math.min(x, largest));
+    const dim = Uint16Array.from(linear, half), opaque = half(1); // most texels have no gain
     const data = new Uint16Array(texels.data.length);
     for (let i = 0; i < data.length; i += 4) {
       const gain = gains.data[i];
       for (let c = i; c < i + 3; ++c)
-        data[c] = gain ? DataUtils.toHalfFloat(linear[texels.data[c]] * factor[gain]) : dim[texels.data[c]];
+        data[c] = gain ? half(linear[texels.data[c]] * factor[gain]) : dim[texels.data[c]];
       data[i + 3] = opaque;
     }
     const texture = new DataTexture(data, texels.width, texels.height, RGBAFormat, HalfFloatType);

@@ -304,7 +304,6 @@ class Density(LitFiles):
             self.assertAlmostEqual(self.area(path, name), density**2, delta=0.01 * density**2, msg=name)
         self.assertAlmostEqual(self.area(path, "cube"), 6 * 5**2, delta=1)  # of the material
 
-
     def test_of_zero_leaves_surfaces_as_they_are(self):
         source, path = self.lit(plates(), densities={"turned": 10, "cube": 20, "*": 0})
         before, after = Glb.read(source), Glb.read(path)

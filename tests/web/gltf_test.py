@@ -125,6 +125,16 @@ class ThreeTest(GltfTest):
             for value in pixel:
                 self.assertAlmostEqual(linear(value) / expected, 1, delta=0.02)
 
+    def test_shows_the_lit_room_in_metals(self):
+        self.solved(room())
+        lit = json.loads(self.export("hdr").read_text())
+        for material in lit["materials"]:
+            if material["name"] == "paint":
+                material["pbrMetallicRoughness"] |= {"metallicFactor": 1, "roughnessFactor": 1}
+                del material["extensions"]["KHR_materials_specular"]
+        (drawn,) = self.draw([self.write("metal.gltf", json.dumps(lit))], "camera", 16, 16)  # of paint alone
+        self.assertGreater(sorted(map(max, drawn["pixels"]))[len(drawn["pixels"]) // 2], 0)
+
     def test_draws_the_picture_that_render_draws(self):
         self.textured()
         view = self.json("info", "scene.h5")["views"][0]["name"]
