@@ -73,7 +73,7 @@ struct LightmapOptions {
 /// Options of export_solution().
 struct ExportOptions {
     /// Exposure [stops]: a radiance of 2^-exposure becomes 1, the brightest 8-bit value. Brighter colours are scaled to
-    /// 1, which preserves their hue. See automatic_exposure().
+    /// 1, which preserves their hue. See export_exposure().
     float exposure = 0;
     V3f up{0, 0, 1};   ///< Up axis of the scene, which is rotated for formats with a fixed up axis.
     BakeOptions bake;  ///< For .glb, .gltf, .ply and .obj.
@@ -118,6 +118,12 @@ const ExportFormat& require_export_format(const std::filesystem::path& path);
 ///         vertex has some light, or each probe all of it; std::runtime_error if writing fails.
 std::vector<std::filesystem::path> export_solution(const std::filesystem::path& path, const Scene& scene,
                                                    const Solution& solution, const ExportOptions& options = {});
+
+/// Exposure for a natural impression of an exported scene [stops]: automatic_exposure() of its first view. Without a
+/// view, the logarithmic mean of the luminance of reflecting surfaces, by area, becomes 0.2. The darkest surfaces,
+/// which together reflect 1% of the light, are ignored: the outside of a lit building. 0 without light.
+/// @throws InputError for a solution of another scene.
+float export_exposure(const Scene& scene, const Solution& solution);
 
 struct SceneExportOptions {
     int width = 1280, height = 720;  ///< Size of the pictures [pixels], >= 1.

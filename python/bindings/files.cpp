@@ -235,6 +235,12 @@ void bind_files(py::module_& m) {
           py::arg("lightmap") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
           Documented("For interflect.export()."));
     m.def(
+        "export_exposure",
+        [](const SharedLight& light, int threads) {
+            return pure_work(threads, [&] { return export_exposure(*light->scene, *light->solution); });
+        },
+        py::arg("solution"), py::arg("threads") = 0, Documented(docs::export_exposure));
+    m.def(
         "export_scene",
         [](const std::shared_ptr<Scene>& scene, const std::filesystem::path& path) {
             const SceneExport written = export_scene(path, *scene);

@@ -193,7 +193,7 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         solution: Result of solve().
         path: .glb, .gltf, .ply, .obj, .vtkhdf, .hdf or .vtu; .json or .exr for probes.
         lightmap: Stores the light in lightmaps rather than in vertices.
-        exposure: [stops], of 8-bit colours, as of tonemap().
+        exposure: [stops], of 8-bit colours. None: as of the first view in a picture or, without one, of the lit surfaces.
         threads, progress: As of render().
         options: up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
             max_triangles, and for .ply and .obj polygons. In lightmaps: texels_per_metre, densities (a
@@ -208,9 +208,7 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         TypeError: for an unknown option.
     """
     if exposure is None and Path(path).suffix in COLOUR_FORMATS:
-        view = solution.scene.views[0] if solution.scene.views else _core.overview(solution.scene)
-        exposure = _core.automatic_exposure(
-            render(solution, view, width=160, height=90, shading="smooth", samples=4, threads=threads, progress=False))
+        exposure = _core.export_exposure(solution, threads)
     with reporting(progress, "exporting") as report:
         return _core.export_solution(solution, path, lightmap=lightmap, exposure=exposure or 0, threads=threads,
                                      progress=report, **options)

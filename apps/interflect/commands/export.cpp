@@ -79,14 +79,6 @@ std::vector<OptionsOfFormats> options_of_formats() {
             {{"--pixel-samples"}, {".xml", ".pbrt", ".py"}}};
 }
 
-/// Computes the exposure of `render` for the first view or an overview.
-float automatic_exposure_of(const SolvedScene& solved) {
-    const RayCaster ray_caster = make_ray_caster(solved.scene);
-    const View view = solved.scene.views.empty() ? overview(solved.scene) : solved.scene.views.front();
-    const PictureOptions options{.width = 160, .height = 90, .shading = Shading::smooth, .samples = 4};
-    return automatic_exposure(render(solved.scene, solved.solution, ray_caster, view, options).image);
-}
-
 V3f up_of(const Scene& scene) {
     if (const std::optional<UpAxis> found = find_up_axis(scene)) return found->direction();
     spdlog::warn("{}: the up direction is unknown: taking z (--up chooses another)", scene.name);
@@ -204,7 +196,8 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
     const SolvedScene solved = read_dimmed(arguments);
     require_no_scene_files(solved.scene, {&output, 1});
     ExportOptions options;
-    options.exposure = arguments.exposure.stops + (arguments.exposure.relative ? automatic_exposure_of(solved) : 0);
+    options.exposure = arguments.exposure.stops;
+    if (arguments.exposure.relative) options.exposure += export_exposure(solved.scene, solved.solution);
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
     options.probes = arguments.probes;
     set_bake(options, arguments, command);
@@ -314,7 +307,7 @@ void add_export(CLI::App& app, int& exit_code) {
     for (const char* extension : scene_export_extensions) extensions += std::string(" ") + extension;
     command.add_option("-o,--output", options->output, "File to write:" + extensions)->required()->type_name("FILE");
     add_parsed(command, "--exposure", options->exposure, parse_exposure,
-               "Stops by which colours are brightened, or auto, as `render` does")
+               "Stops by which colours are brightened, or auto: for the first view, or the lit surfaces")
         ->type_name("STOPS|auto[+STOPS]")
         ->default_str("auto");
     add_parsed(command, "--up", options->up, parse_vector,
