@@ -261,6 +261,31 @@ class File(LitFiles):
         path.write_bytes(file.binary[view.get("byteOffset", 0) :][: view["byteLength"]])
         return ifl.read_image(path)
 
+    def test_is_solved_and_lit_again_as_the_author_s(self):
+        glb = plates()
+        white = {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0}
+        glb.json["materials"] = [
+            {"name": "panel", "pbrMetallicRoughness": white, "emissiveFactor": [0, 0, 1]},
+            {"name": "paint", "pbrMetallicRoughness": white},
+        ]
+        source, _ = self.lit(glb)
+        for content in ("irradiance", "radiance"):
+            with self.subTest(content):
+                ifl.export(ifl.open_solution(self.folder / "lit.h5"), self.folder / "baked.glb", lightmap=True,
+                           exposure=-3, content=content, keep_lights=True)
+                with self.assertWarnsRegex(ifl.Warning, "baked.glb.*Interflect has baked this file"):
+                    again = ifl.load(self.folder / "baked.glb")
+                authored = ifl.load(source)
+                self.assertEqual(again.views, authored.views)
+                for found, expected in zip(again.materials, authored.materials, strict=True):
+                    np.testing.assert_allclose([found.reflectance, found.exitance],
+                                               [expected.reflectance, expected.exitance], rtol=1e-6)
+                ifl.export(ifl.solve(again, rays=20_000), self.folder / "again.glb", lightmap=True, exposure=-3,
+                           content=content, keep_lights=True)
+                first, second = Glb.read(self.folder / "baked.glb").json, Glb.read(self.folder / "again.glb").json
+                for part in ("materials", "extensions", "extensionsUsed", "nodes"):
+                    self.assertEqual(second[part], first[part], part)
+
     def test_is_written_anew_if_it_has_changed(self):
         glb = plates()
         glb.write(self.folder / "plates.glb")
@@ -303,6 +328,26 @@ class Density(LitFiles):
         for name, density in (("nested", 40), ("below", 80), ("mirrored", 20)):
             self.assertAlmostEqual(self.area(path, name), density**2, delta=0.01 * density**2, msg=name)
         self.assertAlmostEqual(self.area(path, "cube"), 6 * 5**2, delta=1)  # of the material
+
+    def test_is_that_of_the_file(self):
+        """The command's density counts before that of a node, which counts before that of its material."""
+        glb = plates()
+        for node, density in ((0, 80), (1, 30), (2, 60)):
+            glb.json["nodes"][node]["extras"] = {"texels_per_metre": density}
+        for material in glb.json["materials"]:
+            material["extras"] = {"texels_per_metre": 10, "rough": True}
+        path = self.lit(glb, densities={"turned": 40})[1]
+        self.assert_exact(path)
+        for name, texels in (("below", 80**2), ("turned", 40**2), ("mirrored", 60**2), ("nested", 10**2), ("cube", 6 * 10**2)):
+            self.assertAlmostEqual(self.area(path, name), texels, delta=0.01 * texels, msg=name)
+        self.assertEqual(Glb.read(path).json["nodes"][0]["extras"], {"texels_per_metre": 80})
+
+    def test_of_the_file_that_is_no_number_is_refused(self):
+        for density in (-1, "20", None):
+            glb = plates()
+            glb.json["materials"][1]["extras"] = {"texels_per_metre": density}
+            with self.subTest(density), self.assertRaisesRegex(ifl.InputError, r"materials\[1\] 'pane': extras.texels_per_metre"):
+                self.lit(glb)
 
     def test_of_zero_leaves_surfaces_as_they_are(self):
         source, path = self.lit(plates(), densities={"turned": 10, "cube": 20, "*": 0})

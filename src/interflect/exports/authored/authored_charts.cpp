@@ -1,9 +1,14 @@
 #include "interflect/exports/authored/authored_charts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "interflect/geometry/search/disjoint_sets.h"
@@ -66,6 +71,8 @@ void add_triangles(const Model& model, std::uint32_t index, const M44d& matrix, 
         shape.triangles.push_back({index, first});
     }
 }
+
+constexpr const char* density_property = "texels_per_metre";
 
 PerPatch<std::uint32_t> parts_of(const Scene& scene) {
     Scene points;  // the vertices without normals and coordinates
@@ -153,22 +160,54 @@ std::array<V3d, 3> AuthoredCharts::corners(const AuthoredObject& object, PatchIn
     return result;
 }
 
-AuthoredCharts authored_charts(Model model, const LightmapOptions& options, Warnings& warnings) {
+AuthoredDensities authored_densities(const Json& file) {
+    AuthoredDensities result;
+    const auto visit = [&](const char* list, const auto& add) {
+        if (!file.contains(list)) return;
+        for (std::uint32_t i = 0; i < file[list].size(); ++i) {
+            const Json& holder = file[list][i];
+            if (!holder.contains("extras") || !holder["extras"].contains(density_property)) continue;
+            const Json& value = holder["extras"][density_property];
+            const double density = value.is_number() ? value.get<double>() : -1;
+            if (!(density >= 0 && density <= std::numeric_limits<float>::max()))
+                throw InputError(fmt::format("{}[{}] '{}': extras.{} is {}, expected a number from 0 up", list, i,
+                                             holder.value("name", ""), density_property, json_text(value)));
+            add(i, holder.value("name", ""), static_cast<float>(density));
+        }
+    };
+    visit("nodes", [&](std::uint32_t node, const std::string&, float density) { result.nodes[node] = density; });
+    visit("materials", [&](std::uint32_t, const std::string& name, float density) {
+        if (!name.empty()) result.materials.push_back({name, density});
+    });
+    return result;
+}
+
+AuthoredCharts authored_charts(Model model, const AuthoredDensities& densities, const LightmapOptions& options,
+                               Warnings& warnings) {
     AuthoredCharts result;
+    const auto with = [&](const std::vector<TexelDensity>& further) {
+        LightmapOptions chosen = options;
+        chosen.densities.insert(chosen.densities.end(), further.begin(), further.end());
+        return chosen;
+    };
+    const LightmapOptions of_materials = with(densities.materials);
     Scene scene;
     scene.materials = model.materials;
     using Sizes = std::vector<std::pair<std::array<double, 6>, std::uint32_t>>;  // metric and shape
-    std::map<std::pair<std::vector<std::uint32_t>, std::vector<bool>>, Sizes> known;
+    std::map<std::tuple<std::vector<std::uint32_t>, std::vector<bool>, std::optional<float>>, Sizes> known;
     for (const auto& [instance, meshes] : shown_meshes(model, warnings)) {
         const std::array<double, 6> metric = metric_of(instance->to_world);
         const std::string& object = model.objects[instance->object];
-        Sizes& sizes = known[{meshes, matching_densities(object, options)}];
+        const auto own = densities.nodes.find(instance->node);
+        const auto density = own == densities.nodes.end() ? std::nullopt : std::optional(own->second);
+        Sizes& sizes = known[{meshes, matching_densities(object, options), density}];
         const auto same = [&](const auto& size) { return are_alike(metric, size.first); };
         auto found = std::find_if(sizes.begin(), sizes.end(), same);
         if (found == sizes.end()) {
             sizes.emplace_back(metric, static_cast<std::uint32_t>(result.shapes.size()));
             found = std::prev(sizes.end());
-            result.shapes.push_back(shape_of(model, meshes, instance->to_world, object, options, scene, warnings));
+            result.shapes.push_back(shape_of(model, meshes, instance->to_world, object,
+                                             density ? with({{"*", *density}}) : of_materials, scene, warnings));
         }
         const std::vector<LightmapChart>& charts = result.shapes[found->second].charts;
         result.objects.push_back({instance->node, found->second, instance->object,

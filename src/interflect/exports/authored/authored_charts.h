@@ -3,9 +3,11 @@
 #include <ImathMatrix.h>
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "interflect/exports/charts/charts.h"
+#include "interflect/exports/records/json_text.h"
 #include "interflect/formats/build/model.h"
 #include "interflect/scene.h"
 
@@ -45,8 +47,18 @@ struct AuthoredCharts {
     std::array<Imath::V3d, 3> corners(const AuthoredObject& object, PatchIndex patch) const;
 };
 
+/// Densities of texels that a glTF file has for its nodes and materials: the number `extras.texels_per_metre`, which is
+/// a custom property in Blender. LightmapOptions::densities take precedence over both, those of nodes over materials.
+struct AuthoredDensities {
+    std::map<std::uint32_t, float> nodes;
+    std::vector<TexelDensity> materials;  ///< With the names of materials as patterns.
+};
+/// @throws InputError for a density that is not a number from 0 up.
+AuthoredDensities authored_densities(const Json& file);
+
 /// @param warnings  Receives the warnings of make_charts(), and one for each node without a lightmap
 ///                  (EXT_mesh_gpu_instancing).
-AuthoredCharts authored_charts(Model model, const LightmapOptions& options, Warnings& warnings);
+AuthoredCharts authored_charts(Model model, const AuthoredDensities& densities, const LightmapOptions& options,
+                               Warnings& warnings);
 
 }  // namespace interflect::detail

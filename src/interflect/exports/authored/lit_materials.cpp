@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "interflect/core.h"
+#include "interflect/formats/gltf/baked_light.h"
 
 namespace interflect::detail {
 
@@ -112,8 +113,8 @@ void LitMaterials::add_variants(Json& primitive, int authored, int lit) {
     if (!first_variant_) {
         Json& names = document_.json["extensions"][khr_variants]["variants"];
         first_variant_ = static_cast<int>(names.size());
-        names.push_back({{"name", "lit"}});
-        names.push_back({{"name", "authored"}});
+        names.push_back({{"name", lit_variant}});
+        names.push_back({{"name", authored_variant}});
         document_.use_extension(khr_variants);
     }
     Json& mappings = primitive["extensions"][khr_variants]["mappings"];

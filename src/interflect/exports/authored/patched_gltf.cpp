@@ -245,7 +245,7 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& sourc
     const LightmapOptions& chosen = *options.lightmap;
     Warnings ignored;
     Warnings& warnings = options.warnings ? *options.warnings : ignored;
-    AuthoredCharts authored = authored_charts(source.model(), chosen, warnings);
+    AuthoredCharts authored = authored_charts(source.model(), authored_densities(document.json), chosen, warnings);
     if (authored.charts.empty() && !authored.objects.empty())
         throw InputError("no surface gets a lightmap: the density of each is 0, or its triangles have no area");
     const PatchVisibility visibility = patch_visibility(scene, solution);

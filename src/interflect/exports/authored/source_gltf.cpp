@@ -10,6 +10,7 @@
 
 #include "interflect/base/files/crc32.h"
 #include "interflect/base/files/input_file.h"
+#include "interflect/formats/gltf/baked_light.h"
 #include "interflect/formats/gltf/gltf.h"
 #include "interflect/formats/text/extension.h"
 #include "interflect/formats/text/json_text.h"
@@ -21,6 +22,12 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* meshopt = "EXT_meshopt_compression";
+
+nlohmann::json authored_json(std::string_view text, const fs::path& path) {
+    nlohmann::json json = parse_json(text, path);
+    remove_baked_light(json);
+    return json;
+}
 
 void pad(std::string& bytes) {
     constexpr std::size_t alignment = 8;  // of every type of an accessor
@@ -87,7 +94,7 @@ void move_view(Json& view, const std::vector<int>& new_buffer, const std::vector
 SourceGltf::SourceGltf(const fs::path& path, std::string bytes, const ReadOptions& options)
     : bytes_(std::move(bytes)),
       parts_(gltf_parts(bytes_)),
-      json_(parse_json(parts_.json, path)),
+      json_(authored_json(parts_.json, path)),
       options_(options),
       model_(read_gltf_model(bytes_, path, options_)),
       asset_(path, options_, json_),
@@ -124,6 +131,7 @@ std::map<std::string, DracoAttribute> SourceGltf::decompressed(std::uint32_t mes
 
 GltfDocument SourceGltf::document() {
     Json json = Json::parse(parts_.json);
+    remove_baked_light(json);
     std::string joined;
     std::vector<int> new_buffer;
     std::vector<std::size_t> offset;

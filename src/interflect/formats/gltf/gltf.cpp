@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "interflect/core.h"
+#include "interflect/formats/gltf/baked_light.h"
 #include "interflect/formats/gltf/parts/lights.h"
 #include "interflect/formats/gltf/parts/meshes.h"
 #include "interflect/formats/gltf/parts/nodes.h"
@@ -209,9 +210,15 @@ Model model_of(std::string_view bytes, const fs::path& path, const ReadOptions& 
     if (parts.json.size() > options.max_json_bytes)
         throw GltfFault(fmt::format("its JSON has {} bytes; at most {} are read (max_json_bytes)", parts.json.size(),
                                     options.max_json_bytes));
-    const nlohmann::json json = parse_json(parts.json, path);
+    nlohmann::json json = parse_json(parts.json, path);
     if (!json.is_object()) throw GltfFault("its JSON is not an object");
+    const bool is_baked = remove_baked_light(json);
     GltfAsset asset(path, options, json);
+    if (is_baked)
+        asset.warn("baked light",
+                   "Interflect has baked this file: its lightmaps are ignored, and light sources that the bake removed "
+                   "are missing; expected the file that was baked",
+                   "asset.extras.interflect");
     require_readable(asset);
     SceneReader(asset, parts).read();
     return std::move(asset.model);
