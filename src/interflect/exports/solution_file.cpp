@@ -365,6 +365,24 @@ auto read_or_refuse(const std::filesystem::path& path, const char* fault, const 
         throw InputError(path, 0, fmt::format("{}: {}", fault, e.what()));
     }
 }
+/// Searches the scene's files beside the solution if they are not where they were read: its paths are relative to the
+/// folder in which the scene was solved.
+void find_scene_files(Scene& scene, const std::filesystem::path& folder) {
+    const auto is_there = [](const std::filesystem::path& path) {
+        std::error_code ignored;
+        return std::filesystem::is_regular_file(path, ignored);
+    };
+    for (std::string& file : scene.files) {
+        if (is_there(file)) continue;
+        const std::filesystem::path path = file;
+        for (const std::filesystem::path& candidate : {folder / path, folder / path.filename()})
+            if (is_there(candidate)) {
+                file = candidate.string();
+                break;
+            }
+    }
+}
+
 constexpr const char* unreadable = "not a solution file that can be read";
 
 }  // namespace
@@ -395,6 +413,7 @@ SolvedScene read_solution(const std::filesystem::path& path) {
     require_solution_file(path);
     return read_or_refuse(path, unreadable, [&] {
         SolvedScene solved = read_solved_scene(verified(path));
+        find_scene_files(solved.scene, path.parent_path());
         apply_dimming(solved);
         return solved;
     });
@@ -404,6 +423,7 @@ SavedRun detail::read_saved_run(const std::filesystem::path& path) {
     require_solution_file(path);
     const VerifiedFile file = read_or_refuse(path, unreadable, [&] { return verified(path); });
     SolvedScene solved = read_or_refuse(path, unreadable, [&] { return read_solved_scene(file); });
+    find_scene_files(solved.scene, path.parent_path());
     return {std::move(solved), read_or_refuse(path, "a run that cannot go on", [&] { return read_state(file); })};
 }
 

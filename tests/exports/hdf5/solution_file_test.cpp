@@ -25,6 +25,7 @@ namespace {
 
 using namespace testing_support;
 namespace fs = std::filesystem;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// A scene with all features of a solution file: triangles, two-sided faces, objects, views, names in UTF-8. Its
@@ -267,7 +268,7 @@ TEST_F(SolutionFile, OpensVersion4) {
     const SolvedScene read = read_solution(repository() / "tests/exports/hdf5/version-4.h5");
     EXPECT_EQ(read.format_version, 4);
     EXPECT_EQ(read.interflect_version, "0.1.0");
-    EXPECT_THAT(read.scene.files, testing::ElementsAre("room.mgf", "room.views.json"));
+    EXPECT_THAT(read.scene.files, ElementsAre("room.mgf", "room.views.json"));
     EXPECT_TRUE(read.scene.file_checksums.empty());
     EXPECT_EQ(read.scene.patches.size(), 13u);
     EXPECT_TRUE(read.scene.lightmap_coordinates.empty());
@@ -297,6 +298,17 @@ TEST_F(SolutionFile, ReadsARefinedForestWithImportance) {
     ASSERT_GT(solved.solution.forest->level(ElementIndex(solved.solution.forest->size() - 1)), 1);
     write_solution(path_, solved.scene, solved.solution);
     expect_equal(read_solution(path_), solved);
+}
+
+TEST_F(SolutionFile, FindsFilesOfTheSceneBesideIt) {
+    SolvedScene solved = example();
+    solved.scene.files = {"scene.glb", "elsewhere/lamp.ies", "nowhere.glb"};
+    write_solution(path_, solved.scene, solved.solution);
+    const fs::path folder = folder_.path();
+    std::ofstream(folder / "scene.glb") << "text";
+    std::ofstream(folder / "lamp.ies") << "text";
+    EXPECT_THAT(read_solution(path_).scene.files,
+                ElementsAre((folder / "scene.glb").string(), (folder / "lamp.ies").string(), "nowhere.glb"));
 }
 
 TEST_F(SolutionFile, KeepsADarkSolution) {
