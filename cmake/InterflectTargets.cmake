@@ -1,7 +1,7 @@
 # interflect_folder(NAME SOURCES ... USES other folders ... LINKS libraries ... [PRIVATE_LINKS libraries ...]):
 # the objects of a folder of src/interflect. USES names only folders above it in docs/develop/architecture.md's table.
 
-set(interflect_warnings -Wall -Wextra -Wconversion -Wshadow -Wno-sign-conversion)
+set(interflect_warnings -Wall -Wextra -Wconversion -Wno-sign-conversion)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   list(APPEND interflect_warnings -Wno-restrict)  # false alarms of GCC 12 in std::string (its bug 105651)
 endif()
@@ -11,6 +11,8 @@ endif()
 
 add_library(interflect_options INTERFACE)
 target_compile_features(interflect_options INTERFACE cxx_std_20)
+# In a unit of several files of tests, local names shadow those of other files.
+target_compile_options(interflect_options INTERFACE $<$<NOT:$<BOOL:$<TARGET_PROPERTY:INTERFLECT_TEST>>>:-Wshadow>)
 # Without errno, and traps that nobody sets, square roots and choices become vector code.
 target_compile_options(interflect_options INTERFACE ${interflect_warnings} -fno-math-errno -fno-trapping-math)
 # The same expression rounds alike wherever it is compiled; fused multiply-adds would differ between copies of a loop, and

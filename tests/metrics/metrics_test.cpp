@@ -14,12 +14,12 @@ namespace interflect {
 using namespace detail;
 namespace {
 
-Rgb grey(float v) { return Rgb(v, v, v); }
+Rgb uniform_grey(float v) { return Rgb(v, v, v); }
 
 Image speckle(int width, int height, float mean, float amplitude) {
     Image image(width, height);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = grey(mean + amplitude * (static_cast<float>(i * 7 % 11) / 5 - 1));
+        image.pixels[i] = uniform_grey(mean + amplitude * (static_cast<float>(i * 7 % 11) / 5 - 1));
     return image;
 }
 
@@ -38,8 +38,8 @@ TEST(Compare, EqualImagesDoNotDiffer) {
 
 /// Reference: 1 and 3. Image: 1 and 4 in red only. By hand, with Rec. 709's weight of red, 0.2126.
 TEST(Compare, KnownByHand) {
-    Image reference(2, 1, grey(1)), image(2, 1, grey(1));
-    reference.at(1, 0) = grey(3);
+    Image reference(2, 1, uniform_grey(1)), image(2, 1, uniform_grey(1));
+    reference.at(1, 0) = uniform_grey(3);
     image.at(1, 0) = Rgb(4, 3, 3);
     const ImageDifference d = compare(image, reference);
     EXPECT_NEAR(d.ratio_of_means, (1 + 3 + 0.2126) / 4, 1e-6);
@@ -52,7 +52,7 @@ TEST(Compare, KnownByHand) {
 
 /// A constant factor appears in every block, and `scale` removes it.
 TEST(Compare, AFactorShowsInEveryBlockAndCanBeDividedOut) {
-    const Image reference(18, 18, grey(2)), image(18, 18, grey(3));
+    const Image reference(18, 18, uniform_grey(2)), image(18, 18, uniform_grey(3));
     for (const BlockDifference& block : compare(image, reference).blocks) {
         EXPECT_NEAR(block.relative_rmse, 1 / 2.02, 1e-6);
         EXPECT_NEAR(block.trimmed_relative_rmse, 1 / 2.02, 1e-6);
@@ -64,7 +64,7 @@ TEST(Compare, AFactorShowsInEveryBlockAndCanBeDividedOut) {
 }
 
 TEST(Compare, NoiseAveragesOutInBlocks) {
-    const ImageDifference d = compare(speckle(90, 90, 2, 1), Image(90, 90, grey(2)));
+    const ImageDifference d = compare(speckle(90, 90, 2, 1), Image(90, 90, uniform_grey(2)));
     EXPECT_GT(d.blocks[0].relative_rmse, 0.25);
     EXPECT_LT(d.blocks[1].relative_rmse, d.blocks[0].relative_rmse / 4);
     EXPECT_LT(d.blocks[2].relative_rmse, d.blocks[1].relative_rmse);
@@ -72,8 +72,8 @@ TEST(Compare, NoiseAveragesOutInBlocks) {
 
 /// One block of 10 x 10 = 100 is wrong: it has the whole error, and is the omitted percent.
 TEST(Compare, TrimmingLeavesTheWorstPercentOut) {
-    Image reference(50, 50, grey(1)), image = reference;
-    image.at(12, 31) = grey(26);  // its block of 5 x 5 has mean 2
+    Image reference(50, 50, uniform_grey(1)), image = reference;
+    image.at(12, 31) = uniform_grey(26);  // its block of 5 x 5 has mean 2
     const BlockDifference blocks = compare(image, reference).blocks[1];
     EXPECT_EQ(blocks.block, 5);
     EXPECT_NEAR(blocks.relative_rmse, 0.1 / 1.01, 1e-6);
@@ -81,8 +81,8 @@ TEST(Compare, TrimmingLeavesTheWorstPercentOut) {
 }
 
 TEST(Compare, WhatIsLeftOverAtTheBordersIsNoBlock) {
-    Image reference(7, 6, grey(1)), image = reference;
-    image.at(6, 0) = image.at(0, 5) = grey(9);
+    Image reference(7, 6, uniform_grey(1)), image = reference;
+    image.at(6, 0) = image.at(0, 5) = uniform_grey(9);
     EXPECT_EQ(compare(image, reference).blocks[1].relative_rmse, 0);  // one block of 5 x 5
     EXPECT_EQ(compare(image, reference).blocks[2].relative_rmse, 0);  // no block of 9 x 9
     EXPECT_GT(compare(image, reference).blocks[0].relative_rmse, 0);
@@ -103,10 +103,10 @@ TEST(Compare, DoesNotDependOnTheUnit) {
 }
 
 TEST(Compare, AveragesALargerImageToTheReferencesSize) {
-    Image image(4, 2, grey(1));
-    image.at(2, 0) = grey(5);  // the right half's mean is 2
-    Image reference(2, 1, grey(1));
-    reference.at(1, 0) = grey(2);
+    Image image(4, 2, uniform_grey(1));
+    image.at(2, 0) = uniform_grey(5);  // the right half's mean is 2
+    Image reference(2, 1, uniform_grey(1));
+    reference.at(1, 0) = uniform_grey(2);
     const ImageDifference d = compare(image, reference);
     EXPECT_EQ(d.maximum, 0);
     EXPECT_EQ(d.perceptual_distance, 0);
@@ -136,7 +136,7 @@ TEST(Compare, FlipIsThatOfWhatADisplayShows) {
     EXPECT_NEAR(d.flip, sum / (18 * 9), 1e-9);
     EXPECT_GT(d.flip, 0.1);
 
-    const Image shown = speckle(18, 9, 0.5f, 0.3f), expected(18, 9, grey(0.5f));
+    const Image shown = speckle(18, 9, 0.5f, 0.3f), expected(18, 9, uniform_grey(0.5f));
     EXPECT_EQ(compare(shown, expected, {.tone_mapped = true}).flip_map.pixels, flip_map(shown, expected).pixels);
 }
 
@@ -157,7 +157,7 @@ TEST(Compare, RefusesSizesThatAreNoWholeMultiple) {
 }
 
 TEST(Compare, CountsPixelsThatAreNotFinite) {
-    Image image(2, 2, grey(1)), reference = image;
+    Image image(2, 2, uniform_grey(1)), reference = image;
     image.at(0, 0).y = std::numeric_limits<float>::quiet_NaN();
     reference.at(1, 1).z = std::numeric_limits<float>::infinity();
     const ImageDifference d = compare(image, reference);
@@ -170,7 +170,7 @@ TEST(Compare, CountsPixelsThatAreNotFinite) {
 }
 
 TEST(Compare, LightWhereTheReferenceIsBlackIsInfinitelyMuch) {
-    const ImageDifference d = compare(Image(2, 2, grey(1)), Image(2, 2));
+    const ImageDifference d = compare(Image(2, 2, uniform_grey(1)), Image(2, 2));
     EXPECT_TRUE(std::isinf(d.ratio_of_means));
     EXPECT_TRUE(std::isinf(d.relative_mse));
     EXPECT_TRUE(std::isinf(d.perceptual_distance));

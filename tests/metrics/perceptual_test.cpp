@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-Rgb grey(double v) { return Rgb(static_cast<float>(v)); }
+Rgb grey_of(double v) { return Rgb(static_cast<float>(v)); }
 
 /// An irregular pattern in [-1, 1].
 double speckle(int x, int y) { return (x * 7 + y * 13 + x * y * 3) % 11 / 5.0 - 1; }
@@ -24,7 +24,7 @@ double speckle(int x, int y) { return (x * 7 + y * 13 + x * y * 3) % 11 / 5.0 - 
 Image mottled(int width, int height, double mean, double amplitude) {
     Image image(width, height);
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) image.at(x, y) = grey(mean + amplitude * speckle(x, y));
+        for (int x = 0; x < width; ++x) image.at(x, y) = grey_of(mean + amplitude * speckle(x, y));
     return image;
 }
 
@@ -35,7 +35,7 @@ Image grating(int width, int height, int across, int down, double contrast) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const double phase = 2 * pi * (1.0 * across * x / width + 1.0 * down * y / height);
-            image.at(x, y) = grey(std::pow(1 + contrast * std::cos(phase), 1 / 0.33));
+            image.at(x, y) = grey_of(std::pow(1 + contrast * std::cos(phase), 1 / 0.33));
         }
     return image;
 }
@@ -60,7 +60,7 @@ TEST(ContrastSensitivity, IsBestAtEightCyclesPerDegreeAndNoBetterThanOne) {
 /// negative, 0 elsewhere. The distance is A(f) sqrt(2 (c / 2)^2) = A(f) c / sqrt(2). For a picture of 1 degree with 8
 /// cycles down it, f = 8, A = 0.9808, and with c = 0.1 the distance is 0.06935.
 TEST(PerceptualDistance, OfAGratingKnownByHand) {
-    EXPECT_NEAR(perceptual_distance(grating(32, 32, 0, 8, 0.1), Image(32, 32, grey(1)), 1), 0.06935, 1e-5);
+    EXPECT_NEAR(perceptual_distance(grating(32, 32, 0, 8, 0.1), Image(32, 32, grey_of(1)), 1), 0.06935, 1e-5);
 }
 
 /// The same formula for any direction, size and field of view. `across` counts per width: 3 cycles across a picture
@@ -72,7 +72,7 @@ TEST(PerceptualDistance, OfGratingsGoesByCyclesPerDegree) {
     };
     for (const Case& c : {Case{64, 32, 12, 0, 2, 3}, Case{64, 32, 0, 6, 2, 3}, Case{128, 64, 0, 6, 2, 3},
                           Case{64, 32, 12, 8, 2, 5}, Case{35, 35, 3, 4, 0.5, 10}, Case{22, 11, 3, 0, 2, 0.75}}) {
-        const Image reference(c.width, c.height, grey(1));
+        const Image reference(c.width, c.height, grey_of(1));
         const Image image = grating(c.width, c.height, c.across, c.down, 0.2);
         EXPECT_NEAR(perceptual_distance(image, reference, c.field_of_view),
                     contrast_sensitivity(c.cycles_per_degree) * 0.2 / std::numbers::sqrt2, 1e-6)
@@ -139,13 +139,13 @@ TEST(PerceptualDistance, RisesWithNoise) {
 
 /// Noise of single pixels is visible in a picture of a wide field; in a narrow one the pixels are too fine.
 TEST(PerceptualDistance, WhatIsTooFineToSeeDoesNotCount) {
-    const Image image = grating(64, 64, 32, 0, 0.1), reference(64, 64, grey(1));
+    const Image image = grating(64, 64, 32, 0, 0.1), reference(64, 64, grey_of(1));
     EXPECT_LT(perceptual_distance(image, reference, 0.5), 0.01 * perceptual_distance(image, reference, 4));
 }
 
 TEST(PerceptualDistance, OfABlackReference) {
-    EXPECT_TRUE(std::isinf(perceptual_distance(Image(3, 2, grey(1)), Image(3, 2), 45)));
-    EXPECT_EQ(perceptual_distance(Image(3, 2, grey(-1)), Image(3, 2), 45), 0) << "less than nothing is black too";
+    EXPECT_TRUE(std::isinf(perceptual_distance(Image(3, 2, grey_of(1)), Image(3, 2), 45)));
+    EXPECT_EQ(perceptual_distance(Image(3, 2, grey_of(-1)), Image(3, 2), 45), 0) << "less than nothing is black too";
 }
 
 TEST(PerceptualDistance, RefusesWhatItCannotCompare) {

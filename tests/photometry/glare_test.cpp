@@ -19,7 +19,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// CIE 117:1995, table of position indices, T/R = 0: straight above the line of sight, by H/R (height over distance).
 class PositionIndex : public testing::TestWithParam<std::tuple<float, double>> {};

@@ -189,7 +189,7 @@ std::uint32_t add_horizontal(Scene& scene, float height, bool up, bool two_sided
     return first;
 }
 
-Scene empty_scene() {
+Scene scene_without_faces() {
     Scene scene;
     add_material(scene, Rgb(0.5f), Rgb(0));
     return scene;
@@ -202,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(Shape, Faces, testing::Bool(),
                          [](const auto& test) { return test.param ? "triangles" : "quadrilaterals"; });
 
 TEST_P(Faces, BackOfAOneSidedFaceLetsRaysThrough) {
-    Scene scene = empty_scene();
+    Scene scene = scene_without_faces();
     const std::uint32_t upper = add_horizontal(scene, 1, true, false, GetParam());
     const std::uint32_t lower = add_horizontal(scene, 0, false, false, GetParam());
     EXPECT_EQ(traced(scene, downwards).patch, upper);
@@ -215,7 +215,7 @@ TEST_P(Faces, BackOfAOneSidedFaceLetsRaysThrough) {
 }
 
 TEST_P(Faces, BackOfAOneSidedFaceHidesNothingBehindIt) {
-    Scene scene = empty_scene();
+    Scene scene = scene_without_faces();
     add_horizontal(scene, 0, true, false, GetParam());
     const std::uint32_t ceiling = add_horizontal(scene, 1, false, false, GetParam());
     EXPECT_EQ(traced(scene, upwards).patch, ceiling);
@@ -224,7 +224,7 @@ TEST_P(Faces, BackOfAOneSidedFaceHidesNothingBehindIt) {
 
 TEST_P(Faces, OfTwoOneSidedFacesBackToBackEachAnswersOnItsSide) {
     for (const bool up_first : {true, false}) {
-        Scene scene = empty_scene();
+        Scene scene = scene_without_faces();
         const std::uint32_t first = add_horizontal(scene, 0, up_first, false, GetParam());
         const std::uint32_t second = add_horizontal(scene, 0, !up_first, false, GetParam());
         EXPECT_EQ(traced(scene, downwards).patch, up_first ? first : second);
@@ -234,7 +234,7 @@ TEST_P(Faces, OfTwoOneSidedFacesBackToBackEachAnswersOnItsSide) {
 
 TEST_P(Faces, TwoSidedFaceAnswersWithTheSideThatIsSeen) {
     for (const bool up : {true, false}) {
-        Scene scene = empty_scene();
+        Scene scene = scene_without_faces();
         const std::uint32_t front = add_horizontal(scene, 0, up, true, GetParam());
         EXPECT_EQ(traced(scene, downwards).patch, up ? front : front + 1);
         EXPECT_EQ(traced(scene, upwards).patch, up ? front + 1 : front);
@@ -243,7 +243,7 @@ TEST_P(Faces, TwoSidedFaceAnswersWithTheSideThatIsSeen) {
 
 // Real scenes have duplicate faces. The reported face must not vary between rays, or the two would share the light.
 TEST_P(Faces, OfCoincidentTwoSidedFacesAlwaysTheSameAnswers) {
-    Scene scene = empty_scene();
+    Scene scene = scene_without_faces();
     for (const bool up : {true, true, false}) add_horizontal(scene, 0, up, true, GetParam());
     scene = placed(scene, 0.7f, V3f(1, 2, 3));
     const PatchGeometry geometry(scene, scene.patches[0]);
@@ -263,7 +263,7 @@ TEST_P(Faces, OfCoincidentTwoSidedFacesAlwaysTheSameAnswers) {
 TEST_P(Faces, RayThatStartsOnAFaceHitsNeitherItNorItsDuplicates) {
     Random random(6);
     for (int trial = 0; trial < 40; ++trial) {
-        Scene scene = empty_scene();
+        Scene scene = scene_without_faces();
         for (const bool up : {true, true, false}) add_horizontal(scene, 0, up, true, GetParam());
         add_horizontal(scene, 0, true, false, GetParam());
         add_horizontal(scene, 0, false, false, GetParam());
@@ -323,7 +323,7 @@ TEST(RayOffset, DependsOnNothingFarAway) {
 
 // The shadow at the foot of a screen: rays from the floor, a tenth of a millimetre beside it, hit the screen.
 TEST(RayOffset, KeepsContactShadows) {
-    Scene scene = empty_scene();
+    Scene scene = scene_without_faces();
     const PatchIndex floor = add_rectangle(scene, {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 0);
     const PatchIndex screen = add_rectangle(scene, {2, 0, 1e-4f}, {0, 4, 0}, {0, 0, 0.01f}, 0, 1, 1, true);
     add_rectangle(scene, {-1e5f, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0);
@@ -336,7 +336,7 @@ TEST(RayOffset, KeepsContactShadows) {
 // A decal at the origin has small coordinates but its wall has large ones; Embree's rounding depends on the wall.
 TEST(RayOffset, OfASmallFaceOnALargeOneClearsTheLargeOne) {
     for (const V3f& tilt : {V3f(0, 0, 0), V3f(0, 0, 0.3f)}) {
-        Scene scene = empty_scene();
+        Scene scene = scene_without_faces();
         const V3f u = V3f(1, 0, 0) + tilt, v = V3f(0, 1, 0) - tilt;
         add_rectangle(scene, -100.0f * u - 100.0f * v, 200.0f * u, 200.0f * v, 0);
         const PatchIndex decal = add_rectangle(scene, {0, 0, 0}, 0.01f * u, 0.01f * v, 0);
@@ -353,7 +353,7 @@ TEST(RayOffset, OfASmallFaceOnALargeOneClearsTheLargeOne) {
     }
 }
 
-TEST(RayCaster, OfAnEmptySceneLetsAllRaysEscape) { EXPECT_EQ(traced(empty_scene(), downwards).patch, none); }
+TEST(RayCaster, OfAnEmptySceneLetsAllRaysEscape) { EXPECT_EQ(traced(scene_without_faces(), downwards).patch, none); }
 
 TEST(RayCaster, RefusesABrokenScene) {
     Scene scene = grey_box();

@@ -16,7 +16,7 @@ namespace interflect {
 using namespace detail;
 namespace {
 
-const Scene square = [] {
+const Scene recorded_square = [] {
     Scene scene;
     testing_support::add_rectangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0},
                                    testing_support::add_material(scene, Rgb(0.5f), Rgb(0)));
@@ -35,7 +35,7 @@ void trace_call(const RayCaster& ray_caster, std::size_t call) {
 }
 
 TEST(RayRecorder, KeepsAllOfFewRays) {
-    const RayCaster ray_caster(square);
+    const RayCaster ray_caster(recorded_square);
     trace_call(ray_caster, 99);
     const auto recorder = std::make_unique<RayRecorder>(ray_caster, 100);
     for (std::size_t call = 0; call < 10; ++call) trace_call(ray_caster, call);
@@ -48,7 +48,7 @@ TEST(RayRecorder, KeepsAllOfFewRays) {
 
 TEST(RayRecorder, SamplesWholeCallsOfMany) {
     constexpr std::size_t calls = 4000, max_rays = 4000;
-    const RayCaster ray_caster(square);
+    const RayCaster ray_caster(recorded_square);
     const RayRecorder recorder(ray_caster, max_rays);
     parallel_for_ranges(calls, 1, [&](std::size_t call, std::size_t) { trace_call(ray_caster, call); });
     EXPECT_EQ(recorder.traced(), static_cast<std::int64_t>(calls * rays_of_call));
@@ -68,7 +68,7 @@ TEST(RayRecorder, SamplesWholeCallsOfMany) {
 }
 
 TEST(RayRecorder, EndsWithItsLifetime) {
-    const RayCaster ray_caster(square);
+    const RayCaster ray_caster(recorded_square);
     { const RayRecorder recorder(ray_caster, 1); }
     trace_call(ray_caster, 0);
     const RayRecorder another(ray_caster, 1);

@@ -19,7 +19,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Scene black_room(const Luminaire& light) {
     Scene scene = closed_box({6, 6, 3}, 1, {Material{"", Rgb(0), Rgb(0)}});

@@ -18,7 +18,7 @@ using namespace detail;
 namespace {
 
 using namespace testing_support;
-constexpr float pi = std::numbers::pi_v<float>;
+constexpr auto float_pi = std::numbers::pi_v<float>;
 
 ProbeGrid probes(const Scene& scene, const ProbeOptions& options = {}) {
     SolveOptions solve_options;
@@ -61,8 +61,8 @@ TEST(Probes, OfAFurnaceAreUniform) {
         const float tolerance = 5 * probe.standard_error;  // false alarm: 1e-6 for each of 72 comparisons
         for (int c = 0; c < 3; ++c) {
             const float exitance = static_cast<float>(1 << c);
-            EXPECT_NEAR(probe.coefficients[0][c], exitance * std::sqrt(4 * pi),
-                        std::sqrt(4 * pi) * exitance * tolerance);
+            EXPECT_NEAR(probe.coefficients[0][c], exitance * std::sqrt(4 * float_pi),
+                        std::sqrt(4 * float_pi) * exitance * tolerance);
             EXPECT_NEAR(probe.irradiance(V3f(0.6f, 0, -0.8f))[c], exitance, 3 * exitance * tolerance);
         }
     }
@@ -72,7 +72,7 @@ TEST(Probes, OfAFurnaceAreUniform) {
 /// 17/16 E facing it, and E (1/4 - 1/2 + 5/16) = E / 16 away from it (Ramamoorthi and Hanrahan 2001).
 void expect_parallel_light(const IrradianceProbe& probe, const V3f& towards, float irradiance) {
     const auto basis = spherical_harmonics(towards);
-    const std::array factors{pi, 2 * pi / 3, pi / 4};
+    const std::array factors{float_pi, 2 * float_pi / 3, float_pi / 4};
     for (std::size_t k = 0; k < 9; ++k) {
         const bool is_exact = k > 0 && k < 4;
         EXPECT_NEAR(probe.coefficients[k].y,
@@ -80,7 +80,7 @@ void expect_parallel_light(const IrradianceProbe& probe, const V3f& towards, flo
                         factors[k == 0  ? 0
                                 : k < 4 ? 1
                                         : 2],
-                    (is_exact ? 1e-4f : 0.013f * std::sqrt(4 * pi)) * irradiance)
+                    (is_exact ? 1e-4f : 0.013f * std::sqrt(4 * float_pi)) * irradiance)
             << k;
     }
     EXPECT_NEAR(probe.irradiance(towards).y, irradiance * 17 / 16, 0.013f * irradiance);
@@ -104,7 +104,7 @@ TEST(Probes, OfASmallLampHaveItsHarmonics) {
     add_rectangle(scene, {4.995f, 4.995f, 9.999f}, {0, 0.01f, 0}, {0.01f, 0, 0},
                   add_material(scene, Rgb(0), Rgb(1e3f)));
     const IrradianceProbe probe = probes(scene, {.spacing = 1e4f}).probes[0];
-    expect_parallel_light(probe, {0, 0, 1}, 1e3f * 1e-4f / (pi * 4.999f * 4.999f));
+    expect_parallel_light(probe, {0, 0, 1}, 1e3f * 1e-4f / (float_pi * 4.999f * 4.999f));
 }
 
 /// Root mean square deviation of E(n) over all normals. With 400 probes the ratio has a standard error of about 3%.
@@ -122,7 +122,7 @@ TEST(Probes, StateTheErrorOfSampling) {
         const IrradianceProbe p = probe(seed, 256);
         stated += p.standard_error * p.standard_error;
         for (std::size_t k = 0; k < 9; ++k) {
-            const Rgb difference = (p.coefficients[k] - truth.coefficients[k]) / std::sqrt(4 * pi);
+            const Rgb difference = (p.coefficients[k] - truth.coefficients[k]) / std::sqrt(4 * float_pi);
             deviation += difference.x * difference.x;
         }
     }
@@ -136,10 +136,10 @@ TEST(Probes, OfASkyOverBlackGroundTellUpFromDown) {
     scene.patches.resize(5);  // without the ceiling
     scene.luminaires = {{"sky", 0, UniformSky{Rgb(1)}}};
     const IrradianceProbe probe = probes(scene, {.spacing = 1e4f, .rays = 20'000}).probes[0];
-    EXPECT_NEAR(probe.irradiance({0, 0, 1}).x, pi, 0.02f);
+    EXPECT_NEAR(probe.irradiance({0, 0, 1}).x, float_pi, 0.02f);
     EXPECT_NEAR(probe.irradiance({0, 0, -1}).x, 0, 0.02f);
-    EXPECT_NEAR(probe.irradiance({1, 0, 0}).x, pi / 2, 0.02f);
-    EXPECT_NEAR(probe.irradiance({0, 1, 0}).x, pi / 2, 0.02f);
+    EXPECT_NEAR(probe.irradiance({1, 0, 0}).x, float_pi / 2, 0.02f);
+    EXPECT_NEAR(probe.irradiance({0, 1, 0}).x, float_pi / 2, 0.02f);
 }
 
 TEST(Probes, DoNotSeeLampsBehindWalls) {

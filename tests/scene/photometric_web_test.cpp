@@ -13,8 +13,8 @@
 namespace interflect {
 namespace {
 
+using std::numbers::pi;
 using testing::HasSubstr;
-constexpr double pi = std::numbers::pi;
 
 PhotometricWeb web_of(const std::vector<float>& polar, const std::vector<float>& azimuth,
                       const std::function<float(float, float)>& intensity) {

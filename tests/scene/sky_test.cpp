@@ -15,7 +15,7 @@
 namespace interflect {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// By the trapezoidal rule in both angles; the library uses another rule.
 double integral(const SkyModel& model, double sun_zenith) {

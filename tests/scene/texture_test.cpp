@@ -64,14 +64,14 @@ TEST(Lightmap, HasNoFaultsWhereAllVerticesOfAPatchOrNoneHaveCoordinates) {
     EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
 }
 
-struct FaultCase {
+struct TextureFault {
     const char* name;
     std::function<void(Scene&)> make;
     const char* message;
 };
-std::ostream& operator<<(std::ostream& out, const FaultCase& fault) { return out << fault.name; }
+std::ostream& operator<<(std::ostream& out, const TextureFault& fault) { return out << fault.name; }
 
-class TextureFaults : public testing::TestWithParam<FaultCase> {};
+class TextureFaults : public testing::TestWithParam<TextureFault> {};
 
 TEST_P(TextureFaults, AreFoundAndNamed) {
     Scene scene = textured_scene();
@@ -84,55 +84,59 @@ TEST_P(TextureFaults, AreFoundAndNamed) {
 INSTANTIATE_TEST_SUITE_P(
     All, TextureFaults,
     testing::Values(
-        FaultCase{"NoSize", [](Scene& s) { s.textures[0].width = 0; }, "texture 'numbers.png' has 0 x 2 texels"},
-        FaultCase{"TooWide", [](Scene& s) { s.textures[0].width = max_texels_of_side + 1; },
-                  "expected 1 to 16384 a side"},
-        FaultCase{"TexelsMissing", [](Scene& s) { s.textures[0].texels.pop_back(); }, "of 3 x 2 texels holds 5"},
-        FaultCase{"NegativeTexel", [](Scene& s) { s.textures[0].texels[4].z = -1; },
-                  "1 from the left and 1 from the top"},
-        FaultCase{"InfiniteTexel", [](Scene& s) { s.textures[0].texels[0].x = std::numeric_limits<float>::infinity(); },
-                  "not finite"},
-        FaultCase{"NoSuchTexture", [](Scene& s) { s.materials[0].exitance_texture = 1; }, "texture 1 does not exist"},
-        FaultCase{"ReflectsTooMuch", [](Scene& s) { s.materials[0].reflectance = Rgb(0.2f); },
-                  "reflectance times its texture is up to (1.2"},
-        FaultCase{"LetsTooMuchThrough",
-                  [](Scene& s) {
-                      s.materials[0].transmittance = Rgb(0.1f);
-                      s.materials[0].transmittance_texture = 0;
-                  },
-                  "times their textures, are up to (1.2"},
-        FaultCase{"NoSuchTransmittance", [](Scene& s) { s.materials[0].transmittance_texture = 7; },
-                  "texture 7 does not exist"},
-        FaultCase{"EmitsTooMuch", [](Scene& s) { s.materials[0].exitance = Rgb(2e9f); }, "times its texture: exitance"},
-        FaultCase{"TooDark", [](Scene& s) { s.textures[0].texels.assign(6, Rgb(1e-10f)); }, "emits only 1e-10 lm/m2"},
-        FaultCase{"NoCoordinates", [](Scene& s) { s.texture_coordinates.clear(); },
-                  "patch 0 has a texture, but no texture coordinates"},
-        FaultCase{"CoordinatesMissing", [](Scene& s) { s.texture_coordinates.pop_back(); },
-                  "4 vertices, but 3 texture coordinates"},
-        FaultCase{"CoordinateNotANumber", [](Scene& s) { s.texture_coordinates[2].x = not_a_number; },
-                  "vertex 2 has the texture coordinates (nan"},
-        FaultCase{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; },
-                  "expected numbers up to 4096"},
-        FaultCase{"LightmapCoordinatesMissing",
-                  [](Scene& s) {
-                      s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1}};
-                  },
-                  "4 vertices, but 3 lightmap coordinates"},
-        FaultCase{"LightmapCoordinateOutside",
-                  [](Scene& s) {
-                      s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1.001f}, {0, 1}};
-                  },
-                  "vertex 2 has the lightmap coordinates (1, 1.001)"},
-        FaultCase{"HalfALightmapCoordinate",
-                  [](Scene& s) {
-                      s.lightmap_coordinates = {{0, 0}, {not_a_number, 0}, {1, 1}, {0, 1}};
-                  },
-                  "vertex 1 has the lightmap coordinates (nan"},
-        FaultCase{"LightmapCoordinatesOfSomeVertices",
-                  [](Scene& s) {
-                      s.lightmap_coordinates = {{0, 0}, {1, 0}, V2f(not_a_number), {0, 1}};
-                  },
-                  "patch 0 has lightmap coordinates at some of its vertices only"}),
+        TextureFault{"NoSize", [](Scene& s) { s.textures[0].width = 0; }, "texture 'numbers.png' has 0 x 2 texels"},
+        TextureFault{"TooWide", [](Scene& s) { s.textures[0].width = max_texels_of_side + 1; },
+                     "expected 1 to 16384 a side"},
+        TextureFault{"TexelsMissing", [](Scene& s) { s.textures[0].texels.pop_back(); }, "of 3 x 2 texels holds 5"},
+        TextureFault{"NegativeTexel", [](Scene& s) { s.textures[0].texels[4].z = -1; },
+                     "1 from the left and 1 from the top"},
+        TextureFault{"InfiniteTexel",
+                     [](Scene& s) { s.textures[0].texels[0].x = std::numeric_limits<float>::infinity(); },
+                     "not finite"},
+        TextureFault{"NoSuchTexture", [](Scene& s) { s.materials[0].exitance_texture = 1; },
+                     "texture 1 does not exist"},
+        TextureFault{"ReflectsTooMuch", [](Scene& s) { s.materials[0].reflectance = Rgb(0.2f); },
+                     "reflectance times its texture is up to (1.2"},
+        TextureFault{"LetsTooMuchThrough",
+                     [](Scene& s) {
+                         s.materials[0].transmittance = Rgb(0.1f);
+                         s.materials[0].transmittance_texture = 0;
+                     },
+                     "times their textures, are up to (1.2"},
+        TextureFault{"NoSuchTransmittance", [](Scene& s) { s.materials[0].transmittance_texture = 7; },
+                     "texture 7 does not exist"},
+        TextureFault{"EmitsTooMuch", [](Scene& s) { s.materials[0].exitance = Rgb(2e9f); },
+                     "times its texture: exitance"},
+        TextureFault{"TooDark", [](Scene& s) { s.textures[0].texels.assign(6, Rgb(1e-10f)); },
+                     "emits only 1e-10 lm/m2"},
+        TextureFault{"NoCoordinates", [](Scene& s) { s.texture_coordinates.clear(); },
+                     "patch 0 has a texture, but no texture coordinates"},
+        TextureFault{"CoordinatesMissing", [](Scene& s) { s.texture_coordinates.pop_back(); },
+                     "4 vertices, but 3 texture coordinates"},
+        TextureFault{"CoordinateNotANumber", [](Scene& s) { s.texture_coordinates[2].x = not_a_number; },
+                     "vertex 2 has the texture coordinates (nan"},
+        TextureFault{"CoordinateTooFar", [](Scene& s) { s.texture_coordinates[1].y = 5000; },
+                     "expected numbers up to 4096"},
+        TextureFault{"LightmapCoordinatesMissing",
+                     [](Scene& s) {
+                         s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1}};
+                     },
+                     "4 vertices, but 3 lightmap coordinates"},
+        TextureFault{"LightmapCoordinateOutside",
+                     [](Scene& s) {
+                         s.lightmap_coordinates = {{0, 0}, {1, 0}, {1, 1.001f}, {0, 1}};
+                     },
+                     "vertex 2 has the lightmap coordinates (1, 1.001)"},
+        TextureFault{"HalfALightmapCoordinate",
+                     [](Scene& s) {
+                         s.lightmap_coordinates = {{0, 0}, {not_a_number, 0}, {1, 1}, {0, 1}};
+                     },
+                     "vertex 1 has the lightmap coordinates (nan"},
+        TextureFault{"LightmapCoordinatesOfSomeVertices",
+                     [](Scene& s) {
+                         s.lightmap_coordinates = {{0, 0}, {1, 0}, V2f(not_a_number), {0, 1}};
+                     },
+                     "patch 0 has lightmap coordinates at some of its vertices only"}),
     testing::PrintToStringParamName());
 
 /// Reflectance and transmittance are added texel by texel if the textures have the same size.

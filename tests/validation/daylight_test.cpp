@@ -23,7 +23,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double outside = 10'000;  // horizontal illuminance of the sky [lx]
 constexpr float transmittance = 0.7f, ground_reflectance = 0.3f;
 const V3d sun(-1, 0.3, 0.8);  // beside the window; only scattered light of the sky

@@ -20,7 +20,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double float_rounding = 2e-5;  // relative, for single precision
 
 /// A black plate without influence, because a scene needs faces.
@@ -184,7 +184,7 @@ struct LampOverFloor {
     }
 };
 
-struct Place {
+struct LitPlace {
     V3d position, normal;
     std::string text() const {
         return normal.z > 0 ? fmt::format("E of the floor at ({:g}, {:g}) m [lx]", position.x, position.y)
@@ -192,10 +192,10 @@ struct Place {
     }
 };
 
-void check_lamp(const Placement& placement, int n, const std::vector<Place>& places) {
+void check_lamp(const Placement& placement, int n, const std::vector<LitPlace>& places) {
     const Scene scene = placement.scene(LampOverFloor::scene(n));
     std::vector<MeasuringPoint> points;
-    for (const Place& p : places) points.push_back(placement.measuring_point(p.position, p.normal));
+    for (const LitPlace& p : places) points.push_back(placement.measuring_point(p.position, p.normal));
     const auto found = measured(scene, points, 1000, 8192);
     const std::string name = fmt::format("1 m × 1.5 m lamp of {}, {}", n == 1 ? "one face" : "9 faces", placement.name);
     for (std::size_t i = 0; i < places.size(); ++i)
@@ -208,7 +208,7 @@ void check_lamp(const Placement& placement, int n, const std::vector<Place>& pla
 
 TEST(AreaSource, OverAFloorAndBesideAWall) {
     const V3d up(0, 0, 1), across(1, 0, 0);
-    const std::vector<Place> places{
+    const std::vector<LitPlace> places{
         {{1.5, 2.75, 0}, up}, {{1, 2, 0}, up}, {{5, 4, 0}, up}, {{0, 2.75, 1}, across}, {{0, 5, 1.9}, across}};
     check_lamp(placements[0], 1, places);
     check_lamp(placements[1], 3, {places[1], places[3]});

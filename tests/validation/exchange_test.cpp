@@ -49,7 +49,7 @@ TEST(FormFactor, IsTheLightThatIsExchanged) {
 
 /// A floor of 2 x 2 m that reflects 0.8 of 1000 lx from a vertical sun, with a black wall beside it and a black ceiling
 /// over it. The ceiling has no back, so the sun shines through it.
-struct LitFloor {
+struct FloorLitByFace {
     static constexpr double radiosity = 800;
     static Rectangle floor() { return {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}; }
     static Rectangle wall() { return {{0, 0, 0}, {0, 2, 0}, {0, 0, 2.5}}; }
@@ -77,7 +77,7 @@ struct LitFloor {
 };
 
 TEST(Reflection, OfALitFloor) {
-    const Scene scene = LitFloor::scene(false);
+    const Scene scene = FloorLitByFace::scene(false);
     const std::vector<std::pair<V3d, V3d>> places{{{0, 1, 0.25}, {1, 0, 0}},
                                                   {{0, 0.3, 1.5}, {1, 0, 0}},
                                                   {{1, 1, 2.5}, {0, 0, -1}},
@@ -90,23 +90,25 @@ TEST(Reflection, OfALitFloor) {
         check("reflection", "floor of rho = 0.8 in the sun",
               normal.z < 0 ? fmt::format("E of the ceiling at ({:g}, {:g}) m [lx]", p.x, p.y)
                            : fmt::format("E of the wall at ({:g}, {:g}) m [lx]", p.y, p.z),
-              LitFloor::illuminance(p, normal, 0, 2), found[i], 1e-3);
+              FloorLitByFace::illuminance(p, normal, 0, 2), found[i], 1e-3);
     }
     check("reflection", "floor of rho = 0.8 in the sun", "mean E of the wall, as solved [lx]",
-          LitFloor::radiosity * form_factor(LitFloor::wall(), LitFloor::floor()), solved(scene, 1, 1), 1e-3);
+          FloorLitByFace::radiosity * form_factor(FloorLitByFace::wall(), FloorLitByFace::floor()), solved(scene, 1, 1),
+          1e-3);
     check("reflection", "floor of rho = 0.8 in the sun", "mean E of the ceiling, as solved [lx]",
-          LitFloor::radiosity * form_factor(LitFloor::ceiling(), LitFloor::floor()), solved(scene, 2, 1), 1e-3);
+          FloorLitByFace::radiosity * form_factor(FloorLitByFace::ceiling(), FloorLitByFace::floor()),
+          solved(scene, 2, 1), 1e-3);
 }
 
 TEST(Reflection, IsHiddenByAScreen) {
     const std::vector<V3d> places{{0, 1, 0.2}, {0, 1, 1}, {0, 0.5, 2.2}};
     std::vector<MeasuringPoint> points;
     for (const V3d& p : places) points.push_back({p, {1, 0, 0}});
-    const auto found = measured(LitFloor::scene(true), points, 20'000, 4096);
+    const auto found = measured(FloorLitByFace::scene(true), points, 20'000, 4096);
     for (std::size_t i = 0; i < places.size(); ++i) {
         const V3d& p = places[i];
-        double expected = LitFloor::illuminance(p, {1, 0, 0}, 0, 0.6);
-        if (p.z > 0.5) expected += LitFloor::illuminance(p, {1, 0, 0}, 0.6 * p.z / (p.z - 0.5), 2);
+        double expected = FloorLitByFace::illuminance(p, {1, 0, 0}, 0, 0.6);
+        if (p.z > 0.5) expected += FloorLitByFace::illuminance(p, {1, 0, 0}, 0.6 * p.z / (p.z - 0.5), 2);
         check("reflection", "the same behind a screen", fmt::format("E of the wall at ({:g}, {:g}) m [lx]", p.y, p.z),
               expected, found[i], 1e-3);
     }

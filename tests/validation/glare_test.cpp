@@ -21,7 +21,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// CIE 117:1995, position indices of T/R = 0, straight above the line of sight. The library uses the fit of Levin 1975,
 /// which deviates there by up to a few per cent from the table.

@@ -21,7 +21,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// Upper limit of the share of its initial light that a pass leaves unshot.
 constexpr double unshot = 1e-3;
 

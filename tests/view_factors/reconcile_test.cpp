@@ -18,7 +18,7 @@ namespace {
 
 using namespace testing_support;
 
-const Material black{.name = "black"};
+const Material absorbing{.name = "black"};
 
 /// A dense matrix of factors with standard errors; without sky, ground and blocked.
 ViewFactors dense(const std::vector<double>& areas, const std::vector<std::vector<float>>& values,
@@ -76,7 +76,7 @@ TEST(Reconcile, KeepsFactorsNonNegative) {
 }
 
 TEST(Reconcile, EnforcesBothLaws) {
-    const Scene scene = closed_box({2, 3, 1}, 3, {black});
+    const Scene scene = closed_box({2, 3, 1}, 3, {absorbing});
     const RayCaster ray_caster(scene);
     ViewFactors f = view_factors(scene, ray_caster, facet_groups(scene), {54 << 10});
     const ViewFactors estimate = f;
@@ -98,7 +98,7 @@ TEST(Reconcile, EnforcesBothLaws) {
 }
 
 TEST(Reconcile, IncludesSkyAndBlockedInClosure) {
-    Scene scene = closed_box({1, 1, 1}, 2, {black});
+    Scene scene = closed_box({1, 1, 1}, 2, {absorbing});
     scene.objects = {"", "walls"};
     for (std::uint32_t p = 0; p < 20; ++p) scene.patches[p].object = 1;  // the ceiling is open
     scene.patches.resize(20);
@@ -114,7 +114,7 @@ TEST(Reconcile, IncludesSkyAndBlockedInClosure) {
 }
 
 TEST(Reconcile, StopsOnRequestWithoutAChange) {
-    const Scene scene = closed_box({2, 3, 1}, 2, {black});
+    const Scene scene = closed_box({2, 3, 1}, 2, {absorbing});
     ViewFactors f = view_factors(scene, RayCaster(scene), facet_groups(scene), {24 << 10});
     const ViewFactors estimate = f;
     const std::atomic<bool> stop = true;

@@ -263,7 +263,7 @@ TEST(ViewFactors, DependOnTheSeedAlone) {
     EXPECT_NE(a.values, c.values);
 }
 
-std::string fault_of(const std::vector<FaceGroup>& groups, std::int64_t rays = 1024) {
+std::string fault_of_groups(const std::vector<FaceGroup>& groups, std::int64_t rays = 1024) {
     const Scene scene = opposite_squares();
     try {
         view_factors(scene, RayCaster(scene), groups, {rays});
@@ -274,13 +274,13 @@ std::string fault_of(const std::vector<FaceGroup>& groups, std::int64_t rays = 1
 }
 
 TEST(ViewFactors, RefuseFaultyGroups) {
-    EXPECT_THAT(fault_of({{"a", {PatchIndex(0)}}, {"b", {PatchIndex(1), PatchIndex(0)}}}),
+    EXPECT_THAT(fault_of_groups({{"a", {PatchIndex(0)}}, {"b", {PatchIndex(1), PatchIndex(0)}}}),
                 HasSubstr("patch 0 belongs to the groups 'a' and 'b'"));
-    EXPECT_THAT(fault_of({{"a", {PatchIndex(0), PatchIndex(0)}}}),
+    EXPECT_THAT(fault_of_groups({{"a", {PatchIndex(0), PatchIndex(0)}}}),
                 HasSubstr("patch 0 belongs to the groups 'a' and 'a'"));
-    EXPECT_THAT(fault_of({{"a", {PatchIndex(2)}}}), HasSubstr("group 'a' has patch 2; the scene has 2 patches"));
-    EXPECT_THAT(fault_of({}), HasSubstr("expected at least one group of faces"));
-    EXPECT_THAT(fault_of({{"a", {PatchIndex(0)}}}, 0), HasSubstr("rays: expected a positive number, found 0"));
+    EXPECT_THAT(fault_of_groups({{"a", {PatchIndex(2)}}}), HasSubstr("group 'a' has patch 2; the scene has 2 patches"));
+    EXPECT_THAT(fault_of_groups({}), HasSubstr("expected at least one group of faces"));
+    EXPECT_THAT(fault_of_groups({{"a", {PatchIndex(0)}}}, 0), HasSubstr("rays: expected a positive number, found 0"));
 }
 
 TEST(ViewFactors, StopOnRequest) {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -123,12 +124,17 @@ Scene room_with(Sources sources) {
     return {};
 }
 
-/// One case for each class of iterations: each opening of such a run makes the tables of its sky anew.
-bool keeps_outdoor_light_its_own_way(std::string_view name) {
-    constexpr std::array<std::string_view, 8> names = {"srr",         "ihsrr",       "ihsrr_one_bounce",
-                                                       "ihwdrs",      "random_walk", "random_walk_with_importance",
-                                                       "photon_mesh", "pr"};
+bool is_one_of(std::string_view name, std::initializer_list<std::string_view> names) {
     return std::find(names.begin(), names.end(), name) != names.end();
+}
+/// One case for each class of iterations.
+bool keeps_light_its_own_way(std::string_view name) {
+    return is_one_of(name, {"srr", "hsrr", "ihsrr", "ihsrr_one_bounce", "ihwdrs", "random_walk",
+                            "random_walk_with_importance", "photon_mesh", "pr"});
+}
+/// Few cases, because each opening of such a run makes the tables of its sky anew.
+bool has_outdoor_light(std::string_view name) {
+    return is_one_of(name, {"srr", "ihsrr", "random_walk_with_importance", "photon_mesh"});
 }
 
 std::vector<Case> cases() {
@@ -136,7 +142,7 @@ std::vector<Case> cases() {
     const auto add = [&](const std::string& name, const std::string& method, const auto& change) {
         SolveOptions options{.method = find_method(method)};
         if (options.method.importance != ImportanceUse::off) options.views = {{into_the_room}};
-        options.limits.rays = 60'000;
+        options.limits.rays = 30'000;
         options.importance.camera_rays = 2000;
         change(options);
         all.push_back({name, options});
@@ -174,9 +180,10 @@ std::vector<Case> cases() {
     for (std::size_t i = 0; i < with_a_lamp; ++i) {
         const Case c = all[i];
         const Method method = c.options.method;
+        if (!keeps_light_its_own_way(c.name)) continue;
         all.push_back({c.name + "_images", c.options, Sources::images});
         if (!method.takes_luminaires) continue;
-        if (keeps_outdoor_light_its_own_way(c.name)) all.push_back({c.name + "_outdoors", c.options, Sources::outdoor});
+        if (has_outdoor_light(c.name)) all.push_back({c.name + "_outdoors", c.options, Sources::outdoor});
         if (method.separates_groups) all.push_back({c.name + "_lights", c.options, Sources::luminaires});
     }
     return all;

@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A file with a triangle and a light in a node that is turned by a quarter about x: -z of the node is +y.
 GltfBuilder file_with_light(const json& light) {

@@ -26,7 +26,7 @@ namespace {
 using namespace testing_support;
 using testing::HasSubstr;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 const std::string face = "v a =\n p 0 0 0\nv b =\n p 1 0 0\nv d =\n p 1 1 0\nf a b d\n";  // 7 lines
 const std::string sunlight = "v up =\n n 0 0 1\nv s =\n n -0.6 0 -0.8\n";  // the sun is in the east, 53.13 degrees high
 

@@ -30,7 +30,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A black plate that hides a hundred-thousandth of the sphere from the origin.
 Scene under(const std::vector<Luminaire>& luminaires) {

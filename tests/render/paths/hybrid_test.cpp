@@ -31,9 +31,9 @@ namespace {
 
 using namespace testing_support;
 
-constexpr float pi = std::numbers::pi_v<float>;
+using std::numbers::pi;
 
-double mean_of(const Image& image) {
+double mean_radiance(const Image& image) {
     double sum = 0;
     for (const Rgb& pixel : image.pixels) sum += channel_sum(RgbD(pixel)) / 3;
     return sum / static_cast<double>(image.pixels.size());
@@ -73,7 +73,7 @@ Scene room() {
     add_box(scene, {0.1f, 0.1f, 0}, {0.9f, 0.7f, 0.8f}, add_material(scene, {0.5f, 0.35f, 0.2f}, Rgb(0)));
     return scene;
 }
-const View into_corner{"corner", {3.6, 2.7, 1.6}, {0.4, 0.3, 0.5}, {0, 0, 1}, 60};
+const View into_boxes{"corner", {3.6, 2.7, 1.6}, {0.4, 0.3, 0.5}, {0, 0, 1}, 60};
 
 /// Faces down; black above. Without a back, path tracing would see the floor through the lamp from the ceiling, but
 /// light from the floor would not reach the ceiling.
@@ -102,7 +102,7 @@ Scene court(decltype(Luminaire::kind) sky) {
 struct LitScene {
     std::string name;
     Scene scene;
-    View view = into_corner;
+    View view = into_boxes;
 };
 void PrintTo(const LitScene& lit, std::ostream* out) { *out << lit.name; }
 
@@ -159,16 +159,16 @@ TEST_P(HybridScene, HasTheMeanOfPathTracing) {
         solving.seed = options.seed;
         const Solution solution = solve(scene, ray_caster, solving);
         const Rendering hybrid = render(scene, solution, ray_caster, GetParam().view, by(Shading::hybrid, options));
-        direct += mean_of(hybrid.layers.reflected.direct) / seeds;
-        indirect += mean_of(hybrid.layers.reflected.indirect) / seeds;
+        direct += mean_radiance(hybrid.layers.reflected.direct) / seeds;
+        indirect += mean_radiance(hybrid.layers.reflected.indirect) / seeds;
         EXPECT_EQ(hybrid.non_finite_pixels, 0);
     }
     const SampledLight& expected = reference.layers.reflected;
     const auto tolerance = [](double of_seed) {
         return bias + quantile * std::hypot(of_seed / std::sqrt(static_cast<double>(seeds)), path_error);
     };
-    EXPECT_NEAR(direct / mean_of(expected.direct), 1, tolerance(direct_error));
-    EXPECT_NEAR(indirect / mean_of(expected.indirect), 1, tolerance(indirect_error));
+    EXPECT_NEAR(direct / mean_radiance(expected.direct), 1, tolerance(direct_error));
+    EXPECT_NEAR(indirect / mean_radiance(expected.indirect), 1, tolerance(indirect_error));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, HybridScene, testing::ValuesIn(lit_scenes()), testing::PrintToStringParamName());
@@ -182,7 +182,7 @@ TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
     const Solution solution = solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = 1'000'000}});
     PictureOptions options{.width = 40, .height = 30, .samples = 16, .quantity = PictureQuantity::irradiance};
     for (options.seed = 1; options.seed <= 4; ++options.seed) {
-        const Rendering hybrid = render(scene, solution, ray_caster, into_corner, by(Shading::hybrid, options));
+        const Rendering hybrid = render(scene, solution, ray_caster, into_boxes, by(Shading::hybrid, options));
         double squares = 0;
         for (const Rgb& direct : hybrid.layers.reflected.direct.pixels) EXPECT_NEAR(direct.x, 40, 0.1);
         for (const Rgb& indirect : hybrid.layers.reflected.indirect.pixels) {
@@ -190,7 +190,7 @@ TEST(Hybrid, FindsTheIndirectLightOfAFurnace) {
             squares += std::pow(static_cast<double>(indirect.x) / 60 - 1, 2);
         }
         EXPECT_LT(std::sqrt(squares / static_cast<double>(hybrid.image.pixels.size())), 0.0115);
-        EXPECT_NEAR(mean_of(hybrid.layers.reflected.indirect), 60, 0.3);
+        EXPECT_NEAR(mean_radiance(hybrid.layers.reflected.indirect), 60, 0.3);
     }
 }
 
@@ -381,7 +381,7 @@ TEST(Hybrid, StatesTheErrorOfASmallLampRelativeToTheLamp) {
     const Solution solution = solve(scene, ray_caster, {.limits = {.rays = 100'000}});
     const View view{"lamp", {0.5, 1.5, 1.25}, {4, 1.5, 1.25}, {0, 0, 1}, 60};
     const Rendering seen = render(scene, solution, ray_caster, view, {.width = 33, .height = 33, .samples = 16});
-    EXPECT_GT(mean_of(seen.image), 1.2 * 10 / std::numbers::pi);
+    EXPECT_GT(mean_radiance(seen.image), 1.2 * 10 / std::numbers::pi);
     // At most one of 33 x 33 pixels misses the whole light of the lamp, relative to its mean over nine.
     EXPECT_LT(seen.relative_error, 9.0 / 33);
 }
@@ -402,7 +402,7 @@ TEST(Hybrid, HasNoNoiseInDirectLightWithoutShadows) {
         EXPECT_LT(few.layers.reflected.direct_variance[i], std::pow(0.02f * few.image.pixels[i].x, 2.0f));
         EXPECT_NEAR(few.layers.reflected.direct.pixels[i].x / many.layers.reflected.direct.pixels[i].x, 1, 0.1);
     }
-    EXPECT_NEAR(mean_of(few.layers.reflected.direct) / mean_of(many.layers.reflected.direct), 1, 0.003);
+    EXPECT_NEAR(mean_radiance(few.layers.reflected.direct) / mean_radiance(many.layers.reflected.direct), 1, 0.003);
 }
 
 TEST(Hybrid, SameSeedSameBits) {
@@ -411,8 +411,8 @@ TEST(Hybrid, SameSeedSameBits) {
     const RayCaster ray_caster(scene);
     const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 100'000}});
     const PictureOptions options{.width = 80, .height = 60, .samples = 16};
-    const Rendering a = render(scene, solution, ray_caster, into_corner, by(Shading::hybrid, options));
-    const Rendering b = render(scene, solution, ray_caster, into_corner, by(Shading::hybrid, options));
+    const Rendering a = render(scene, solution, ray_caster, into_boxes, by(Shading::hybrid, options));
+    const Rendering b = render(scene, solution, ray_caster, into_boxes, by(Shading::hybrid, options));
     EXPECT_EQ(a.image.pixels, b.image.pixels);
 }
 

@@ -39,7 +39,7 @@ using testing_support::Rectangle;
 using testing_support::t_test;
 using testing_support::V3d;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Pictures {
     std::vector<Rendering> runs;

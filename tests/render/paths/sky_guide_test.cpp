@@ -24,7 +24,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr float room_height = 3;
 constexpr float half_x = 0.5f, half_y = 0.25f;  // of the window
 

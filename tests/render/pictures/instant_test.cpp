@@ -34,7 +34,7 @@ using testing_support::closed_box;
 using testing_support::false_alarm;
 using testing_support::t_test;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 const View corner{"corner", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2.8f), V3f(0, 0, 1), 80};
 

@@ -23,7 +23,7 @@ using testing_support::add_rectangle;
 const Rgb black(0, 0, 0);
 
 /// From (0, -1, 0) towards +y; at the plane y = 0 the picture is 2 high.
-const View view{"plane", V3f(0, -1, 0), V3f(0, 0, 0), V3f(0, 0, 1), 90};
+const View plane_view{"plane", V3f(0, -1, 0), V3f(0, 0, 0), V3f(0, 0, 1), 90};
 
 /// A square of 2 x 2 leaves that fills the left half of a picture twice as wide as high; the other half is empty.
 struct HalfPicture {
@@ -39,7 +39,7 @@ struct HalfPicture {
     }
     QuantityPicture picture(const std::vector<float>& values, Spacing spacing = Spacing::linear,
                             CameraSampling sampling = {.width = 4, .height = 2}) const {
-        return render_quantity(scene, forest, ray_caster, view, {"level", "", values, spacing}, sampling);
+        return render_quantity(scene, forest, ray_caster, plane_view, {"level", "", values, spacing}, sampling);
     }
 };
 
@@ -121,7 +121,7 @@ TEST(QuantityPicture, HasTheQuantityOfASolution) {
     options.height = 2;
     options.samples = 1;
     const auto drawn = [&](ElementQuantity quantity) {
-        return draw_quantity(scene, solution, ray_caster, view, quantity, options).values.pixels;
+        return draw_quantity(scene, solution, ray_caster, plane_view, quantity, options).values.pixels;
     };
     EXPECT_EQ(drawn(ElementQuantity::irradiance),
               (std::vector{Rgb(3), Rgb(4), black, black, Rgb(1), Rgb(2), black, black}));

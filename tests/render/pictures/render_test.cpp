@@ -24,9 +24,9 @@ namespace {
 using testing_support::add_material;
 using testing_support::add_rectangle;
 
-constexpr float pi = std::numbers::pi_v<float>;
+constexpr auto float_pi = std::numbers::pi_v<float>;
 const Rgb reflectance(0.5f, 0.25f, 0.125f), exitance(3, 2, 1), irradiance(10, 20, 40);
-const Rgb luminance_of_quad = (exitance + reflectance * irradiance) / pi;
+const Rgb luminance_of_quad = (exitance + reflectance * irradiance) / float_pi;
 
 /// From (0, -1, 0) towards +y; at the plane y = 0 the picture is 2 high.
 View view_of_plane() { return {"plane", V3f(0, -1, 0), V3f(0, 0, 0), V3f(0, 0, 1), 90}; }
@@ -108,15 +108,16 @@ TEST(Render, FlatShadingShowsTheLeafThatWasHit) {
     for (int y = 0; y < 4; ++y)
         for (int x = 0; x < 4; ++x) {
             const Parameters centre{(static_cast<float>(x) + 0.5f) / 4, (3.5f - static_cast<float>(y)) / 4};
-            EXPECT_EQ(image.at(x, y), reflectance * h[forest.leaf_at(PatchIndex(0), centre)] / pi) << x << ", " << y;
+            EXPECT_EQ(image.at(x, y), reflectance * h[forest.leaf_at(PatchIndex(0), centre)] / float_pi)
+                << x << ", " << y;
         }
 }
 
 /// Red is at the upper left, green at the lower right, so flipped or mirrored pictures differ.
 TEST(Render, UpIsUpAndLeftIsLeft) {
     Scene scene;
-    add_facing(scene, -9, 0, 0, 9, add_material(scene, Rgb(0, 0, 0), Rgb(pi, 0, 0)));
-    add_facing(scene, 0, 9, -9, 0, add_material(scene, Rgb(0, 0, 0), Rgb(0, pi, 0)));
+    add_facing(scene, -9, 0, 0, 9, add_material(scene, Rgb(0, 0, 0), Rgb(float_pi, 0, 0)));
+    add_facing(scene, 0, 9, -9, 0, add_material(scene, Rgb(0, 0, 0), Rgb(0, float_pi, 0)));
     const Image image =
         picture(scene, {Rgb(0, 0, 0), Rgb(0, 0, 0)}, {.width = 2, .height = 2, .shading = Shading::smooth});
     EXPECT_EQ(image.at(0, 0), Rgb(1, 0, 0));
@@ -128,8 +129,8 @@ TEST(Render, UpIsUpAndLeftIsLeft) {
 /// Pixel 2 of a picture from -1 to 1 with a width of 4 pixels covers 0 to 0.5: an edge at 0.3 covers 60% of it.
 TEST(Render, EdgesAreSmoothedByCoverage) {
     Scene left, top;
-    add_facing(left, -9, 0.3f, -9, 9, add_material(left, Rgb(0, 0, 0), Rgb(pi, pi, pi)));
-    add_facing(top, -9, 9, -0.3f, 9, add_material(top, Rgb(0, 0, 0), Rgb(pi, pi, pi)));
+    add_facing(left, -9, 0.3f, -9, 9, add_material(left, Rgb(0, 0, 0), Rgb(float_pi, float_pi, float_pi)));
+    add_facing(top, -9, 9, -0.3f, 9, add_material(top, Rgb(0, 0, 0), Rgb(float_pi, float_pi, float_pi)));
     const PictureOptions options{.width = 4, .height = 4, .shading = Shading::smooth, .samples = 64};
     const Image upright = picture(left, {Rgb(0, 0, 0)}, options), level = picture(top, {Rgb(0, 0, 0)}, options);
     for (int i = 0; i < 4; ++i) {

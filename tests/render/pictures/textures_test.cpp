@@ -26,7 +26,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<double> means(const Scene& scene, const View& view, PictureOptions options, int runs) {
     const RayCaster ray_caster(scene);

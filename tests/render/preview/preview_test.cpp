@@ -23,8 +23,6 @@ namespace {
 
 using namespace testing_support;
 
-constexpr float pi = std::numbers::pi_v<float>;
-
 struct Lit {
     explicit Lit(Scene s, std::int64_t rays = 200'000)
         : scene(std::move(s)),
@@ -68,10 +66,11 @@ TEST(Preview, OfATexturedFurnaceIsUniform) {
     for (const int reduction : {1, 3, 8}) {
         const PictureOptions options{.width = 25 * reduction - 1, .height = 17 * reduction};
         const Image image = lit.preview(into_the_corner, options, reduction);
-        const double expected = static_cast<double>(channel_sum(radiosity) / pi);
+        const double expected = static_cast<double>(channel_sum(radiosity) / std::numbers::pi_v<float>);
         EXPECT_NEAR(sum_of(image) / static_cast<double>(image.pixels.size()) / expected, 1, 0.01) << reduction;
         for (const Rgb& pixel : image.pixels)
-            for (int c = 0; c < 3; ++c) ASSERT_NEAR(pixel[c] * pi / radiosity[c], 1, 0.15) << reduction;
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(pixel[c] * std::numbers::pi_v<float> / radiosity[c], 1, 0.15) << reduction;
     }
 }
 
@@ -158,7 +157,7 @@ TEST_P(PreviewOfARoom, HasSharpShadowsOfSuns) {
 /// The fine outline of a lamp, which the smaller picture cannot resolve.
 TEST(Preview, ShowsThinBars) {
     Scene scene = closed_box({2, 2, 2}, 1, {Material{.name = "wall", .reflectance = Rgb(0.5f)}});
-    const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(100 * pi));
+    const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(100 * std::numbers::pi_v<float>));
     add_rectangle(scene, {1.5f, 0.98f, 0.2f}, {0, 0, 1.6f}, {0, 0.04f, 0}, lamp);  // faces the camera
     const Lit lit(std::move(scene));
     const View view{"bar", {0.1, 1, 1}, {2, 1, 1}, {0, 0, 1}, 60};

@@ -27,7 +27,7 @@ using testing_support::add_material;
 using testing_support::add_rectangle;
 using testing_support::powers;
 
-const Rgb black(0, 0, 0), grey(0.5f, 0.5f, 0.5f), dark(0.1f, 0.2f, 0.3f), bright(4, 5, 6);
+const Rgb vertex_black(0, 0, 0), vertex_grey(0.5f, 0.5f, 0.5f), dark(0.1f, 0.2f, 0.3f), bright(4, 5, 6);
 constexpr std::size_t plenty = 1 << 16;  // elements
 
 void expect_near(const Rgb& found, const Rgb& expected, float tolerance = 1e-5f) {
@@ -39,7 +39,7 @@ void expect_near(const Rgb& found, const Rgb& expected, float tolerance = 1e-5f)
 Scene mixed_mesh() {
     constexpr std::uint32_t n = 3;
     Scene scene;
-    add_material(scene, grey, black);
+    add_material(scene, vertex_grey, vertex_black);
     const auto shift = [&] { return 0.4f * static_cast<float>(random_double(1, scene.vertices.size()) - 0.5); };
     for (std::uint32_t y = 0; y <= n; ++y)
         for (std::uint32_t x = 0; x <= n; ++x) {
@@ -141,7 +141,8 @@ TEST(SmoothField, IsContinuousWhateverTheLevels) {
 /// eighth of the right one: half of it by the hanging vertex in the middle, which must have the same value.
 TEST(SmoothField, AHangingVertexLiesOnTheLargeLeafsEdge) {
     Scene scene;
-    add_rectangle(scene, V3f(0, 0, 0), V3f(2, 0, 0), V3f(0, 1, 0), add_material(scene, grey, black), 2, 1);
+    add_rectangle(scene, V3f(0, 0, 0), V3f(2, 0, 0), V3f(0, 1, 0), add_material(scene, vertex_grey, vertex_black), 2,
+                  1);
     ElementForest forest(scene, plenty);
     forest.subdivide(ElementIndex(1));
     const ElementVertices vertices(scene, forest);
@@ -157,7 +158,7 @@ TEST(SmoothField, AHangingVertexLiesOnTheLargeLeafsEdge) {
 /// bilinear basis function, here by the midpoint rule (relative error below 1e-4).
 TEST(VertexValues, AreWeightedByIntegrals) {
     Scene scene;
-    add_material(scene, grey, black);
+    add_material(scene, vertex_grey, vertex_black);
     scene.vertices = {V3f(0, 0, 0), V3f(4, 0.5f, 0), V3f(3, 2, 0), V3f(-1, 3, 0)};
     scene.patches = {{.vertices = {0, 1, 2, 3}}};
     ElementForest forest(scene, plenty);
@@ -177,7 +178,7 @@ TEST(VertexValues, AreWeightedByIntegrals) {
             sum += basis * forest.geometry(PatchIndex(0)).jacobian(x);
         }
     for (std::uint32_t k = 0; k < 4; ++k) {
-        std::vector<Rgb> values(5, black);
+        std::vector<Rgb> values(5, vertex_black);
         values[1 + k] = bright;
         const auto share = static_cast<float>(integral[k] / sum);
         expect_near(vertex_values(forest, vertices, values)[centre], bright * share, 6e-4f);
@@ -245,7 +246,7 @@ Rgb linear_field(const V3f& x) { return Rgb(1, 2, 3) + Rgb(4, 0, 1) * x.x + Rgb(
 /// The leaves of a square and of its two halves, all divided equally, behave like a fine grid of patches.
 TEST(SmoothField, ReproducesALinearFieldInsideAnEvenMesh) {
     Scene square;
-    add_rectangle(square, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), add_material(square, grey, black));
+    add_rectangle(square, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), add_material(square, vertex_grey, vertex_black));
     Scene halves = square;
     const auto v = square.patches[0].vertices;
     halves.patches = {{.vertices = {v[0], v[1], v[2], none}}, {.vertices = {v[2], v[3], v[0], none}}};
@@ -276,8 +277,8 @@ struct Neighbours {
 
     Neighbours(float degrees, bool same_material) {
         const float angle = degrees * std::numbers::pi_v<float> / 180;
-        const std::uint32_t first = add_material(scene, grey, black);
-        const std::uint32_t second = same_material ? first : add_material(scene, grey, black);
+        const std::uint32_t first = add_material(scene, vertex_grey, vertex_black);
+        const std::uint32_t second = same_material ? first : add_material(scene, vertex_grey, vertex_black);
         add_rectangle(scene, V3f(-1, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), first);
         add_rectangle(scene, V3f(0, 0, 0), V3f(std::cos(angle), 0, std::sin(angle)), V3f(0, 1, 0), second);
         forest.emplace(scene, plenty);
@@ -315,7 +316,7 @@ TEST(SmoothField, ACreaseWhoseEndsAreSmoothIsStillACrease) {
     const float slope = std::tan(20 * std::numbers::pi_v<float> / 180), x = 0.5f * std::numbers::sqrt3_v<float>;
     const float z = -slope * x;
     Scene roof;
-    add_material(roof, grey, black);
+    add_material(roof, vertex_grey, vertex_black);
     roof.vertices = {V3f(0, 0, 0),     V3f(0, 1, 0),    V3f(-x, 1.5f, z), V3f(-x, -0.5f, z),
                      V3f(x, -0.5f, z), V3f(x, 1.5f, z), V3f(0, -1, z),    V3f(0, 2, z)};
     roof.patches = {{.vertices = {0, 1, 2, 3}},    {.vertices = {1, 0, 4, 5}},    {.vertices = {0, 3, 6, none}},

@@ -18,7 +18,7 @@ namespace {
 using testing_support::add_material;
 using testing_support::add_rectangle;
 
-const Rgb black(0, 0, 0), white(1, 1, 1), dark(0.1f, 0.2f, 0.3f), bright(4, 5, 6);
+const Rgb unlit(0, 0, 0), white(1, 1, 1), dark(0.1f, 0.2f, 0.3f), bright(4, 5, 6);
 
 Rgb linear_field(const V3f& x) { return Rgb(1, 2, 3) + Rgb(4, 0, 1) * x.x + Rgb(0, 5, 2) * x.y; }
 
@@ -35,7 +35,7 @@ void expect_near(const Rgb& found, const Rgb& expected) {
 /// n x n squares over the unit square of the plane z = 0, facing +z.
 Scene grid(int n, bool two_sided = false) {
     Scene scene;
-    add_rectangle(scene, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), add_material(scene, white * 0.5f, black), n, n,
+    add_rectangle(scene, V3f(0, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), add_material(scene, white * 0.5f, unlit), n, n,
                   two_sided);
     return scene;
 }
@@ -70,8 +70,8 @@ Scene unwelded(const Scene& scene) {
 /// Two unit squares that share the edge from (0, 0, 0) to (0, 1, 0); the second is turned up about it by `degrees`.
 Scene hinge(float degrees, bool same_material = true) {
     Scene scene;
-    const std::uint32_t first = add_material(scene, white * 0.5f, black);
-    const std::uint32_t second = same_material ? first : add_material(scene, white * 0.4f, black);
+    const std::uint32_t first = add_material(scene, white * 0.5f, unlit);
+    const std::uint32_t second = same_material ? first : add_material(scene, white * 0.4f, unlit);
     const float angle = degrees * 3.14159265f / 180;
     add_rectangle(scene, V3f(-1, 0, 0), V3f(1, 0, 0), V3f(0, 1, 0), first);
     add_rectangle(scene, V3f(0, 0, 0), V3f(std::cos(angle), 0, std::sin(angle)), V3f(0, 1, 0), second);

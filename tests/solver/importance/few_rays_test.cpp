@@ -21,10 +21,10 @@ namespace {
 
 using namespace testing_support;
 
-constexpr int runs = 16;
+constexpr int few_ray_runs = 16;
 
 /// A room of 1,500 patches with a lamp and three boxes; most are visible.
-Scene room() {
+Scene room_of_boxes() {
     Scene scene = closed_box({3, 2.4f, 2}, 16, {{"wall", Rgb(0.6f), Rgb(0)}});
     const std::uint32_t lamp = add_material(scene, Rgb(0.3f), Rgb(900)), box = add_material(scene, Rgb(0.4f), Rgb(0));
     add_rectangle(scene, {1.4f, 1, 1.95f}, {0, 0.4f, 0}, {0.4f, 0, 0}, lamp);
@@ -46,7 +46,7 @@ std::vector<double> squared_errors(const Scene& scene, const char* method, std::
     const RayCaster ray_caster(scene);
     const Solution exact = solve(scene, ray_caster, options_for("srr", 4'000'000, 99));  // 40 or more times the rays
     std::vector<double> errors;
-    for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    for (std::uint64_t seed = 1; seed <= few_ray_runs; ++seed) {
         const Solution solution = solve(scene, ray_caster, options_for(method, rays, seed));
         double sum = 0, mean = 0;
         for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
@@ -71,7 +71,7 @@ class FewRays : public testing::TestWithParam<Methods> {};
 // Correct code fails with a probability below 1e-3 if the squared errors differ by the rays for importance alone: then
 // the difference of the means of 16 errors exceeds 4 of its standard errors.
 TEST_P(FewRays, CostNoAccuracyWithImportance) {
-    const Scene scene = room();
+    const Scene scene = room_of_boxes();
     const std::vector<double> with_importance = squared_errors(scene, GetParam().with_importance, GetParam().rays),
                               without = squared_errors(scene, GetParam().without, GetParam().rays);
     const auto mean_of = [](const std::vector<double>& values) {

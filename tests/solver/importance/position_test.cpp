@@ -29,7 +29,7 @@ namespace {
 using namespace testing_support;
 using Imath::V3d;
 
-constexpr int runs = 12;
+constexpr int placed_runs = 12;
 
 /// Placement of the room: x -> scale * permuted(x, optionally mirrored in x) + offset.
 struct Placement {
@@ -117,11 +117,11 @@ struct Changes {
 Changes changes(const Placement& place) {
     static const std::vector<Measured> reference = [] {
         std::vector<Measured> all;
-        for (std::uint64_t seed = 1; seed <= runs; ++seed) all.push_back(measure({"as it is"}, 1000 + seed));
+        for (std::uint64_t seed = 1; seed <= placed_runs; ++seed) all.push_back(measure({"as it is"}, 1000 + seed));
         return all;
     }();
     Changes result;
-    for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    for (std::uint64_t seed = 1; seed <= placed_runs; ++seed) {
         const Measured m = measure(place, seed), &r = reference[seed - 1];
         result.absorbed.push_back(m.absorbed / r.absorbed - 1);
         result.seen.push_back(m.seen / r.seen - 1);
@@ -171,7 +171,7 @@ TEST_P(Position, DoesNotMatter) {
     EXPECT_GT(t_test(c.seen, 0), chance);
     EXPECT_LT(t_test(plus(c.absorbed, 0.01), 0), chance) << "1% more light would be noticed";
     EXPECT_LT(t_test(plus(c.seen, 0.06), 0), chance) << "6% more light in the view would be noticed";
-    EXPECT_NEAR(std::accumulate(c.absorbed.begin(), c.absorbed.end(), 0.0) / runs, 0, 0.003);
+    EXPECT_NEAR(std::accumulate(c.absorbed.begin(), c.absorbed.end(), 0.0) / placed_runs, 0, 0.003);
 }
 
 TEST(Position, IsKeptAsTheOriginOfTheScene) {

@@ -19,18 +19,18 @@ namespace {
 
 using namespace testing_support;
 
-constexpr float length = 6, width = 3, height = 2.5f, gap = 0.6f;  // [m]
-constexpr float last_chamber = 4;                                  // its lowest x [m]
+constexpr float length = 6, room_width = 3, room_height = 2.5f, gap = 0.6f;  // [m]
+constexpr float last_chamber = 4;                                            // its lowest x [m]
 
 /// Returns three chambers in a row, each with a lamp. Gaps at alternating ends connect them. Every rectangle is divided
 /// into n x n patches.
 Scene chambers(int n) {
-    Scene scene = closed_box({length, width, height}, n, {{"wall", Rgb(0.6f), Rgb(0)}});
+    Scene scene = closed_box({length, room_width, room_height}, n, {{"wall", Rgb(0.6f), Rgb(0)}});
     const std::uint32_t lamp = add_material(scene, Rgb(0), Rgb(100));
     const auto rectangle = [&](V3f corner, V3f u, V3f v, std::uint32_t material) {
         add_rectangle(scene, corner, u, v, material, n, n);
     };
-    const V3f across(0, width - gap, 0), up(0, 0, height), thick(0.1f, 0, 0);
+    const V3f across(0, room_width - gap, 0), up(0, 0, room_height), thick(0.1f, 0, 0);
     for (const bool at_the_front : {false, true}) {  // the gap
         const V3f corner(at_the_front ? 4.0f : 2.0f, at_the_front ? gap : 0, 0);
         rectangle(corner, up, across, 0);
@@ -40,7 +40,7 @@ Scene chambers(int n) {
         else
             rectangle(corner + across, up, thick, 0);
     }
-    for (const float x : {0.8f, 2.8f, 4.8f}) rectangle({x, 1.3f, height - 0.1f}, {0, 0.4f, 0}, {0.4f, 0, 0}, lamp);
+    for (const float x : {0.8f, 2.8f, 4.8f}) rectangle({x, 1.3f, room_height - 0.1f}, {0, 0.4f, 0}, {0.4f, 0, 0}, lamp);
     return scene;
 }
 
@@ -75,7 +75,7 @@ std::vector<double> in_cells(const Solution& s, int n) {
 }
 
 /// Errors relative to the reference.
-struct Errors {
+struct PictureErrors {
     double root_mean_square = 0, largest = 0;
 };
 
@@ -92,10 +92,10 @@ class Unseen : public testing::Test {
         }
     }
 
-    Errors errors(const char* method, int n) const {
+    PictureErrors errors(const char* method, int n) const {
         const Scene scene = chambers(n);
         const RayCaster ray_caster(scene);
-        Errors e;
+        PictureErrors e;
         double terms = 0;
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             const std::vector<double> values = in_cells(solve(scene, ray_caster, options_of(method, 300'000, seed)), n);
@@ -116,7 +116,7 @@ class Unseen : public testing::Test {
 };
 
 TEST_F(Unseen, RegionsAreCoarseWhereTheFlatMethodIsNoisy) {
-    const Errors hierarchical = errors("ihsrr", 1), flat = errors("isrr", cells);
+    const PictureErrors hierarchical = errors("ihsrr", 1), flat = errors("isrr", cells);
     RecordProperty("error of ihsrr", std::to_string(hierarchical.root_mean_square));
     RecordProperty("largest of ihsrr", std::to_string(hierarchical.largest));
     RecordProperty("error of isrr", std::to_string(flat.root_mean_square));

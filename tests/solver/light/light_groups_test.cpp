@@ -48,7 +48,7 @@ Scene lit_room() {
     return scene;
 }
 
-SolveOptions options_of(const std::string& method, std::int64_t rays = 400'000) {
+SolveOptions grouped_options(const std::string& method, std::int64_t rays = 400'000) {
     SolveOptions options{.method = find_method(method)};
     options.limits.rays = rays;
     options.importance.camera_rays = 1 << 13;
@@ -104,8 +104,8 @@ TEST_P(LightGroupsOf, SumToTheUngroupedSolution) {
     Scene together = grouped;
     together.light_groups.clear();
     const RayCaster ray_caster(grouped);
-    const Solution solution = solve(grouped, ray_caster, options_of(GetParam()));
-    const Solution expected = solve(together, ray_caster, options_of(GetParam()));
+    const Solution solution = solve(grouped, ray_caster, grouped_options(GetParam()));
+    const Solution expected = solve(together, ray_caster, grouped_options(GetParam()));
     ASSERT_EQ(solution.forest->subdivided(), expected.forest->subdivided());
     EXPECT_EQ(solution.irradiance, expected.irradiance);
     ASSERT_EQ(solution.groups.size(), 4u);
@@ -124,14 +124,14 @@ TEST_P(LightGroupsOf, SumToTheUngroupedSolution) {
 TEST_P(LightGroupsOf, AreWhatEachBringsAlone) {
     const Scene scene = lit_room();
     const RayCaster ray_caster(scene);
-    const Solution solution = solve(scene, ray_caster, options_of(GetParam(), 2'000'000));
+    const Solution solution = solve(scene, ray_caster, grouped_options(GetParam(), 2'000'000));
     const SourceGroups groups = source_groups(scene);
     for (std::size_t g = 0; g < groups.size(); ++g) {
         std::vector<float> only(groups.size(), 0);
         only[g] = 1;
         Scene alone = dimmed(scene, groups, only);
         alone.light_groups.clear();
-        const Solution expected = solve(alone, ray_caster, options_of(GetParam(), 2'000'000));
+        const Solution expected = solve(alone, ray_caster, grouped_options(GetParam(), 2'000'000));
         EXPECT_LT(difference(*solution.forest, solution.groups[g], expected.irradiance), 0.05) << groups.names[g];
     }
 }
@@ -139,14 +139,14 @@ TEST_P(LightGroupsOf, AreWhatEachBringsAlone) {
 TEST(Dimming, IsWhatSolvingTheDimmedSceneGives) {
     Scene scene = lit_room();
     const RayCaster ray_caster(scene);
-    Solution solution = solve(scene, ray_caster, options_of("hsrr", 2'000'000));
+    Solution solution = solve(scene, ray_caster, grouped_options("hsrr", 2'000'000));
     dim(scene, solution, "other", 0);
     dim(scene, solution, "blue", 0);  // dark groups remain groups
     dim(scene, solution, "red", 0.25f);
     dim(scene, solution, "torch", 3);
     Scene together = scene;
     together.light_groups.clear();
-    const Solution expected = solve(together, ray_caster, options_of("hsrr", 2'000'000));
+    const Solution expected = solve(together, ray_caster, grouped_options("hsrr", 2'000'000));
     EXPECT_LT(difference(*solution.forest, solution.irradiance, expected.irradiance), 0.02);
     EXPECT_THROW(dim(scene, solution, "green", 1), InputError);
     EXPECT_THROW(dim(scene, solution, "red", -1), InputError);
@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, ExitanceOf, testing::Values("hsrr", "ihsrr"), 
 
 /// Dims groups in the middle of a run, one to 0 and back. The result must be the solution of the dimmed scene.
 TEST_P(ExitanceOf, ChangesInTheMiddleOfARun) {
-    SolveOptions options = options_of(GetParam(), 4'000'000);
+    SolveOptions options = grouped_options(GetParam(), 4'000'000);
     Solver solver(lit_room(), options);
     solver.advance({.rays = 500'000});
     solver.set_dimming("blue", 0);
@@ -171,7 +171,7 @@ TEST_P(ExitanceOf, ChangesInTheMiddleOfARun) {
     const Scene& scene = solver.scene();
     Scene together = scene;
     together.light_groups.clear();
-    const Solution expected = solve(together, solver.ray_caster(), options_of(GetParam(), 4'000'000));
+    const Solution expected = solve(together, solver.ray_caster(), grouped_options(GetParam(), 4'000'000));
     EXPECT_LT(difference(*solver.solution().forest, solver.solution().irradiance, expected.irradiance), 0.025);
     EXPECT_NEAR(solver.solution().emitted_power.x / expected.emitted_power.x, 1, 1e-6);
     EXPECT_THROW(solver.set_dimming("green", 1), InputError);
@@ -179,7 +179,8 @@ TEST_P(ExitanceOf, ChangesInTheMiddleOfARun) {
 }
 
 TEST(LightGroups, AreRefusedByMethodsThatKeepLightTogether) {
-    for (const char* method : {"random-walk", "hr"}) EXPECT_THROW(Solver(lit_room(), options_of(method)), InputError);
+    for (const char* method : {"random-walk", "hr"})
+        EXPECT_THROW(Solver(lit_room(), grouped_options(method)), InputError);
 }
 
 }  // namespace

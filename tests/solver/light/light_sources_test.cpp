@@ -33,7 +33,7 @@ namespace {
 using namespace testing_support;
 
 constexpr int runs = 12;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Returns a floor of 10 x 10 patches, 4 m x 3 m, at a height of 0.5 m. It is grey, because importance is reflected.
 Scene open_floor(const Luminaire& luminaire) {

@@ -29,7 +29,7 @@ using namespace testing_support;
 using Imath::V3d;
 using Shape = LuminousOpening::Shape;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Returns a web without symmetry, with gaps of different widths, partly dark.
 std::shared_ptr<PhotometricWeb> uneven_web(PhotometricWeb::Pole pole = PhotometricWeb::Pole::nadir) {

@@ -24,7 +24,7 @@ namespace {
 
 using namespace testing_support;
 
-SolveOptions options_of(const char* method, std::int64_t rays, std::uint64_t seed) {
+SolveOptions reflection_options(const char* method, std::int64_t rays, std::uint64_t seed) {
     SolveOptions options{.method = find_method(method)};
     options.limits.rays = rays;
     options.seed = seed;
@@ -45,7 +45,7 @@ TEST(WhiteRoom, HasAllItsLightWhereverARunStops) {
     for (const char* method : {"hsrr", "srr"}) {
         std::vector<double> by_error, by_rays;
         for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-            Solver solver(scene, options_of(method, 10'000'000, seed));
+            Solver solver(scene, reflection_options(method, 10'000'000, seed));
             solver.advance({.rays = 60'000});
             by_rays.push_back(solver.solution().iterations.back().total_power.x);
             solver.advance({.until = 0.25});
@@ -84,12 +84,12 @@ TEST(UpLights, LightARoomAlikeOnAnyMesh) {
         return solve(scene, ray_caster, options).iterations.back().total_power.x;
     };
     // A finer initial mesh, on which the published method does not have this error, and many rays.
-    SolveOptions fine = options_of("hsrr", 4'000'000, 1);
+    SolveOptions fine = reflection_options("hsrr", 4'000'000, 1);
     fine.experimental.epsilon = 4e-10;
     const double reference = power(fine);
     std::vector<double> ratios;
     for (std::uint64_t seed = 1; seed <= runs; ++seed)
-        ratios.push_back(power(options_of("hsrr", 200'000, seed)) / reference);
+        ratios.push_back(power(reflection_options("hsrr", 200'000, seed)) / reference);
     EXPECT_GT(t_test(ratios, 1), false_alarm);
     EXPECT_LT(t_test(ratios, 1.01), false_alarm) << "would notice one percent";
 }
@@ -98,7 +98,7 @@ TEST(UpLights, AreResolvedOnHiddenSurfacesWhereNoImportanceIsFollowed) {
     const Scene scene = room_with_up_lights();
     const RayCaster ray_caster(scene);
     const auto hidden_leaves = [&](const char* method, ImportanceUse use, bool has_view) {
-        SolveOptions options = options_of(method, 1'000'000, 1);
+        SolveOptions options = reflection_options(method, 1'000'000, 1);
         options.method.importance = use;
         if (has_view) options.views = {{{"floor", {4.5f, 3.5f, 2}, {4.6f, 3.5f, 0}, {0, 1, 0}, 30}}};
         const Solution s = solve(scene, ray_caster, options);

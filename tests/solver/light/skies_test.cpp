@@ -25,7 +25,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int runs = 12;
 constexpr double integration_error = 2e-4;  // relative error of expected irradiances
 

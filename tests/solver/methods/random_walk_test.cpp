@@ -35,7 +35,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr std::uint64_t runs = 32;
+constexpr std::uint64_t walk_runs = 32;
 constexpr std::int64_t rays_per_run = 100'000;
 
 SolveOptions walk_options(ImportanceUse importance, std::uint64_t seed) {
@@ -53,7 +53,7 @@ struct Runs {
     template <class Options>
     Runs(const Scene& scene, const Options& options_of_seed) {
         const RayCaster ray_caster(scene);
-        for (std::uint64_t seed = 1; seed <= runs; ++seed)
+        for (std::uint64_t seed = 1; seed <= walk_runs; ++seed)
             solutions.push_back(solve(scene, ray_caster, options_of_seed(seed)));
     }
 
@@ -287,8 +287,8 @@ TEST(RandomWalk, IsLessNoisyWhereTheViewLooksIfImportanceLeadsItAndNoLessRight) 
     std::vector<double> led_means, free_means;
     for (const Picture& p : led) led_means.push_back(p.mean());
     for (const Picture& p : free) free_means.push_back(p.mean());
-    const double expected = std::accumulate(free_means.begin(), free_means.end(), 0.0) / runs;
-    const double its_error = std::sqrt(variance(free_means) / runs);
+    const double expected = std::accumulate(free_means.begin(), free_means.end(), 0.0) / walk_runs;
+    const double its_error = std::sqrt(variance(free_means) / walk_runs);
     EXPECT_GT(t_test(led_means, expected, its_error), false_alarm);
     EXPECT_LT(t_test(led_means, 1.03 * expected, its_error), false_alarm) << "would notice three percent";
 }

@@ -49,12 +49,12 @@ SolveOptions perceptual(const std::vector<WeightedView>& views = {view_of_patche
 }
 
 /// State with an irradiance of 1, equal importance of all surfaces, and no rays.
-struct Setting {
+struct Threshold {
     Scene scene;
     RayCaster ray_caster;
     SolverState state;
 
-    explicit Setting(Scene s = cube(), const SolveOptions& options = perceptual())
+    explicit Threshold(Scene s = cube(), const SolveOptions& options = perceptual())
         : scene(std::move(s)), ray_caster(scene), state(scene, ray_caster, options) {
         reset();
     }
@@ -83,7 +83,7 @@ struct Setting {
 };
 
 TEST(VisibleDifference, AdaptsToLocalLight) {
-    Setting s;
+    Threshold s;
     s.set(ElementIndex(13), 0.2f);
     const float shown = 20 / std::pow(0.2f, 1.0f / 24);  // logarithmic mean: one patch of 1 m^2 in 24 m^2
     EXPECT_NEAR(s.threshold(ElementIndex(13)) / s.threshold(ElementIndex(12)),
@@ -99,7 +99,7 @@ TEST(VisibleDifference, AdaptsToLocalLight) {
 }
 
 TEST(VisibleDifference, AdaptsToASquareDegree) {
-    Setting s;
+    Threshold s;
     const ElementForest& forest = *s.state.light.forest;
     const ElementIndex leaf = s.divide(ElementIndex(12), 4), parent = forest.parent(leaf);
     const ElementIndex degree = forest.parent(forest.parent(parent));  // 118 pixels wide; its children 59
@@ -112,7 +112,7 @@ TEST(VisibleDifference, AdaptsToASquareDegree) {
 }
 
 TEST(VisibleDifference, FollowsTheUnitOfLight) {
-    Setting s;
+    Threshold s;
     const float before = s.threshold(ElementIndex(12));
     for (Rgb& h : s.state.light.solution.irradiance) h *= 1000;
     EXPECT_NEAR(s.threshold(ElementIndex(12)) / before, 1000, 0.1);
@@ -120,14 +120,14 @@ TEST(VisibleDifference, FollowsTheUnitOfLight) {
 
 /// A fifth of the flash threshold, 1.63 cd/m^2 at 20 cd/m^2, relative to the light.
 TEST(VisibleDifference, IsASixtiethAtMediumLight) {
-    EXPECT_NEAR(Setting().threshold(ElementIndex(12)), 0.0163f, 0.0002f);
+    EXPECT_NEAR(Threshold().threshold(ElementIndex(12)), 0.0163f, 0.0002f);
 }
 
 TEST(VisibleDifference, SparesSmallElements) {
-    Setting s;
+    Threshold s;
     const float large = s.threshold(ElementIndex(12));
     for (int levels = 1, deepest = 7; levels <= deepest; ++levels) {
-        Setting divided;
+        Threshold divided;
         const ElementIndex leaf = divided.divide(ElementIndex(12), levels);
         const float width = std::sqrt(divided.state.light.forest->area(leaf) /
                                       pixel_area(divided.state.inputs, divided.state.light, leaf));
@@ -151,7 +151,7 @@ TEST(VisibleDifference, IsRaisedByMaskers) {
 TEST(VisibleDifference, IsMaskedByTexture) {
     WeightedView view;
     view.view = {"floor", {2, 1, 1.9}, {2, 1.001, 0}, {0, 1, 0}, 80};
-    Setting textured(half_dark_floor(Halves::reflect), perceptual({view}));
+    Threshold textured(half_dark_floor(Halves::reflect), perceptual({view}));
     const PatchIndex floor(textured.state.light.forest->patch_count() - 1);
     const ElementIndex first = textured.divide(floor, 1);
     const auto reflectance = [&](ElementIndex e) {
@@ -162,37 +162,37 @@ TEST(VisibleDifference, IsMaskedByTexture) {
     ASSERT_NEAR(bright, 0.8f, 0.02f);
     const float threshold = textured.threshold(first + 1);
     // The texture without its neighbour: the bright half as a patch of its own.
-    Setting plain(half_dark_floor_of_two_patches(Halves::reflect), perceptual({view}));
+    Threshold plain(half_dark_floor_of_two_patches(Halves::reflect), perceptual({view}));
     const float unmasked = plain.threshold(PatchIndex(plain.state.light.forest->patch_count() - 1));
     EXPECT_NEAR(threshold / unmasked, threshold_elevation(0.5f / unmasked), 0.15f * threshold / unmasked);
     EXPECT_GT(threshold, 5 * unmasked);
 }
 
 TEST(VisibleDifference, IsInfiniteWhereNothingShows) {
-    Setting s;
+    Threshold s;
     s.state.light.solution.view_importance[12] = 0;
     EXPECT_TRUE(std::isinf(s.threshold(ElementIndex(12))));
     EXPECT_TRUE(std::isfinite(s.threshold(ElementIndex(13))));
-    Setting black(closed_box({2, 2, 2}, 1, {{"black", Rgb(0), Rgb(1)}}));
+    Threshold black(closed_box({2, 2, 2}, 1, {{"black", Rgb(0), Rgb(1)}}));
     EXPECT_TRUE(std::isinf(black.threshold(ElementIndex(3))));
 }
 
 TEST(VisibleDifference, OfOtherSurfacesIsThatOfASquareDegree) {
     const double contrast = 0.2 * cone_threshold(20) / 20, square_degree = 67.02 * 67.02 / (1280 * 720);
-    const Setting standard;
+    const Threshold standard;
     EXPECT_NEAR(VisibleDifference(standard.state.inputs, standard.state.light).share_of_light(),
                 contrast * square_degree, 1e-9);
     WeightedView small = view_of_patches(), large = view_of_patches();
     small.pixel_rows = 360;
     large.weight = 8;
-    const Setting two(cube(), perceptual({small, large}));
+    const Threshold two(cube(), perceptual({small, large}));
     EXPECT_NEAR(VisibleDifference(two.state.inputs, two.state.light).share_of_light(), contrast * square_degree * 8 / 9,
                 1e-9);
 }
 
 /// The children of two patches differ by more and by less than the threshold, without noise.
 TEST(PerceptualRefinement, SplitsVisibleDifferences) {
-    Setting s;
+    Threshold s;
     const ElementIndex clear = s.divide(ElementIndex(12), 1), faint = s.divide(ElementIndex(13), 1);
     std::fill(s.state.light.solution.indirect_importance.begin(), s.state.light.solution.indirect_importance.end(),
               0.0f);

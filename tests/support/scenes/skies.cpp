@@ -10,7 +10,7 @@ namespace interflect::testing_support {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// 30 degrees above the horizon, south-east.
 const V3d sun = V3d(std::sqrt(0.375), -std::sqrt(0.375), 0.5);

@@ -8,7 +8,7 @@ namespace interflect::testing_support {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 SkyLuminance over_ground(const SkyLuminance& sky, double ground) {
     return [=](const V3d& d) { return d.z > 0 ? sky(d) : ground; };
