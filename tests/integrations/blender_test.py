@@ -17,7 +17,7 @@ BLENDER = [BPY] if BPY else ["blender", "-b", "--factory-startup", "--python-exi
 
 TOGETHER = (
     *("vertex", "lightmap", "sheets_vertex", "sheets_lightmap", "sheets_magnified", "moves", "three_vertex", "three_lightmaps"),
-    *("visibility", "user", "scenes", "instances", "panels", "plain_world", "hdri_world", "warnings", "failures"),
+    *("visibility", "user", "scenes", "instances", "panels", "plain_world", "hdri_world", "warnings", "failures", "authored"),
 )
 
 
@@ -87,6 +87,15 @@ class Addon(unittest.TestCase):
         self.assertEqual(found["result"], ["FINISHED"])
         self.assertGreater(found["lit_objects"], 0)
         self.assertGreater(found["images"], 0)
+
+    def test_imported_files_of_authors_keep_their_metals(self):
+        """A lamp of 1 cd is 2 m above the middle of a plate of reflectance 0.5; a metal of 0.8 reflects it at x = 0.4."""
+        found = self.blender("authored")
+        radiance = 0.5 / math.pi / 2**2
+        self.assertAlmostEqual(found["plate"] / radiance, 1, delta=0.03)
+        beside = 0.5 / math.pi * 2 / (2**2 + 0.4**2) ** 1.5
+        self.assertAlmostEqual(found["mirror"] / (0.8 * beside), 1, delta=0.05)
+        self.assertEqual(found["lamps"], 0)
 
     def test_sheets_lit_on_both_sides_are_opaque_in_cycles(self):
         """Both sides of a sheet are in one place in the file, where Cycles skips one of them."""

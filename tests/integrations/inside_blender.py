@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import subprocess
 import sys
 import tempfile
 import time
@@ -365,6 +366,43 @@ def picture(width: int, height: int) -> list:
     return pixels
 
 
+def authored() -> dict:
+    """A plate below a point lamp, and a metal that reflects the plate, lit in their own glTF file and imported."""
+    for name, metallic, shade, at, turn in [("plate", 0, 0.5, (0, 0, 0), 0), ("mirror", 1, 0.8, (0.6, 0, 0.5), -math.pi / 2)]:
+        bpy.ops.mesh.primitive_plane_add(size=1, location=at, rotation=(0, turn, 0))
+        material = bpy.data.materials.new(name)
+        material.use_nodes = True
+        inputs = material.node_tree.nodes["Principled BSDF"].inputs
+        inputs["Base Color"].default_value = (shade, shade, shade, 1)
+        inputs["Metallic"].default_value, inputs["Roughness"].default_value = metallic, 1 - metallic
+        bpy.context.object.data.materials.append(material)
+    lamp = bpy.data.lights.new("lamp", "POINT")
+    lamp.energy = 4 * math.pi  # 1 cd
+    put("lamp", lamp, (0, 0, 2))
+    with tempfile.TemporaryDirectory() as folder:
+        scene, solution, lit = (str(Path(folder, name)) for name in ("scene.glb", "lit.h5", "lit.glb"))
+        option = versions.watts_as_lumens(bpy.ops.export_scene.gltf)
+        bpy.ops.export_scene.gltf(filepath=scene, export_lights=True, **option)
+        subprocess.run([command, "solve", scene, "-o", solution, "--rays", "20k"], check=True, capture_output=True)
+        subprocess.run([command, "export", solution, "-o", lit, "--lightmap"], check=True, capture_output=True)
+        start()
+        bpy.ops.import_scene.gltf(filepath=lit)
+    return {
+        "plate": seen_from((0, 0, 1), (0, 0, 0)),
+        "mirror": seen_from((0, 0, 0.8), (0, -math.pi / 4, 0)),  # at 45 degrees; sees the plate at x = 0.4
+        "lamps": len(bpy.data.lights),
+    }
+
+
+def seen_from(at, turn) -> float:
+    """Returns the radiance in the middle of a camera's view."""
+    camera = put("eye", bpy.data.cameras.new("eye"), at)
+    camera.data.type, camera.data.ortho_scale, camera.rotation_euler = "ORTHO", 0.02, turn
+    bpy.context.scene.camera = camera
+    bpy.context.view_layer.update()
+    return picture(width=1, height=1)[0]
+
+
 def warnings() -> dict:
     make_room()
     metal = bpy.data.materials.new("metal")
@@ -500,7 +538,7 @@ CASES = {
     "sheets_magnified": lambda: sheets("LIGHTMAP", 256),
     "three_vertex": lambda: three_bakes("VERTEX"),
     "three_lightmaps": lambda: three_bakes("LIGHTMAP"),
-    **{each.__name__: each for each in (moves, visibility, user, scenes, instances, panels, warnings, failures)},
+    **{each.__name__: each for each in (authored, moves, visibility, user, scenes, instances, panels, warnings, failures)},
     **{each.__name__: each for each in (plain_world, hdri_world, cancel, disable)},
 }
 found = {}

@@ -21,41 +21,76 @@ class glTF2ImportUserExtension:
         if notes is None:
             return
         lightmap = (gltf_material.extensions or {}).get(LIGHTMAP)
-        if lightmap:
+        is_authored = not (importer.data.asset.generator or "").startswith("Interflect")
+        if is_authored:
+            for surface in [node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED"]:
+                surface.inputs["Emission Strength"].default_value *= 2 ** -notes["exposure"]
+                if lightmap:
+                    self._light_authored(material, surface, lightmap, notes, importer)
+        elif lightmap:
             self._light_by_image(material, lightmap, notes, importer)
         elif vertex_color:
             _undo_exposure(material, notes)
+
+    def _light_authored(self, material, surface, lightmap, notes, importer):
+        """Replaces the diffuse light of a material of the author's file by that of the image. Reflections, glass and
+        transparency stay: the light of the image is the emission of the share of the surface that is diffuse."""
+        nodes, links = material.node_tree.nodes, material.node_tree.links
+
+        def made(kind, operation, *inputs):
+            node = nodes.new(f"ShaderNode{kind}")
+            setattr(node, "operation" if kind == "Math" else "blend_type", operation)
+            for socket, value in zip(node.inputs, inputs):
+                _feed(links, value, socket)
+            return node.outputs[0]
+
+        metallic, transmission = surface.inputs["Metallic"], versions.transmission(surface)
+        opaque = made("Math", "SUBTRACT", 1, transmission)
+        diffuse = made("Math", "MULTIPLY", made("Math", "SUBTRACT", 1, metallic), opaque)
+        colour = surface.inputs["Base Color"]
+        emission, both = nodes.new("ShaderNodeEmission"), nodes.new("ShaderNodeAddShader")
+        image = self._texture(nodes, links, lightmap, notes, importer)
+        links.new(made("MixRGB", "MULTIPLY", 1, colour, image), emission.inputs["Color"])
+        shown = made("Math", "MULTIPLY", diffuse, surface.inputs["Alpha"])
+        links.new(made("Math", "DIVIDE", shown, pi), emission.inputs["Strength"])
+        links.new(made("MixRGB", "MIX", diffuse, colour, (0, 0, 0, 1)), colour)
+        shown_by = [link.to_socket for link in surface.outputs[0].links]
+        links.new(surface.outputs[0], both.inputs[0])
+        links.new(emission.outputs[0], both.inputs[1])
+        for socket in shown_by:
+            links.new(both.outputs[0], socket)
+        versions.hide_from_sampling(material)
 
     def _light_by_image(self, material, lightmap, notes, importer):
         """Emits reflectance / pi times the irradiance of the unclamped image, in addition to the material's emission.
         """
         nodes, links = material.node_tree.nodes, material.node_tree.links
         surface = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
-        coordinates, texture = nodes.new("ShaderNodeUVMap"), nodes.new("ShaderNodeTexImage")
-        coordinates.uv_map = "UVMap" if lightmap["texCoord"] == 0 else f"UVMap.{lightmap['texCoord']:03}"
-        texture.image = self._image(lightmap["index"], notes, importer)
-        texture.extension = "EXTEND"
-        links.new(coordinates.outputs["UV"], texture.inputs["Vector"])
         product = nodes.new("ShaderNodeMixRGB")
         product.blend_type = "MULTIPLY"
         product.inputs["Fac"].default_value = 1
-        links.new(texture.outputs["Color"], product.inputs["Color2"])
-        product.inputs["Color1"].default_value = surface.inputs["Base Color"].default_value
-        for link in surface.inputs["Base Color"].links:
-            links.new(link.from_socket, product.inputs["Color1"])
+        links.new(self._texture(nodes, links, lightmap, notes, importer), product.inputs["Color2"])
+        _feed(links, surface.inputs["Base Color"], product.inputs["Color1"])
         reflected, emitted, both = (nodes.new(f"ShaderNode{kind}") for kind in ("Emission", "Emission", "AddShader"))
         links.new(product.outputs["Color"], reflected.inputs["Color"])
         reflected.inputs["Strength"].default_value = 1 / pi
         of_surface = versions.emission_colour(surface), surface.inputs["Emission Strength"]
         for socket, to in zip(of_surface, (emitted.inputs["Color"], emitted.inputs["Strength"])):
-            to.default_value = socket.default_value
-            for link in socket.links:
-                links.new(link.from_socket, to)
+            _feed(links, socket, to)
         # The exposure brightened the emission, like the 8-bit images.
         emitted.inputs["Strength"].default_value *= 2 ** -notes["exposure"]
         links.new(reflected.outputs[0], both.inputs[0])
         links.new(emitted.outputs[0], both.inputs[1])
         _output(nodes, links, both)
+
+    def _texture(self, nodes, links, lightmap, notes, importer):
+        """Returns the irradiance of the unclamped image, as the output of a node."""
+        coordinates, texture = nodes.new("ShaderNodeUVMap"), nodes.new("ShaderNodeTexImage")
+        coordinates.uv_map = "UVMap" if lightmap["texCoord"] == 0 else f"UVMap.{lightmap['texCoord']:03}"
+        texture.image = self._image(lightmap["index"], notes, importer)
+        texture.extension = "EXTEND"
+        links.new(coordinates.outputs["UV"], texture.inputs["Vector"])
+        return texture.outputs["Color"]
 
     def _image(self, index, notes, importer):
         """Returns the unclamped image of a texture, packed into the blend file."""
@@ -66,6 +101,18 @@ class glTF2ImportUserExtension:
             image.pack()
             self.images[name] = image
         return self.images[name]
+
+
+def _feed(links, value, socket):
+    """Gives an input a number or colour, the output of a node, or what another input has."""
+    if isinstance(value, bpy.types.NodeSocket) and value.is_output:
+        links.new(value, socket)
+    elif isinstance(value, bpy.types.NodeSocket):
+        socket.default_value = value.default_value
+        for link in value.links:
+            links.new(link.from_socket, socket)
+    else:
+        socket.default_value = value
 
 
 def _undo_exposure(material, notes):

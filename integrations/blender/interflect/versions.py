@@ -28,6 +28,23 @@ def emission_colour(surface):
     raise UnknownVersion("colour of emission in the Principled BSDF")
 
 
+def transmission(surface):
+    """Returns the input of a Principled BSDF for the share of glass."""
+    for name in ("Transmission Weight", "Transmission"):  # since Blender 4.0, before
+        if name in surface.inputs:
+            return surface.inputs[name]
+    raise UnknownVersion("share of transmission in the Principled BSDF")
+
+
+def hide_from_sampling(material) -> None:
+    """Makes Cycles find the emission of a material by chance, in place of aiming rays at it as at a lamp."""
+    settings = getattr(material, "cycles", None)
+    if hasattr(settings, "emission_sampling"):  # since Blender 3.5
+        settings.emission_sampling = "NONE"
+    elif hasattr(settings, "sample_as_light"):
+        settings.sample_as_light = False
+
+
 def watts_as_lumens(operator) -> dict[str, str]:
     """Returns the option of the glTF exporter or importer that keeps the numbers of lamps."""
     properties = operator.get_rna_type().properties
