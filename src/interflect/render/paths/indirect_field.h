@@ -109,7 +109,7 @@ class IndirectField {
     /// Compares record i with the fit of its neighbours, in the mean channel; nullopt if it has too few neighbours.
     std::optional<Residual> residual(std::uint32_t i) const;
     /// Halves the reach of new records that differ from their fit, and of the records near them.
-    void shorten_reaches(std::size_t first_new);
+    void shorten_reaches(const PathPlan& plan, std::size_t first_new);
     void estimate_bias();
     void refine_noisy_records(const PathPlan& plan, const CommonStop& stop);
     /// Returns the mean over the records.
