@@ -13,6 +13,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/solve.h"
+#include "tests/support/release_only.h"
 #include "tests/support/rooms/reference_rooms.h"
 #include "tests/support/rooms/variants.h"
 #include "tests/support/scenes/scenes.h"
@@ -88,6 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Quantities, PreviewOfARoom,
 
 /// A box and a screen before walls of several colours.
 TEST_P(PreviewOfARoom, IsCloseToThePicture) {
+    RELEASE_ONLY_IF(GetParam().quantity == PictureQuantity::radiance);
     const Lit lit(furnished_room());
     const PictureOptions options{.width = 160, .height = 90, .quantity = GetParam().quantity};
     const Image reference = lit.picture(into_the_corner, options);
@@ -137,6 +139,7 @@ TEST(Preview, ShowsWhatIsBehindGlassAndInMirrors) {
 /// A courtyard in the sun, a sheet that throws a shadow on its floor, and a pane. Seen to fail if suns are left to the
 /// smaller picture, counted twice, or without the transmittance of the pane.
 TEST_P(PreviewOfARoom, HasSharpShadowsOfSuns) {
+    RELEASE_ONLY_IF(GetParam().quantity == PictureQuantity::radiance);
     Scene scene = open_colourful_box();
     const std::uint32_t glass = add_material(scene, Rgb(0), Rgb(0)), sheet = add_material(scene, Rgb(0.4f), Rgb(0));
     scene.materials[glass].transmittance = Rgb(0.5f, 0.6f, 0.7f);
