@@ -137,8 +137,8 @@ struct SolvedScene {
 ///         negative, not finite or not one per element. Every written file is therefore readable.
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution);
 
-/// Reads files of write_solution() and of format versions 2 to 5. Entries of Scene::files that are not there are
-/// searched in the folder of the solution.
+/// Reads files of write_solution() and of format versions 2 to 5. Searches missing Scene::files in the folder of the
+/// solution.
 /// @throws InputError for a file that is missing, damaged or of another kind.
 SolvedScene read_solution(const std::filesystem::path& path);
 

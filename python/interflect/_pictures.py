@@ -193,7 +193,7 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         solution: Result of solve().
         path: .glb, .gltf, .ply, .obj, .vtkhdf, .hdf or .vtu; .json or .exr for probes.
         lightmap: Stores the light in lightmaps rather than in vertices.
-        exposure: [stops], of 8-bit colours. None: as of the first view in a picture or, without one, of the lit surfaces.
+        exposure: [stops], of 8-bit colours. None: automatic for the first view or, without a view, the lit surfaces.
         threads, progress: As of render().
         options: up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
             max_triangles, and for .ply and .obj polygons. In lightmaps: texels_per_metre, densities (a

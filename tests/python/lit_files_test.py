@@ -330,7 +330,7 @@ class Density(LitFiles):
         self.assertAlmostEqual(self.area(path, "cube"), 6 * 5**2, delta=1)  # of the material
 
     def test_is_that_of_the_file(self):
-        """The command's density counts before that of a node, which counts before that of its material."""
+        """Precedence: option, node, material."""
         glb = plates()
         for node, density in ((0, 80), (1, 30), (2, 60)):
             glb.json["nodes"][node]["extras"] = {"texels_per_metre": density}

@@ -33,8 +33,8 @@ class glTF2ImportUserExtension:
             _undo_exposure(material, notes)
 
     def _light_authored(self, material, surface, lightmap, notes, importer):
-        """Replaces the diffuse light of a material of the author's file by that of the image. Reflections, glass and
-        transparency stay: the light of the image is the emission of the share of the surface that is diffuse."""
+        """Replaces diffuse reflection in a material of the author's file by the lightmap, as emission. Reflections, glass
+        and transparency stay."""
         nodes, links = material.node_tree.nodes, material.node_tree.links
 
         def made(kind, operation, *inputs):
@@ -104,7 +104,7 @@ class glTF2ImportUserExtension:
 
 
 def _feed(links, value, socket):
-    """Gives an input a number or colour, the output of a node, or what another input has."""
+    """Sets an input to a number or colour, to the output of a node, or to the value of another input."""
     if isinstance(value, bpy.types.NodeSocket) and value.is_output:
         links.new(value, socket)
     elif isinstance(value, bpy.types.NodeSocket):

@@ -39,7 +39,7 @@ std::vector<LitSurface> lit_surfaces(const Scene& scene, const Solution& solutio
     return lit;
 }
 
-/// Returns the first surface that is not one of the darkest, which together reflect `dark_share` of the light.
+/// Skips the darkest surfaces, which together reflect `dark_share` of the light.
 std::vector<LitSurface>::const_iterator skip_dark(const std::vector<LitSurface>& surfaces) {
     double total = 0, passed = 0;
     for (const auto& [exitance, area] : surfaces) total += exitance * area;

@@ -178,7 +178,7 @@ class Export(CommandTest):
     def test_warns_of_layouts_that_cannot_be_kept(self):
         self.solve()
         scene = self.export("--lightmap")
-        del scene["asset"]["extras"]  # else its layouts would be those of an earlier bake
+        del scene["asset"]["extras"]  # otherwise the reader would ignore its layouts
         attributes = scene["meshes"][0]["primitives"][0]["attributes"]
         accessor = scene["accessors"][attributes["TEXCOORD_1"]]
         view = scene["bufferViews"][accessor["bufferView"]]

@@ -47,8 +47,8 @@ struct AuthoredCharts {
     std::array<Imath::V3d, 3> corners(const AuthoredObject& object, PatchIndex patch) const;
 };
 
-/// Densities of texels that a glTF file has for its nodes and materials: the number `extras.texels_per_metre`, which is
-/// a custom property in Blender. LightmapOptions::densities take precedence over both, those of nodes over materials.
+/// Densities of texels in a glTF file: the number `extras.texels_per_metre` of nodes and materials, which is a custom
+/// property in Blender. LightmapOptions::densities take precedence over nodes, and nodes over materials.
 struct AuthoredDensities {
     std::map<std::uint32_t, float> nodes;
     std::vector<TexelDensity> materials;  ///< With the names of materials as patterns.

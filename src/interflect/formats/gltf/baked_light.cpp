@@ -18,7 +18,7 @@ constexpr const char* lightmap_extension = "MOZ_lightmap";
 constexpr const char* khr_emissive_strength = "KHR_materials_emissive_strength";
 constexpr const char* khr_variants = "KHR_materials_variants";
 
-/// Returns the value at the end of a path of keys; null if there is none.
+/// Returns the value at a path of keys; null if it is missing.
 template <class Json>
 Json* find(Json& value, std::initializer_list<const char*> path) {
     Json* found = &value;
@@ -51,7 +51,7 @@ std::optional<std::uint64_t> find_variant(Json& root, const char* name) {
     return std::nullopt;
 }
 
-/// Returns the material of a primitive in a variant, which is no longer one of the primitive's.
+/// Removes a variant from a primitive; returns its material.
 template <class Json>
 std::optional<std::uint64_t> take_variant(Json& primitive, std::uint64_t variant) {
     Json* mappings = list(primitive, {"extensions", khr_variants, "mappings"});
@@ -119,7 +119,7 @@ class BakedLight {
         if (variants.empty()) root_["extensions"].erase(khr_variants);
     }
 
-    /// Removes entries that the lightmaps used from the end of a list, where they change no other index.
+    /// Removes the lightmaps' entries at the end of a list, which changes no other index.
     void remove_last(const char* name, const std::set<std::uint64_t>& unused) {
         Json* entries = list(root_, {name});
         while (entries && !entries->empty() && unused.contains(entries->size() - 1))

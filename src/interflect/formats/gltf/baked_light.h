@@ -6,9 +6,9 @@ namespace interflect::detail {
 inline constexpr const char* lit_variant = "lit";
 inline constexpr const char* authored_variant = "authored";
 
-/// Removes the lightmaps that `interflect export` added to a glTF file, with their texture coordinates, so that its
-/// materials are the author's, with their emission. Light sources that the export removed, and light in vertices, stay
-/// as they are. Returns whether the file is such an export.
+/// Removes lightmaps of `interflect export` from a glTF file, with their texture coordinates, and restores the author's
+/// materials and emission. Light sources that the export removed stay removed; light in vertices stays. Returns whether
+/// the file is such an export.
 /// @param root  The file's JSON, which may have faults.
 template <class Json>  // nlohmann::json or nlohmann::ordered_json
 bool remove_baked_light(Json& root);
