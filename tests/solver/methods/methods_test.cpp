@@ -111,7 +111,7 @@ double p_value_of_mean(const Scene& scene, const std::vector<Solution>& solution
 // A closed box with exitance M and reflectance rho everywhere has H = M / (1 - rho).
 TEST_P(EveryMethod, FillsAFurnaceEvenly) {
     constexpr double exitance = 2;  // [W/m^2]
-    for (const double rho : {0.5, 0.9}) {
+    for (const double rho : {0.0, 0.5, 0.9}) {
         const Scene scene =
             closed_box({1, 2, 3}, 3, {{"wall", Rgb(static_cast<float>(rho)), Rgb(static_cast<float>(exitance))}});
         const std::vector<Solution> sample = solutions(scene);
