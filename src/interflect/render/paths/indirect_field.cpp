@@ -45,10 +45,10 @@ constexpr std::size_t max_baked_groups = 256;
 /// spacings, the indirect light of a room of 160 x 90 pixels is another 0.3% too dark.
 constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
 /// A record and its neighbours halve their reach if the record differs from the fit of its neighbours by more than this
-/// share of all irradiance. The halved reach is at least min_halved_spacings. In bakes, whose texels may be as wide as
-/// the gap beside a ball on the floor, it is at least min_baked_spacings: irradiance 5 to 10 cm from such a contact
-/// is 1.17 times too high in place of 1.40 (0.2 m of radius, 20 texels a metre), for up to 1.2 times the time of the
-/// bake.
+/// share of all irradiance. The halved reach is at least min_halved_spacings, in bakes min_baked_spacings, because
+/// texels may be as wide as the gap beside a ball on the floor. At 20 texels a metre, irradiance 5 to 10 cm from such a
+/// contact is 1.17 times too high in place of 1.40 for a radius of 0.2 m, and 1.22 times with both for 0.13 m, where
+/// too few records find the difference. The time of bakes is up to 1.2 times as long.
 constexpr float max_residual = 0.1f, min_halved_spacings = 2, min_baked_spacings = 1;
 /// Squared error of interpolation at a point, relative to the squared error at a record that is interpolated from its
 /// neighbours. Errors fall at least in proportion to the distance, and a point is half as far from the next record as
