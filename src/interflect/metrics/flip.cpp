@@ -25,13 +25,14 @@ using Imath::V3d;
 
 constexpr double max_pixels_per_degree = 1000;  // eight times the resolution of the eye
 
-/// Linear Rec. 709 to XYZ relative to white (D65), exact. Transposed, since Imath multiplies rows.
+/// Linear Rec. 709 to XYZ relative to white (D65), exact. Transposed, because Imath multiplies row vectors.
 const M33d xyz_of_rgb(10135552.0 / 23359437, 2613072.0 / 12288897, 1425312.0 / 80288307,  //
                       8788810.0 / 23359437, 8788810.0 / 12288897, 8788810.0 / 80288307,   //
                       4435075.0 / 23359437, 887015.0 / 12288897, 70074185.0 / 80288307);
 const M33d rgb_of_xyz = xyz_of_rgb.inverse();
 
-/// YCxCz: CIE L*a*b* without cube roots. Blurring preserves sums of light.
+/// Converts to YCxCz, which is CIE L*a*b* without cube roots. It is linear in XYZ, hence blurring preserves sums of
+/// light.
 V3d opponent_of_xyz(const V3d& xyz) { return {116 * xyz.y - 16, 500 * (xyz.x - xyz.y), 200 * (xyz.y - xyz.z)}; }
 
 V3d xyz_of_opponent(const V3d& opponent) {
@@ -75,12 +76,12 @@ struct Channel {
     std::size_t start(int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width); }
 };
 
-/// At -radius ... radius [pixels].
+/// Weights at -radius ... radius [pixels].
 using Kernel = std::vector<float>;
 
 int radius_of(const Kernel& kernel) { return static_cast<int>(kernel.size() / 2); }
 
-/// Scales positive and negative weights to absolute sums of 1.
+/// Samples a function, and scales the positive and the negative weights to absolute sums of 1.
 template <class Function>
 Kernel normalised_kernel(int radius, const Function& function) {
     double above = 0, below = 0;
@@ -139,7 +140,7 @@ struct Gaussian {
 };
 constexpr std::array<Gaussian, 1> achromatic = {{{1, 0.0047}}}, red_green = {{{1, 0.0053}}};
 constexpr std::array<Gaussian, 2> blue_yellow = {{{34.1, 0.04}, {13.5, 0.025}}};
-constexpr double widest = 0.04;  // b for the size of all filters
+constexpr double widest = 0.04;  // b that determines the size of all filters
 
 using Opponent = std::array<Channel, 3>;
 
@@ -153,6 +154,7 @@ Opponent opponent_colours(const Image& image) {
     return planes;
 }
 
+/// Blurs a channel by the contrast sensitivity of the eye.
 Channel seen(const Channel& plane, std::span<const Gaussian> sensitivity, double pixels_per_degree) {
     using std::numbers::pi;
     const int radius = static_cast<int>(std::ceil(3 * std::sqrt(widest / (2 * pi * pi)) * pixels_per_degree));
@@ -191,7 +193,7 @@ double compressed_distance(const V3d& a, const V3d& b) {
     return std::pow(std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z), colour_exponent);
 }
 
-/// In [0, 1]. Distances up to 0.4 of the largest use 0.95 of the range.
+/// Returns the difference in [0, 1]. Distances up to 0.4 of the largest use 0.95 of the range.
 double colour_difference(const V3d& a, const V3d& b) {
     constexpr double knee_share = 0.4, knee_value = 0.95;
     static const double largest = compressed_distance(perceived_colour(V3d(0, 1, 0)), perceived_colour(V3d(0, 0, 1)));
@@ -200,6 +202,7 @@ double colour_difference(const V3d& a, const V3d& b) {
     return knee_value + (1 - knee_value) * (distance - knee) / (largest - knee);
 }
 
+/// Returns the magnitude of the responses of a detector along both axes.
 Channel response(const Channel& lightness, const Kernel& detector, const Kernel& blur) {
     const Channel across = filter(lightness, detector, blur), down = filter(lightness, blur, detector);
     Channel length = across;
@@ -212,7 +215,7 @@ struct Features {
     Channel edges, points;
 };
 
-/// Derivatives of a Gaussian, as wide as edge detectors in the eye.
+/// Detects edges and points by derivatives of a Gaussian, as wide as edge detectors in the eye.
 Features find_features(const Channel& achromatic_channel, double pixels_per_degree) {
     constexpr double width = 0.082;  // from peak to trough [degrees]
     const double deviation = 0.5 * width * pixels_per_degree;

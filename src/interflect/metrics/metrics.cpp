@@ -15,9 +15,9 @@ namespace interflect {
 
 namespace {
 
-/// Limits relative differences in dark areas.
+/// Share of the mean luminance that is added to denominators, to limit relative differences in dark areas.
 constexpr double dark_share = 0.01;
-constexpr double trimmed_share = 0.99;  // of the blocks
+constexpr double trimmed_share = 0.99;  // share of the blocks in the trimmed error: those with the smallest differences
 
 double quotient(double numerator, double denominator) { return numerator == 0 ? 0 : numerator / denominator; }
 

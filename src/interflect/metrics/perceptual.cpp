@@ -39,7 +39,7 @@ std::vector<Complex> response_differences(const Image& image, const Image& refer
     return differences;
 }
 
-/// The upper half contains negative frequencies.
+/// Returns the frequency of coefficient k of n. The upper half of the coefficients has negative frequencies.
 double cycles_per_pixel(std::size_t k, std::size_t n) {
     return static_cast<double>(std::min(k, n - k)) / static_cast<double>(n);
 }
@@ -53,7 +53,8 @@ void transform_rows(std::vector<Complex>& values, std::size_t width) {
     }
 }
 
-/// Returns the sum of A^2 |D|^2. @param rows  Transformed rows.
+/// Returns the sum of A^2 |D|^2: contrast sensitivity A, spectrum D of the response differences.
+/// @param rows  Response differences after transform_rows().
 double weighted_power(const std::vector<Complex>& rows, std::size_t width, double pixels_per_degree) {
     const std::size_t height = rows.size() / width;
     const kissfft<double> fourier(height, false);

@@ -15,6 +15,7 @@ double seconds_for(const Work& work) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Traces the rays once with each interface.
 EmbreeRates measure_embree(const RayCaster& ray_caster, std::span<const Ray> rays);
 
 }  // namespace interflect::detail

@@ -44,13 +44,13 @@ struct Workload {
 
     Materials materials;
     Solution solution;
-    std::shared_ptr<ElementForest> forest;  // the solution's; no step refines it
+    std::shared_ptr<ElementForest> forest;  // forest of the solution; no step refines it
     TransportStep step;
     SampleStreams streams;
     std::vector<Ray> rays;
 };
 
-/// Traces batches, as the solver does.
+/// Traces the rays in batches, as the solver does.
 void trace_in_batches(const RayCaster& ray_caster, std::span<const Ray> rays) {
     constexpr std::size_t batch_rays = 4096;
     parallel_for_ranges(rays.size(), batch_rays, [&](std::size_t begin, std::size_t end) {
@@ -74,6 +74,7 @@ SolverRates measure(const Scene& scene, const RayCaster& ray_caster, const Workl
     Solution solution;
     const double seconds = seconds_for([&] { solution = solve(scene, ray_caster, work.solution.options); });
     m.solver = static_cast<double>(solution.iterations.back().rays) / seconds;
+    // Converts the time of all prepared rays to a share of the solver's time
     const auto share = [&](double seconds_for_count) { return seconds_for_count / count * m.solver; };
     m.making_rays =
         share(seconds_for([&] { transport_rays(*work.solution.forest, ray_caster, work.step, work.streams); }));

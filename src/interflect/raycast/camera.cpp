@@ -17,7 +17,8 @@ namespace {
 
 using V3d = Imath::V3d;
 
-/// Ray directions have float steps of 6e-8 rad. Limits the rounding of a distant eye to a quarter of a pixel.
+/// Smallest pixel [rad], or, in parallel views, relative to the largest coordinate of the eye. It is four times the
+/// rounding 2^-24 of a float.
 constexpr double smallest_pixel = 0x1p-22;
 
 double largest_coordinate(const V3d& x) { return std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)}); }

@@ -15,8 +15,8 @@ class Camera {
 
     /// @param x, y  From the top left corner [pixels].
     Ray ray(float x, float y) const {
-        const V3f place = corner_ + x * pixel_right_ + y * pixel_down_;
-        return is_orthographic_ ? Ray{eye_ + place, forward_} : Ray{eye_, place.normalized()};
+        const V3f to_pixel = corner_ + x * pixel_right_ + y * pixel_down_;
+        return is_orthographic_ ? Ray{eye_ + to_pixel, forward_} : Ray{eye_, to_pixel.normalized()};
     }
 
   private:
@@ -24,7 +24,7 @@ class Camera {
     V3f eye_;                       // relative to the scene's origin [m]
     V3f forward_;                   // unit length
     V3f corner_;                    // from the eye to the top left corner, at distance 1 (orthographic: 0)
-    V3f pixel_right_, pixel_down_;  // one pixel on that plane
+    V3f pixel_right_, pixel_down_;  // edges of a pixel in the plane of the corner
 };
 
 }  // namespace interflect::detail

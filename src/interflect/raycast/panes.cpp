@@ -33,8 +33,9 @@ void Panes::trace(std::span<const Ray> rays, std::span<const Hit> hits, std::vec
     if (!any_) return;
     std::vector<HitBehind> passing;
     std::vector<Ray> rest;
-    const auto pass = [&](std::uint32_t ray, const Rgb& so_far, const Hit& hit) {
-        const Rgb through = so_far * transmittance(rays[ray], hit);
+    // Continues the ray behind its hit, unless the hit is opaque
+    const auto pass = [&](std::uint32_t ray, const Rgb& transmittance_before, const Hit& hit) {
+        const Rgb through = transmittance_before * transmittance(rays[ray], hit);
         if (!(largest_channel(through) > 0)) return;
         passing.push_back({ray, through, {}});
         rest.push_back(this->behind(rays[ray], hit));

@@ -17,9 +17,10 @@ class Panes {
     Panes(const Scene& scene, const RayCaster& ray_caster);
 
     bool empty() const { return !any_; }
-    /// Returns 0 for escaped rays and opaque surfaces.
+    /// Returns the transmittance of the surface that was hit; 0 for escaped rays.
     Rgb transmittance(const Ray& ray, const Hit& hit) const;
 
+    /// Returns the ray that continues behind the pane that was hit.
     Ray behind(const Ray& ray, const Hit& hit) const;
 
     struct HitBehind {

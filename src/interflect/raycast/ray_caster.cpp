@@ -23,17 +23,19 @@ using namespace detail;
 
 namespace {
 
-/// Distance of coincident faces, relative to the largest coordinate. Embree resolves larger distances.
+/// Distance within which faces coincide, relative to the largest coordinate. Embree resolves larger distances.
 constexpr auto relative_tolerance = static_cast<float>(relative_planarity);
 
+/// Ratio of the ray offset to the distance within which faces coincide (RayCaster::ray_offset).
 constexpr float offset_over_tolerance = 4;
 
-/// Relative to the face's largest coordinate plus the ray's length (16 roundings).
+/// Error of a hit point, relative to its largest coordinate plus the ray's length: 16 roundings of 2^-24.
 constexpr float relative_hit_error = 0x1p-20f;
 
 float largest_coordinate(const V3f& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Returns [m]; > 0, and at least the warp of a quadrilateral.
+/// Returns for each patch the distance within which faces coincide [m]: positive, and at least the warp of a
+/// quadrilateral.
 std::vector<float> tolerances(const Scene& scene) {
     constexpr std::size_t at_once = 4096;
     std::vector<float> tolerance(scene.patches.size());
@@ -67,7 +69,7 @@ bool count_memory(void* counter, ssize_t bytes, bool) {
     return true;
 }
 
-/// Embree filter; Ng follows the vertex order.
+/// Embree filter that rejects hits on backs. The normal Ng follows the vertex order.
 void reject_backs(const RTCFilterFunctionNArguments* a) {
     for (unsigned i = 0; i < a->N; ++i) {
         if (a->valid[i] == 0) continue;
@@ -140,6 +142,7 @@ Hit RayCaster::Embree::hit_of(const Ray& ray, const RTCRayHit& query) const {
 
 RayCaster::RayCaster(const Scene& scene)
     : scene_fingerprint_(geometry_fingerprint(valid(scene))), origin_(scene.origin), ray_offsets_(tolerances(scene)) {
+    // Until they are scaled, ray_offsets_ contains the tolerances
     embree_ = std::make_unique<Embree>(CoincidentFaces(scene, ray_offsets_));
     for (const auto& [face, tolerance] : embree_->coincident.tolerances()) {
         ray_offsets_[face] = std::max(ray_offsets_[face], tolerance);

@@ -19,9 +19,10 @@ using namespace detail;
 
 namespace {
 
-/// Returns an offset that exceeds rounding at the farthest vertex [m], because the point may lie on any surface.
+/// Returns the offset of rays from a point [m]. It exceeds rounding at the farthest vertex, because the point may lie
+/// on any surface.
 float offset_for(const Scene& scene, const V3f& position) {
-    constexpr float relative_offset = 0x1p-17f;
+    constexpr float relative_offset = 0x1p-17f;  // as RayCaster::ray_offset()
     float reach = 0;
     for (const V3f& v : scene.vertices)
         for (int k = 0; k < 3; ++k) reach = std::max(reach, std::abs(v[k]));
@@ -47,10 +48,10 @@ Gauge gauge_of(const MeasuringPoint& point, std::size_t index, const Imath::V3d&
         return gauge;
     }
     const V3f axis = direction_of(point.axis, "axis", index);
-    const bool is_whole = point.receiver == Receiver::cylindrical;
-    gauge.half_arc = is_whole ? pi : pi / 2;
-    gauge.normal =
-        is_whole ? TangentFrame(axis).s : direction_of(point.normal - axis * axis.dot(point.normal), "normal", index);
+    const bool is_full_circle = point.receiver == Receiver::cylindrical;
+    gauge.half_arc = is_full_circle ? pi : pi / 2;
+    gauge.normal = is_full_circle ? TangentFrame(axis).s
+                                  : direction_of(point.normal - axis * axis.dot(point.normal), "normal", index);
     gauge.tangent = axis.cross(gauge.normal);
     return gauge;
 }

@@ -47,8 +47,8 @@ Imath::M33f random_rotation(std::uint64_t seed, std::uint64_t index) {
     return rotation.toMatrix33();
 }
 
-/// Probes as small white balls. The facets of a ball are measuring points at the position of the probe, with different
-/// normals.
+/// Measures probes as small white balls. The facets of a ball are measuring points at the position of the probe, with
+/// different normals.
 class Balls {
   public:
     Balls(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const ProbeOptions& options)
@@ -73,7 +73,7 @@ class Balls {
             throw Stopped(fmt::format("stopped at {} of {} probes, before all had light", first, grid.probes.size()));
         parallel_for_ranges(count, 1, [&](std::size_t i, std::size_t) {
             const std::span<const MeasuredIrradiance> of_probe(&light[i * facets_.size()], facets_.size());
-            grid.probes[first + i] = probe(grid.position(first + i), facets_of(first + i), of_probe);
+            grid.probes[first + i] = project(grid.position(first + i), facets_of(first + i), of_probe);
         });
     }
 
@@ -86,8 +86,8 @@ class Balls {
     }
 
     /// Projects the light of the facets on the harmonics.
-    IrradianceProbe probe(const Imath::V3d& position, std::span<const SphereNode> facets,
-                          std::span<const MeasuredIrradiance> light) const {
+    IrradianceProbe project(const Imath::V3d& position, std::span<const SphereNode> facets,
+                            std::span<const MeasuredIrradiance> light) const {
         constexpr float sphere = 4 * std::numbers::pi_v<float>;
         IrradianceProbe probe;
         float variance = 0, direct = 0;
@@ -97,6 +97,7 @@ class Balls {
             for (std::size_t k = 0; const float basis : spherical_harmonics(facets[i].direction)) {
                 const float share = facets[i].weight * basis;
                 probe.coefficients[k++] += share * light[i].sum();
+                // The mean of a squared harmonic over all normals is 1 / sphere
                 variance += share * share * error * error / sphere;
             }
         }
@@ -109,8 +110,8 @@ class Balls {
         return probe;
     }
 
-    /// Returns the share of directions in which x is behind a one-sided face: a ray back from the first hit meets the
-    /// face.
+    /// Returns the share of directions in which x is behind a one-sided face. Rays pass through its back, so rays from
+    /// the first hits back to x detect it.
     float share_of_backs(const V3f& x, std::span<const SphereNode> directions) const {
         std::vector<Ray> rays;
         for (const SphereNode& node : directions) rays.push_back({x, node.direction});
@@ -134,7 +135,7 @@ class Balls {
     const RayCaster& ray_caster_;
     const ProbeOptions& options_;
     const std::vector<SphereNode> facets_;
-    const float far_;  // [m]
+    const float far_;  // length that leaves the scene [m]
 };
 
 ProbeGrid empty_grid(const Scene& scene, const ProbeOptions& options) {
@@ -148,7 +149,8 @@ ProbeGrid empty_grid(const Scene& scene, const ProbeOptions& options) {
     std::array<double, 3> count;
     for (int k = 0; k < 3; ++k) {
         const double extent = bounds.size()[k];
-        count[k] = std::max(1.0, std::ceil(extent / options.spacing * (1 - 1e-6)));
+        constexpr double rounding = 1e-6;  // keeps the number of probes if the extent is a multiple of the spacing
+        count[k] = std::max(1.0, std::ceil(extent / options.spacing * (1 - rounding)));
         probes *= count[k];
         grid.step[k] = extent / count[k];
         grid.first[k] = scene.origin[k] + bounds.min[k] + grid.step[k] / 2;

@@ -10,7 +10,7 @@ namespace interflect {
 
 namespace {
 
-int usual_samples(Shading shading, LightUse use) { return default_samples[static_cast<std::size_t>(shading)].*use; }
+int default_count(Shading shading, LightUse use) { return default_samples[static_cast<std::size_t>(shading)].*use; }
 
 [[noreturn]] void refuse(const std::string& found, LightUse use) {
     const std::vector<Shading> available = available_shadings(use);
@@ -27,14 +27,14 @@ int usual_samples(Shading shading, LightUse use) { return default_samples[static
 std::vector<Shading> available_shadings(LightUse use) {
     std::vector<Shading> available;
     for (std::size_t i = 0; i < shading_labels.size(); ++i)
-        if (const auto shading = static_cast<Shading>(i); usual_samples(shading, use) > 0) available.push_back(shading);
+        if (const auto shading = static_cast<Shading>(i); default_count(shading, use) > 0) available.push_back(shading);
     return available;
 }
 
 int require_samples(Shading shading, LightUse use, int samples) {
-    const int usual = usual_samples(shading, use);
-    if (usual == 0) refuse(label(shading), use);
-    return samples == 0 ? usual : samples;
+    const int count = default_count(shading, use);
+    if (count == 0) refuse(label(shading), use);
+    return samples == 0 ? count : samples;
 }
 
 Shading find_shading(const std::string& text, LightUse use) {

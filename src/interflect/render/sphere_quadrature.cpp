@@ -26,6 +26,7 @@ Legendre legendre(int degree, double x) {
 std::vector<SphereNode> sphere_quadrature(int rows) {
     std::vector<SphereNode> nodes;
     for (int i = 0; i < rows; ++i) {
+        // Find a root of the Legendre polynomial by Newton's method, which converges from this estimate in a few steps
         double x = std::cos(std::numbers::pi * (i + 0.75) / (rows + 0.5));
         constexpr int newton_steps = 8;
         for (int k = 0; k < newton_steps; ++k) {

@@ -22,8 +22,8 @@ namespace {
 /// reduce the stratification of each.
 constexpr std::size_t replicates = 32;
 constexpr std::int64_t min_rays_per_group = 1024, max_rays_per_group = std::int64_t{1} << 36;
-constexpr std::size_t max_groups = (std::size_t{1} << 31) - 4;  // and three more columns
-/// Rays between two reports, and of one task at least.
+constexpr std::size_t max_groups = (std::size_t{1} << 31) - 4;  // leaves room for three more columns
+/// Number of rays between two reports, and minimum number of one task.
 constexpr std::int64_t rays_per_wave = 1 << 22, rays_per_task = 1 << 14;
 
 std::int64_t rays_per_group(const ViewFactorOptions& options, std::size_t groups) {
@@ -31,11 +31,11 @@ std::int64_t rays_per_group(const ViewFactorOptions& options, std::size_t groups
     if (groups == 0) throw InputError("expected at least one group of faces");
     if (groups > max_groups)
         throw InputError(fmt::format("{} groups of faces; at most {} are possible", groups, max_groups));
-    const auto each = static_cast<std::uint64_t>(options.rays) / groups;
-    return std::clamp(static_cast<std::int64_t>(std::bit_floor(each)), min_rays_per_group, max_rays_per_group);
+    const auto per_group = static_cast<std::uint64_t>(options.rays) / groups;
+    return std::clamp(static_cast<std::int64_t>(std::bit_floor(per_group)), min_rays_per_group, max_rays_per_group);
 }
 
-/// Columns of a row: the groups, then these.
+/// Columns of a row after the columns of the groups.
 struct OtherColumns {
     explicit OtherColumns(std::size_t groups)
         : sky(static_cast<std::uint32_t>(groups)), ground(sky + 1), blocked(sky + 2), count(groups + 3) {}
@@ -107,6 +107,7 @@ struct ThreadBuffers {
     HitCounter counter;
 };
 
+/// Traces the rays of the groups in waves and estimates their factors.
 class Estimator {
   public:
     Estimator(const Scene& scene, const RayCaster& ray_caster, std::span<const FaceGroup> groups,

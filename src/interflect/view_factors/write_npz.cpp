@@ -48,6 +48,7 @@ std::u32string code_points(std::string_view text) {
     std::u32string result;
     for (std::size_t i = 0; i < text.size();) {
         const auto first = static_cast<unsigned char>(text[i]);
+        // Number of continuation bytes; -1: no character begins with this byte
         const int more = first < 0x80 ? 0 : first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : first >= 0xc0 ? 1 : -1;
         char32_t c = more <= 0 ? first : first & (0x3fu >> more);
         bool is_valid = more >= 0 && i + static_cast<std::size_t>(std::max(more, 0)) < text.size();
@@ -63,7 +64,7 @@ std::u32string code_points(std::string_view text) {
     return result;
 }
 
-/// Arrays for one file. libzip reads them when the file is closed, from the memory in which they are.
+/// Arrays for one file. libzip reads them when the file is closed, from the memory of the caller.
 class NpzFile {
   public:
     explicit NpzFile(const std::filesystem::path& path)
@@ -119,7 +120,7 @@ class NpzFile {
             fail(zip_strerror(zip_));
         }
         zip_set_file_compression(zip_, static_cast<zip_uint64_t>(index), ZIP_CM_STORE, 0);
-        zip_file_set_mtime(zip_, static_cast<zip_uint64_t>(index), 0, 0);  // equal results are equal files
+        zip_file_set_mtime(zip_, static_cast<zip_uint64_t>(index), 0, 0);  // no date, so equal results are equal files
     }
 
     const std::filesystem::path path_;

@@ -52,7 +52,7 @@ void insert_metadata(const ImageMetadata& metadata, Imf::Header& header) {
     if (!metadata.filter.empty()) text("interflect.filter", metadata.filter);
 }
 
-/// OpenEXR seeks back to complete earlier parts.
+/// Output stream to memory. OpenEXR seeks back to complete earlier parts.
 class ByteSink : public Imf::OStream {
   public:
     ByteSink() : OStream("memory") {}

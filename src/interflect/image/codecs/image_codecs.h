@@ -15,7 +15,7 @@ namespace interflect::detail::codecs {
 /// @throws std::runtime_error unless 1 <= width * height <= max_pixels.
 void require_allowed_size(std::int64_t width, std::int64_t height, std::int64_t max_pixels);
 
-/// Bytes before compression. stb counts them as int and doubles its arrays.
+/// Returns the size of a PNG before compression [bytes]. stb counts the bytes as int and doubles its arrays.
 constexpr std::int64_t png_bytes(int width, int height, int channels = 3) {
     return (std::int64_t{channels} * width + 1) * height;
 }

@@ -17,15 +17,15 @@ namespace {
 using Rgbe = std::array<std::uint8_t, 4>;
 
 constexpr int exponent_bias = 128, mantissa_bits = 8;
-/// Widths for run-length encoding; other scanlines are flat.
+/// Widths of scanlines with run-length encoding; others are uncompressed.
 constexpr int min_encoded_width = 8, max_encoded_width = 0x7fff;
 /// Larger length bytes repeat the next byte (length - longest_literal) times.
 constexpr int longest_literal = 128, longest_run = 127;
-constexpr int min_run = 4;
+constexpr int min_run = 4;  // shorter runs are encoded as literals
 
 constexpr float largest_value = 0x1p126f;
 
-/// Clamps to the format's range; magenta if not finite.
+/// Returns the colour, clamped to the format's range; magenta if it is not finite.
 Rgb representable(const Rgb& colour) {
     if (!is_finite(colour)) return Rgb(largest_value, 0, largest_value);
     Rgb c;
@@ -37,7 +37,7 @@ Rgbe to_rgbe(const Rgb& colour) {
     const Rgb c = representable(colour);
     int exponent = 0;
     const float mantissa = std::frexp(largest_channel(c), &exponent);  // in [1/2, 1), or 0
-    if (mantissa >= 255.5f / 256) ++exponent;
+    if (mantissa >= 255.5f / 256) ++exponent;                          // its byte would round to 256
     if (mantissa == 0 || exponent <= -exponent_bias) return {0, 0, 0, 0};
     const auto byte = [&](float v) {
         return static_cast<std::uint8_t>(std::lround(std::ldexp(v, mantissa_bits - exponent)));
@@ -113,16 +113,17 @@ struct Size {
     int width, height;
 };
 
-/// Quotes resolutions only: other lines may be content of arbitrary files.
+/// Returns the line in quotes if it is a resolution. Other lines may be content of arbitrary files.
 std::string shown(std::string_view resolution) {
     const bool is_one = resolution.find_first_not_of("+-XY 0123456789") == resolution.npos;
     return is_one ? fmt::format("'{}'", resolution) : "none";
 }
 
-/// Parses '-Y height +X width' alone.
+/// Parses '-Y height +X width', the only supported order.
 Size parse_resolution(std::string_view line) {
     Size size{0, 0};
     const char* end = line.data() + line.size();
+    // Returns the end of the number, or end + 1 for a fault
     const auto number = [&](std::string_view label, const char* from, int& value) {
         if (!std::string_view(from, static_cast<std::size_t>(end - from)).starts_with(label)) return end + 1;
         const auto [after, error] = std::from_chars(from + label.size(), end, value);
@@ -142,7 +143,7 @@ bool is_exposure(std::string_view text) {
     return error == std::errc() && factor > 0 && std::isfinite(factor);
 }
 
-/// The pixels already contain the exposure.
+/// Checks the header. The exposure is ignored, because the pixels already contain it.
 void read_header(RadianceReader& reader) {
     constexpr std::string_view format = "FORMAT=", exposure = "EXPOSURE=";
     if (!reader.line().starts_with("#?")) throw std::runtime_error("it does not begin with '#?RADIANCE'");
@@ -193,7 +194,7 @@ Image decode_radiance(std::string_view bytes, std::int64_t max_pixels) {
     read_header(reader);
     const Size size = parse_resolution(reader.line());
     require_allowed_size(size.width, size.height, max_pixels);
-    // Eight bytes for at most 127 pixels.
+    // Run-length encoding takes at least eight bytes for 127 pixels.
     const std::int64_t min_bytes = std::int64_t{size.width} * size.height / 16;
     if (static_cast<std::int64_t>(reader.bytes_left()) < min_bytes) throw std::runtime_error("it ends too early");
 

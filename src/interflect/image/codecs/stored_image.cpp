@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t max_chunk_bytes = std::size_t{1} << 24;  // of unused text and profiles
+constexpr std::size_t max_chunk_bytes = std::size_t{1} << 24;  // limit for unused text and profiles
 
 struct FreePng {
     void operator()(spng_ctx* context) const { spng_ctx_free(context); }
@@ -46,11 +46,11 @@ StoredImage decode_jpeg(std::string_view bytes, std::int64_t max_pixels) {
                                 &colour_space));
     codecs::require_allowed_size(image.width, image.height, max_pixels);
     std::vector<std::uint8_t> narrow(image.pixel_count() * StoredImage::channels);
-    // Rejects progressive files that would take hours.
+    // TJFLAG_LIMITSCANS rejects progressive files that would take hours.
     require(tjDecompress2(decoder.get(), data, bytes.size(), narrow.data(), image.width, 0, image.height, TJPF_RGBA,
                           TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS));
     image.values.reserve(narrow.size());
-    for (const std::uint8_t value : narrow) image.values.push_back(static_cast<std::uint16_t>(value * 257));
+    for (const std::uint8_t value : narrow) image.values.push_back(static_cast<std::uint16_t>(value * (65535 / 255)));
     return image;
 }
 

@@ -63,7 +63,7 @@ Image read_as(ImageFormat format, const fs::path& path, std::int64_t max_pixels)
     return codecs::read_exr(path, max_pixels);
 }
 
-/// Errors name the file.
+/// Calls read(format, path). Errors name the file.
 template <class Read>
 auto read_with(const fs::path& path, const Read& read) {
     const ImageFormat format = require_image_format(path);

@@ -5,7 +5,7 @@
 
 namespace interflect::detail {
 
-/// Errors name the final file.
+/// Writes the image and commits the file. Errors name its final path.
 void write_image(PendingFile& file, const Image& image, const ImageMetadata& metadata = ImageMetadata(),
                  std::span<const ImageLayer> layers = {});
 

@@ -9,8 +9,8 @@ using namespace detail;
 
 namespace {
 
-constexpr double ignored_value_share = 0.005;  // at each end
-constexpr float max_ratio = 1e6f;
+constexpr double ignored_value_share = 0.005;  // outside a logarithmic scale at each end
+constexpr float max_ratio = 1e6f;              // ratio of the ends of a logarithmic scale
 
 /// Oklab [Ottosson 2020] to linear Rec. 709.
 Rgb rgb_of_oklab(const V3f& lab) {

@@ -21,10 +21,10 @@ namespace {
 
 using V2f = Imath::V2f;
 
-// [dots of the font]
+// Lengths in dots of the font.
 constexpr float line_width = 1, shortest_line = 16, label_spacing = 160;
 constexpr int label_margin = 2;
-/// Relative difference of pixels across an edge of a surface or shadow.
+/// Minimum relative difference of pixels across an edge of a surface or shadow, which no line follows.
 constexpr float jump = 0.15f;
 
 struct Field {
@@ -57,13 +57,13 @@ Field field_of(const Image& image) {
     return smoothed(smoothed(field, 1, 0), 0, 1);
 }
 
-/// [pixels]
+/// Segment of an isoline [pixels].
 struct Segment {
     V2f a, b;
-    std::uint32_t line = 0;  // an edge_id() of the line
+    std::uint32_t line = 0;  // edge_id() that identifies its line
 };
 
-/// Marching squares.
+/// Isolines of one level, by marching squares.
 class Contour {
   public:
     Contour(const Field& field, float level) : field_(field), level_(level), edges_(2 * field.values.size()) {
@@ -136,7 +136,8 @@ float distance(const V2f& p, const Segment& s) {
     return (p - (s.a + t * along)).length();
 }
 
-void cover(const Segment& s, float half_width, Field& coverage) {
+/// Adds the share of each pixel that the segment covers.
+void add_coverage(const Segment& s, float half_width, Field& coverage) {
     const float reach = half_width + 1;
     const auto first = [&](float a, float b) { return std::max(0, static_cast<int>(std::min(a, b) - reach)); };
     const auto last = [&](float a, float b, int size) {
@@ -154,12 +155,12 @@ void draw_lines(Image& image, const Contour& contour, int dot, const Rgb& colour
     Field coverage{image.width, image.height, std::vector<float>(image.pixels.size(), 0.0f)};
     for (const Segment& segment : contour.segments())
         if (contour.length(segment) >= shortest_line * static_cast<float>(dot))
-            cover(segment, line_width / 2 * static_cast<float>(dot), coverage);
+            add_coverage(segment, line_width / 2 * static_cast<float>(dot), coverage);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
         image.pixels[i] += coverage.values[i] * (colour - image.pixels[i]);
 }
 
-/// [pixels]
+/// Text and its rectangle [pixels].
 struct Label {
     int left = 0, top = 0, width = 0, height = 0;
     std::string text;
@@ -179,11 +180,11 @@ void place_labels(const Contour& contour, float level, int dot, const Image& ima
     label.width = text_width(label.text, dot) + 2 * label_margin * dot;
     label.height = (text_height + 2 * label_margin) * dot;
     const float min_length = 3 * static_cast<float>(label.width);
-    std::vector<Segment> places = contour.segments();
+    std::vector<Segment> candidates = contour.segments();
     const auto off_centre = [&](const Segment& s) { return std::abs(s.a.y - static_cast<float>(image.height) / 2); };
-    std::stable_sort(places.begin(), places.end(),
+    std::stable_sort(candidates.begin(), candidates.end(),
                      [&](const Segment& s, const Segment& t) { return off_centre(s) < off_centre(t); });
-    for (const Segment& segment : places) {
+    for (const Segment& segment : candidates) {
         if (contour.length(segment) < min_length) continue;
         label.left = static_cast<int>(segment.a.x) - label.width / 2;
         label.top = static_cast<int>(segment.a.y) - label.height / 2;

@@ -15,7 +15,7 @@ constexpr float filmic_scale = 0.72317f;
 
 float narkowicz(float x) { return x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f); }
 
-/// Range of the logarithm [stops].
+/// Mid grey, and the range of the logarithm around it [stops].
 constexpr float mid_grey = 0.18f, stops_below = 10, stops_above = 6.5f;
 /// `contrast` is the slope at (pivot_in, pivot_out); the powers bend the ends to 0 and 1.
 constexpr float pivot_in = stops_below / (stops_below + stops_above), pivot_out = 0.5f, contrast = 2, toe_power = 3,

@@ -18,9 +18,9 @@ using namespace detail;
 namespace {
 
 constexpr double key = 0.2;                   // logarithmic mean after exposure; 1 is white
-constexpr double ignored_pixel_share = 0.05;  // of the lit pixels, at each end
+constexpr double ignored_pixel_share = 0.05;  // share of the lit pixels that is ignored at each end
 
-/// Averages over finite pixels with `measure` > 0; else 0.
+/// Returns the logarithmic mean over the finite pixels with `measure` > 0, or 0 without such pixels.
 double logarithmic_mean(const Image& image, float (*measure)(const Rgb&)) {
     std::vector<float> lit;
     lit.reserve(image.pixels.size());

@@ -32,7 +32,7 @@ float ward_factor(float adapted, float white) {
 TumblinOperator::TumblinOperator(float adapted, float white) : adapted_(adapted) {
     const float middle = white / std::sqrt(display_contrast);
     exponent_ = brightness_exponent(adapted) / brightness_exponent(middle);
-    // Tumblin's m darkens dim scenes.
+    // Tumblin's factor m, which darkens dim scenes.
     scale_ = std::pow(std::sqrt(display_contrast), exponent_ - 1) * middle / white;
 }
 

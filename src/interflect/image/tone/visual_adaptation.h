@@ -4,8 +4,8 @@
 
 namespace interflect::detail {
 
-// Match perception of display and scene (docs/light/tone-mapping.md). `adapted` is the scene's L_wa, `white` the
-// display's L_dmax, both > 0 [cd/m^2]. Results are relative to white, not clipped.
+// Match perception of display and scene (docs/light/tone-mapping.md). `adapted` is the scene's adaptation luminance
+// L_wa, `white` the display's L_dmax, both > 0 [cd/m^2]. Results are relative to white, not clipped.
 
 /// Returns the factor from luminance to [0, 1] (Ward 1994, Graphics Gems IV).
 float ward_factor(float adapted, float white);
@@ -41,7 +41,7 @@ float rod_threshold(float adapted);
 /// @param cycles_per_degree  f >= 0.
 double contrast_sensitivity(double cycles_per_degree);
 
-/// [scotopic cd/m^2] of a Rec. 709 radiance, by Larson et al. 1997 at the primaries.
+/// Returns the luminance for rods [scotopic cd/m^2] of a Rec. 709 radiance, by Larson et al. 1997 at the primaries.
 constexpr float scotopic_luminance(const Rgb& c) { return 0.085f * c.x + 1.969f * c.y + 0.519f * c.z; }
 
 }  // namespace interflect::detail

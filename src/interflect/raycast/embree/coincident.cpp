@@ -28,11 +28,11 @@ std::vector<V3f> corners(const Scene& scene, const Patch& patch) {
     return result;
 }
 
-/// Independent of the order of corners.
+/// Hashes the positions of the corners, independently of their order.
 std::uint64_t corners_key(const Scene& scene, const Patch& patch) {
     std::uint64_t key = 0;
     for (const V3f& corner : corners(scene, patch)) {
-        const V3f x = corner + V3f(0);  // -0 + 0 = 0
+        const V3f x = corner + V3f(0);  // replaces -0 by 0
         const auto bits = [](float f) { return std::uint64_t{std::bit_cast<std::uint32_t>(f)}; };
         key += mix(bits(x.x) << 32 | bits(x.y), bits(x.z));
     }
@@ -44,7 +44,7 @@ bool have_same_corners(const Scene& scene, const Patch& p, const Patch& q) {
     return a.size() == b.size() && std::is_permutation(a.begin(), a.end(), b.begin());
 }
 
-/// Both must have the same corners.
+/// @param p, q  Must have the same corners.
 bool intercepts_all_rays_of(const Scene& scene, const Patch& p, const Patch& q) {
     if (p.other_side != none) return true;
     return q.other_side == none && PatchGeometry(scene, p).normal().dot(PatchGeometry(scene, q).normal()) > 0;
@@ -125,8 +125,9 @@ void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uin
     struct Overlap {
         std::uint32_t overlapped_face, priority_face;
     };
+    // Collect the pairs, and the largest tolerance of each face
     std::vector<Overlap> pairs;
-    std::vector<std::uint32_t> priority_ids;  // faces
+    std::vector<std::uint32_t> priority_ids;  // indices of faces
     for (const FacePair& p : overlapping_faces(scene, hidden_, tolerance)) {
         const auto [priority_face, overlapped_face] =
             std::minmax(p.larger, p.smaller, [&](auto a, auto b) { return rank[a] < rank[b]; });
@@ -147,6 +148,7 @@ void CoincidentFaces::find_overlaps(const Scene& scene, std::span<const std::uin
     priority_ids.erase(std::unique(priority_ids.begin(), priority_ids.end()), priority_ids.end());
     for (const std::uint32_t face : priority_ids) priority_faces_.emplace_back(scene, face, tolerance[face]);
 
+    // Build a box tree for each overlapped face
     std::sort(pairs.begin(), pairs.end(), [&](const Overlap& a, const Overlap& b) {
         return std::tie(a.overlapped_face, rank[a.priority_face]) < std::tie(b.overlapped_face, rank[b.priority_face]);
     });
@@ -224,7 +226,7 @@ const CoincidentFaces::PriorityFace* CoincidentFaces::find_priority_face(std::ui
 PatchIndex CoincidentFaces::intercepting_patch(std::uint32_t face, const V3f& x, const V3f& direction,
                                                float x_error) const {
     PatchIndex patch{};
-    // Coincidence within a tolerance is not transitive: follow the chain.
+    // Coincidence within a tolerance is not transitive, so the intercepting face can be overlapped, too.
     while (overlapped_[face]) {
         const PriorityFace* priority_face = find_priority_face(face, x, direction, x_error);
         if (!priority_face) break;

@@ -28,7 +28,7 @@ class CoincidentFaces {
     /// Whether another face with its corners intercepts all its rays.
     bool is_hidden(std::uint32_t face) const { return hidden_[face]; }
 
-    /// Whether a face of higher priority covers a part; hits require intercepting_patch().
+    /// Whether a face of higher priority covers a part of this face. Its hits then require intercepting_patch().
     bool is_overlapped(std::uint32_t face) const { return overlapped_[face]; }
 
     /// Returns the patch that intercepts a ray with a first hit at x on the overlapped `face`; `none`: `face` itself.
@@ -42,11 +42,12 @@ class CoincidentFaces {
 
     bool has_covered_patches() const { return !uncovered_share_.empty(); }
 
-    /// Largest pair_tolerance() [m], sorted by face.
+    /// Largest pair_tolerance() of an overlapping face [m].
     struct FaceTolerance {
         std::uint32_t face;
         float tolerance;
     };
+    /// Sorted by face.
     const std::vector<FaceTolerance>& tolerances() const { return tolerances_; }
 
     std::size_t hidden_count() const { return hidden_count_; }
@@ -80,10 +81,10 @@ class CoincidentFaces {
     std::size_t hidden_count_ = 0;
     std::vector<PriorityFace> priority_faces_;   // by rank
     std::vector<std::size_t> overlap_begin_{0};  // start of each overlapped face in overlaps_, and the end
-    // One tree for each overlapped face, of indices into priority_faces_.
+    // Box trees of indices into priority_faces_, one for each overlapped face.
     std::vector<Boxed> overlaps_;
-    RankedBits covered_;  // completely or in part
-    std::vector<float> uncovered_share_;
+    RankedBits covered_;                  // patches that are covered completely or in part
+    std::vector<float> uncovered_share_;  // of each covered patch
     std::vector<FaceTolerance> tolerances_;
 };
 

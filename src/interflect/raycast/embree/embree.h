@@ -75,9 +75,9 @@ class EmbreeContext {
 };
 #endif
 
-/// The back of a face follows its front.
+/// Faces of one Embree geometry.
 struct Faces {
-    std::vector<std::uint32_t> fronts;
+    std::vector<std::uint32_t> fronts;  // patches; the back of a face is the patch after its front
     bool triangles = false, two_sided = false;
 };
 
@@ -89,7 +89,7 @@ struct interflect::RayCaster::Embree {
     RTCScene scene = nullptr;
     std::vector<detail::Faces> geometries;
     detail::CoincidentFaces coincident;
-    detail::RayRecorder* recorder = nullptr;  // of measurements
+    detail::RayRecorder* recorder = nullptr;  // set only during measurements
 
     explicit Embree(detail::CoincidentFaces coincident_faces);
     ~Embree();

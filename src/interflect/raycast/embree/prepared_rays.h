@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 enum class RayInterface { single, packet8, packet16, stream };
 
-/// Rays in Embree's layout, without conversion: upper bound of the solver's ray rate.
+/// Rays in Embree's layout. Tracing them requires no conversion, so their rate is an upper bound of the solver's.
 class PreparedRays {
   public:
     PreparedRays(std::span<const Ray> rays, RayInterface interface);

@@ -16,7 +16,7 @@ namespace interflect::detail {
 class RayRecorder {
   public:
     /// @param ray_caster  Must outlive this; has no other recorder.
-    /// @param max_rays    Kept rays, > 0; a single longer call is kept too.
+    /// @param max_rays    Maximum number of kept rays, > 0; a single longer call is kept, too.
     RayRecorder(const RayCaster& ray_caster, std::size_t max_rays);
     ~RayRecorder();
     RayRecorder(const RayRecorder&) = delete;

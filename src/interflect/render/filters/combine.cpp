@@ -15,12 +15,12 @@ namespace {
 /// Half the width of a region [pixels]. The share of returned light has a variance of about 2 / pixels of the region:
 /// with 4,225 it adds 0.05% of the noise's variance at each scale.
 constexpr int region_radius = 32;
-/// Half the width of the surroundings by whose light errors are divided [pixels].
+/// Half the width of the surroundings whose light normalises errors [pixels].
 constexpr int level_radius = 4;
 /// Share of the picture's mean light that is added to the light of the surroundings.
 constexpr double least_level = 0.1;
-/// The largest is a mean with a standard deviation of 26 pixels on both axes: over 8,500 pixels, with 1.1% of the noise
-/// of a pixel.
+/// Number of scales. The largest is a mean with a standard deviation of 26 pixels on both axes: over 8,500 pixels,
+/// with 1.1% of the noise of a pixel.
 constexpr int scales = 6;
 
 /// Means of light over a pixel's neighbours on the same surface, `spacing` pixels apart: a step of an edge-avoiding
@@ -65,8 +65,8 @@ class SurfaceSmoothing {
   private:
     /// Product of linear B-splines.
     static constexpr float centre = 0.25f, beside = 0.125f, diagonal = 0.0625f;
-    /// Least sum of weights of a mean. Pixels with fewer neighbours on their surface, such as a wire's, have no means
-    /// to be kept: their share in larger scales vanishes.
+    /// Sum of weights below which a mean is reduced. The light of pixels with few neighbours on their surface, such as
+    /// a wire, thus vanishes in larger scales.
     static constexpr float least_support = 0.5f;
 
     void visit_neighbours(int x, int y, const auto& visit) const {
@@ -83,11 +83,11 @@ class SurfaceSmoothing {
 
     const Surfaces& surfaces_;
     int spacing_;
-    std::array<std::vector<float>, 8> weights_;  // of the neighbours within the picture, in their order
-    std::vector<float> kept_;
+    std::array<std::vector<float>, 8> weights_;  // [n][pixel]: weight of its n-th neighbour within the picture
+    std::vector<float> kept_;                    // factor that reduces the mean of each pixel
 };
 
-/// Sums over regions.
+/// Sums values over the square region around each pixel.
 class RegionSums {
   public:
     RegionSums(int width, int height, int radius)
@@ -135,7 +135,7 @@ double dot(const Rgb& a, const Rgb& b) { return channel_sum(RgbD(a) * RgbD(b)); 
 /// Radiance of the surroundings of each pixel, positive. Errors are relative to it.
 std::vector<double> levels(const Image& irradiance, const Image& albedo) {
     const RegionSums around(irradiance.width, irradiance.height, level_radius);
-    constexpr double tiny = 1e-30;  // of a black picture
+    constexpr double tiny = 1e-30;  // keeps the level of a black picture positive
     std::vector<double> level(irradiance.pixels.size());
     double total = 0;
     for (std::size_t i = 0; i < level.size(); ++i)
@@ -172,9 +172,9 @@ std::vector<double> kept_shares(const Moved& moved, const Image& albedo, const s
     return products;
 }
 
-/// Estimates the squared error of the combination: the mean over a region, relative to the square of each pixel's own
-/// radiance and of a share of its surroundings'.
-/// @param left  Light that remains moved, with the noise of the light itself.
+/// Estimates the squared error of the combination: the mean over a region, in proportion to the squared radiance of
+/// each pixel and a share of its surroundings.
+/// @param left  P, M and D of the combination.
 Image squared_error(const Moved& left, const Image& combined, const Image& albedo, const RegionSums& region) {
     constexpr double share_of_surroundings = 0.1;
     const std::size_t pixels = combined.pixels.size();

@@ -9,7 +9,7 @@ namespace interflect::detail {
 
 struct CombinedLight {
     Image light;          ///< Irradiance / pi.
-    Image squared_error;  ///< Of the reflected radiance, per channel: estimated, the mean over a region.
+    Image squared_error;  ///< Estimate for the reflected radiance, per channel, averaged over a region.
 };
 
 /// Corrects filtered light where the filter moved it by more than noise explains, scale by scale and region by region

@@ -56,7 +56,7 @@ Image white_surfaces(const PictureLayers& layers) {
     return white;
 }
 
-/// The library would add a little light, which an automatic exposure shows.
+/// Whether all pixels are black. The library would add a little light to them, which an automatic exposure shows.
 bool is_black(const Image& light) {
     return std::all_of(light.pixels.begin(), light.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0); });
 }
@@ -80,10 +80,10 @@ DenoisedPicture denoise_by_oidn(const PictureLayers& layers, const std::shared_p
         const bool is_filtered = layers.depth[i] > 0 && is_finite(unfiltered);
         picture.image.pixels[i] += is_filtered ? reflected.pixels[i] : unfiltered;
         if (!is_filtered) continue;
-        // Records of indirect light are common to the halves.
-        const float of_records = layers.is_indirect_interpolated ? layers.reflected.indirect_variance[i] : 0;
+        // The halves share the records of indirect light, so their difference lacks the variance of the records.
+        const float variance_of_records = layers.is_indirect_interpolated ? layers.reflected.indirect_variance[i] : 0;
         for (int c = 0; c < 3; ++c)
-            picture.standard_error.pixels[i][c] = std::sqrt(combined.squared_error.pixels[i][c] + of_records);
+            picture.standard_error.pixels[i][c] = std::sqrt(combined.squared_error.pixels[i][c] + variance_of_records);
     }
     return picture;
 }

@@ -90,14 +90,14 @@ Oidn::~Oidn() = default;
 
 namespace {
 
-/// Adds the libraries of pyoidn in `folder`/lib/python3.*/site-packages.
+/// Adds the libraries of pyoidn in `environment`/lib/python3.*/site-packages.
 void add_packages(const fs::path& environment, std::vector<fs::path>& files) {
     std::error_code missing;
     for (const fs::directory_entry& python : fs::directory_iterator(environment / "lib", missing))
         files.push_back(python.path() / "site-packages" / "pyoidn" / "oidn" / "lib" / library_name);
 }
 
-/// Files that exist, in the order of the search.
+/// Returns the existing files in the order of the search.
 std::vector<fs::path> installed_files() {
     std::vector<fs::path> files;
     std::error_code missing;

@@ -19,7 +19,7 @@ class Oidn {
     Oidn& operator=(const Oidn&) = delete;
 
     const std::filesystem::path& file() const { return file_; }
-    /// "2.5.1".
+    /// Returns the version, such as "2.5.1".
     const std::string& version() const { return version_; }
 
   private:
@@ -33,7 +33,7 @@ class Oidn {
 /// Result of the search for the library.
 struct FoundOidn {
     std::shared_ptr<const Oidn> library;  ///< Null if none can be used.
-    std::string fault;                    ///< Reason, if so.
+    std::string fault;                    ///< Reason why no library can be used.
 };
 
 /// Searches INTERFLECT_OIDN alone if it is set; otherwise the libraries of the system, then the Python package pyoidn
@@ -43,7 +43,8 @@ FoundOidn find_oidn();
 /// Filter of pictures of linear light, all with the same surfaces.
 class OidnFilter {
   public:
-    /// @param albedo  Of the visible surfaces, 0 to 1; without noise. @param normal  Towards the camera.
+    /// @param albedo  Reflectance of the visible surfaces, in [0, 1], without noise.
+    /// @param normal  Normals of the visible surfaces, towards the camera.
     OidnFilter(std::shared_ptr<const Oidn> library, Image albedo, Image normal);
 
     /// @param light  Non-negative; finite.

@@ -15,14 +15,14 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr int window_radius = 8, patch_radius = 1, variance_radius = 2, mean_radius = 4;  // [pixels]
-/// The factor k^2 of the noise variance in the distance of patches (Rousselle et al. 2012).
+constexpr int window_radius = 8, block_radius = 1, variance_radius = 2, mean_radius = 4;  // [pixels]
+/// The factor k^2 of the noise variance in the distance of blocks of pixels (Rousselle et al. 2012).
 constexpr float noise_share = 0.45f * 0.45f;
 
 /// Irradiance over pi, by pixel, and its variance.
 struct Field {
     std::array<std::vector<float>, 3> value;
-    std::vector<float> grey, variance;
+    std::vector<float> grey, variance;  // mean of the channels, and its variance
 };
 
 Field make_field(const Image& light, const std::vector<float>& variance, const Image& albedo) {
@@ -42,6 +42,7 @@ Field make_field(const Image& light, const std::vector<float>& variance, const I
 
 /// Direct light, then indirect light.
 using Fields = std::array<Field, 2>;
+/// Returns the number of Fields to filter: indirect light between records has no noise.
 std::size_t noisy_kinds(const PictureLayers& layers) { return layers.is_indirect_interpolated ? 1 : 2; }
 
 /// Averages each pixel over its neighbours on the same surface. The large variance at edges of objects must not spread.
@@ -83,7 +84,7 @@ class Band {
           height_(surfaces.height),
           first_(first_row),
           end_(end_row),
-          difference_(pixel_at(0, end_row - first_row + 2 * patch_radius, width_ + 2)),
+          difference_(pixel_at(0, end_row - first_row + 2 * block_radius, width_ + 2)),
           shape_(at(0, end_row - first_row)) {}
 
     /// Adds the weights of this band's pixels to `sums`.
@@ -133,12 +134,13 @@ class Band {
     }
 
     std::size_t at(int x, int y) const { return pixel_at(x, y, width_); }
-    /// Index in difference_, whose rows have an additional column at both ends. Its row 0 is row first_ - patch_radius
+    /// Index in difference_, whose rows have an additional column at both ends. Its row 0 is row first_ - block_radius
     /// of the picture.
     std::size_t padded(int x, int row) const { return pixel_at(x + 1, row, width_ + 2); }
     std::pair<int, int> columns(int dx) const { return {std::max(0, -dx), std::min(width_, width_ - dx)}; }
     bool has_row(int y) const { return y >= 0 && y < height_; }
 
+    /// Sets shape_ to the weights of the surfaces of all pairs.
     void compare_shapes(int dx, int dy) {
         std::fill(shape_.begin(), shape_.end(), 0.0f);
         const float steps = distance_of(dx, dy);
@@ -156,9 +158,9 @@ class Band {
         constexpr float tiny = 1e-20f;
         std::fill(difference_.begin(), difference_.end(), 0.0f);
         const auto [begin, end] = columns(dx);
-        for (int y = first_ - patch_radius; y < end_ + patch_radius; ++y) {
+        for (int y = first_ - block_radius; y < end_ + block_radius; ++y) {
             if (!has_row(y) || !has_row(y + dy)) continue;
-            float* row = &difference_[padded(0, y - first_ + patch_radius)];
+            float* row = &difference_[padded(0, y - first_ + block_radius)];
             const std::size_t i = at(0, y), k = at(0, y + dy) + static_cast<std::size_t>(dx);
             for (int x = begin; x < end; ++x) {
                 const auto c = static_cast<std::size_t>(x);
@@ -181,7 +183,8 @@ class Band {
                 }
     }
 
-    /// Computes the weights of `count` pairs, whose first pixels are (x, y), (x + 1, y), ...
+    /// Computes the weights of `count` pairs, whose first pixels are (x, y), (x + 1, y), ..., from the mean of
+    /// difference_ over blocks of 3 x 3 pixels, and shape_.
     void weigh_row(int x, int y, int count, std::array<float, per_chunk>& weight) const {
         const std::size_t first = at(x, y - first_);
         const float* above = &difference_[padded(x, y - first_)];
@@ -197,7 +200,8 @@ class Band {
     const PictureLayers& layers_;
     const Surfaces& surfaces_;
     const std::array<Fields, 2>& halves_;
-    int width_, height_, first_, end_;
+    int width_, height_;
+    int first_, end_;  // rows of the band
     std::vector<float> difference_, shape_;
 };
 

@@ -63,20 +63,20 @@ class Surfaces {
         return is_hit_[i] * is_hit_[k] * exp_minus(turn2 / normal_scale) * exp_minus(height2);
     }
 
-    /// weight(i + n, k + n, steps) for all n below weights.size().
+    /// Computes weight(i + n, k + n, steps) for all n below weights.size().
     void weigh(std::size_t i, std::size_t k, float steps, std::span<float> weights) const {
-        std::array<float, 64> some;  // cannot overlap the arguments, so a compiler can use vector code
-        for (std::size_t begin = 0; begin < weights.size(); begin += some.size()) {
-            const std::size_t count = std::min(some.size(), weights.size() - begin);
-            for (std::size_t n = 0; n < count; ++n) some[n] = weight(i + begin + n, k + begin + n, steps);
-            std::copy_n(some.begin(), count, weights.begin() + static_cast<std::ptrdiff_t>(begin));
+        std::array<float, 64> block;  // cannot overlap the arguments, so a compiler can use vector code
+        for (std::size_t begin = 0; begin < weights.size(); begin += block.size()) {
+            const std::size_t count = std::min(block.size(), weights.size() - begin);
+            for (std::size_t n = 0; n < count; ++n) block[n] = weight(i + begin + n, k + begin + n, steps);
+            std::copy_n(block.begin(), count, weights.begin() + static_cast<std::ptrdiff_t>(begin));
         }
     }
 
     const int width, height;
 
   private:
-    static constexpr float normal_scale = 0.1f;  // about 18 degrees
+    static constexpr float normal_scale = 0.1f;  // squared difference of normals, about 18 degrees
     static constexpr float plane_scale = 1.5f;   // relative to the pixel spacing
     using Vectors = std::array<std::vector<float>, 3>;
 
@@ -88,7 +88,8 @@ class Surfaces {
     }
 
     Vectors normal_, position_;
-    std::vector<float> footprint_, is_hit_;
+    std::vector<float> footprint_;  // height above the tangent plane that lowers the weight, per step [m]
+    std::vector<float> is_hit_;
 };
 
 /// Calls visit(k, weight) for each pixel k at most `radius` from (x, y) in both directions.

@@ -19,10 +19,10 @@ namespace {
 
 constexpr std::size_t gauges_per_tile = 256;
 constexpr std::size_t tiles_per_report = 256;  // tiles that each rank traces between two reports
-/// Every gauge receives this fraction of its samples, 1 / 8, before its neighbours decide on the rest.
+/// Each gauge first receives its samples divided by this. Its neighbours then determine the number of further samples.
 constexpr std::uint32_t first_divisor = 8;
-/// A half of one sample has no usable estimate of its error.
-constexpr std::uint32_t least_first = 2;
+/// Minimum initial samples of each half. One sample has no usable estimate of its error.
+constexpr std::uint32_t least_initial = 2;
 
 /// Gauges of one tile.
 class GaugeTile {
@@ -34,11 +34,11 @@ class GaugeTile {
     std::int64_t trace() {
         const auto samples = static_cast<std::uint32_t>(plan_.options.samples);
         const std::uint32_t all = std::max(1u, samples / 2),
-                            some = std::min(all, std::max(least_first, all / first_divisor));
-        trace_more(std::vector<std::uint32_t>(pixels_.size(), some));
+                            initial = std::min(all, std::max(least_initial, all / first_divisor));
+        trace_more(std::vector<std::uint32_t>(pixels_.size(), initial));
         std::vector<std::uint32_t> wanted;
         wanted.reserve(pixels_.size());
-        for (std::size_t i = 0; i < pixels_.size(); ++i) wanted.push_back(std::min(all, some * needed_factor(i)));
+        for (std::size_t i = 0; i < pixels_.size(); ++i) wanted.push_back(std::min(all, initial * needed_factor(i)));
         trace_more(wanted);
         return rays_;
     }
@@ -66,7 +66,7 @@ class GaugeTile {
 
     /// Returns the factor, a power of two, by which more samples would reduce the error to the target. Estimates it
     /// from the gauges next to gauge i in the list, which are usually near it in space. Excludes gauge i itself: a
-    /// number of samples that depends on them would bias its mean.
+    /// number of samples that depends on its own would bias its mean.
     std::uint32_t needed_factor(std::size_t i) const {
         constexpr std::size_t reach = 4;
         const double target = plan_.options.until > 0 ? plan_.options.until : hybrid_target;
@@ -144,8 +144,11 @@ std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::
                                                  const PictureOptions& options, const Monitor& monitor) {
     const PathStart start = start_at(gauges);
     const HybridLight direct_only;
-    const PathPlan plan{
-        .scene = scene, .start = start, .options = options, .first_rays = first_shadow_rays, .hybrid = &direct_only};
+    const PathPlan plan{.scene = scene,
+                        .start = start,
+                        .options = options,
+                        .first_shadow_rays = first_shadow_rays,
+                        .hybrid = &direct_only};
     std::vector<SampledIrradiance> direct;
     const PreparedLight prepared(plan, nullptr, monitor);
     for (const GaugeLight& light : trace_all_gauges(prepared.plan(), monitor)) direct.push_back(light.direct);

@@ -47,7 +47,7 @@ class LightSources {
     std::uint32_t useful_rays(SourceKind kind, std::uint32_t most) const;
     /// Samples a source of this kind. The irradiance is 0 if no source can light x.
     SourceSample sample(SourceKind kind, const V3f& x, const V3f& n, const LightSample& numbers) const;
-    /// Density of sample() towards an emitting patch that was hit [1/sr]. @param distance2  [m^2]
+    /// Returns the density of sample() towards an emitting patch that was hit [1/sr]. @param distance2  [m^2]
     float density(PatchIndex patch, const V3f& x, const V3f& n, const V3f& direction, float distance2) const;
     const Skies& skies() const { return skies_; }
 

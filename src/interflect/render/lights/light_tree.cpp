@@ -15,7 +15,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t bin_count = 16;  // more have no measurable benefit
+constexpr std::size_t bin_count = 16;  // more bins have no measurable benefit
 
 V3f smaller(const V3f& a, const V3f& b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
 V3f larger(const V3f& a, const V3f& b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
@@ -31,12 +31,14 @@ LightTree::Cone LightTree::bounding_cone(const Cone& a, const Cone& b) {
     constexpr float pi = std::numbers::pi_v<float>;
     constexpr float parallel = 1e-4f;  // [rad]; rounding dominates the plane of axes that are closer
     const auto angle = [](float cosine) { return std::acos(std::clamp(cosine, -1.0f, 1.0f)); };
-    const float of_a = angle(a.cosine), of_b = angle(b.cosine), between = angle(a.axis.dot(b.axis));
-    if (std::min(between + of_b, pi) <= of_a + parallel) return {a.axis, std::cos(std::min(pi, of_a + parallel))};
-    if (std::min(between + of_a, pi) <= of_b + parallel) return {b.axis, std::cos(std::min(pi, of_b + parallel))};
-    const float joint = 0.5f * (of_a + between + of_b);
+    const float angle_a = angle(a.cosine), angle_b = angle(b.cosine), between = angle(a.axis.dot(b.axis));
+    if (std::min(between + angle_b, pi) <= angle_a + parallel)
+        return {a.axis, std::cos(std::min(pi, angle_a + parallel))};
+    if (std::min(between + angle_a, pi) <= angle_b + parallel)
+        return {b.axis, std::cos(std::min(pi, angle_b + parallel))};
+    const float joint = 0.5f * (angle_a + between + angle_b);
     if (joint >= pi || between > pi - parallel) return {a.axis, -1};
-    const float turn = joint - of_a;
+    const float turn = joint - angle_a;
     const V3f axis = (std::sin(between - turn) * a.axis + std::sin(turn) * b.axis).normalized();
     return {axis, std::cos(joint)};
 }
@@ -105,7 +107,7 @@ struct LightTree::BinaryNode {
 };
 
 LightTree::LightTree(std::vector<Light> lights, std::size_t index_count)
-    : place_(index_count, none), light_count_(lights.size()) {
+    : slot_(index_count, none), light_count_(lights.size()) {
     if (lights.empty()) return;
     std::vector<BinaryNode> binary;
     binary.reserve(2 * lights.size() - 1);
@@ -156,6 +158,7 @@ LightTree::Split LightTree::best_split(std::span<const Light> lights, const Box&
             const float evenness = std::max(0.0f, l.cone.cosine);
             bins[split.bin_of(l.centre())].add({l.power, l.box, l.cone.axis * (l.power * evenness)});
         }
+        // Sum the costs of both sides for each boundary between bins
         std::array<float, bin_count> cost{};
         Bin below, above;
         for (std::size_t b = 1; b < bin_count; ++b) {
@@ -187,16 +190,16 @@ std::uint32_t LightTree::build(std::span<Light> lights, std::vector<BinaryNode>&
     const Split split = best_split(lights, centres);
     const auto middle = std::stable_partition(
         lights.begin(), lights.end(), [&](const Light& l) { return split.bin_of(l.centre()) < split.first_above; });
-    // If all centres coincide, one half is empty.
-    std::size_t first_half = static_cast<std::size_t>(middle - lights.begin());
-    if (first_half == 0 || first_half == lights.size()) first_half = lights.size() / 2;
-    const std::uint32_t a = build(lights.first(first_half), nodes), b = build(lights.subspan(first_half), nodes);
+    // If all centres coincide, one part is empty.
+    std::size_t first_count = static_cast<std::size_t>(middle - lights.begin());
+    if (first_count == 0 || first_count == lights.size()) first_count = lights.size() / 2;
+    const std::uint32_t a = build(lights.first(first_count), nodes), b = build(lights.subspan(first_count), nodes);
     nodes.push_back({box, bounding_cone(nodes[a].cone, nodes[b].cone), nodes[a].power + nodes[b].power, none, {a, b}});
     return static_cast<std::uint32_t>(nodes.size() - 1);
 }
 
-/// Replaces the widest child by its children until the node is full.
-void LightTree::add_node(const std::vector<BinaryNode>& binary, std::uint32_t root, std::uint32_t place_in_parent) {
+/// Adds the node of a binary subtree. Its widest child is replaced by two children until the node has eight.
+void LightTree::add_node(const std::vector<BinaryNode>& binary, std::uint32_t root, std::uint32_t slot_in_parent) {
     std::vector<std::uint32_t> children{root};
     while (children.size() < width) {
         const auto widest = std::max_element(children.begin(), children.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -211,10 +214,10 @@ void LightTree::add_node(const std::vector<BinaryNode>& binary, std::uint32_t ro
     const auto index = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
     nodes_[index].radius.fill(1);
-    nodes_[index].place_in_parent = place_in_parent;
+    nodes_[index].slot_in_parent = slot_in_parent;
     for (std::uint32_t i = 0; i < children.size(); ++i) {
         const BinaryNode& child = binary[children[i]];
-        const std::uint32_t place = index * static_cast<std::uint32_t>(width) + i;
+        const std::uint32_t slot = index * static_cast<std::uint32_t>(width) + i;
         Node& node = nodes_[index];
         node.centre.set(i, 0.5f * (child.box.low + child.box.high));
         node.half_size.set(i, 0.5f * (child.box.high - child.box.low));
@@ -226,9 +229,9 @@ void LightTree::add_node(const std::vector<BinaryNode>& binary, std::uint32_t ro
         node.is_light[i] = child.light != none;
         node.child[i] = child.light != none ? child.light : static_cast<std::uint32_t>(nodes_.size());
         if (child.light != none)
-            place_[child.light] = place;
+            slot_[child.light] = slot;
         else
-            add_node(binary, children[i], place);
+            add_node(binary, children[i], slot);
     }
 }
 
@@ -291,6 +294,7 @@ LightTree::Choice LightTree::choose_by(bool is_weighted, const V3f& x, const V3f
         if (!(by_power.sum > 0)) return {};
         const Choices by_weight = is_weighted_ ? importance_of_children(*node, node->weighted_power, x, n) : by_power;
         const auto& [importance, sum] = is_weighted ? by_weight : by_power;
+        // Choose a child; reuse the random number
         double rest = uniform * static_cast<double>(sum);
         std::size_t i = 0, last = 0;
         for (; i < width && rest >= static_cast<double>(importance[i]); ++i) {
@@ -310,14 +314,14 @@ LightTree::Choice LightTree::choose_by(bool is_weighted, const V3f& x, const V3f
 }
 
 float LightTree::probability(std::uint32_t index, const V3f& x, const V3f& n) const {
-    if (place_[index] == none) return 0;
+    if (slot_[index] == none) return 0;
     const auto product = [&](Floats Node::*power) {
         float probability = 1;
-        for (std::uint32_t place = place_[index]; place != none; place = nodes_[place / width].place_in_parent) {
-            const Node& node = nodes_[place / width];
+        for (std::uint32_t slot = slot_[index]; slot != none; slot = nodes_[slot / width].slot_in_parent) {
+            const Node& node = nodes_[slot / width];
             const auto [importance, sum] = importance_of_children(node, node.*power, x, n);
             if (!(sum > 0)) return 0.0f;
-            probability *= importance[place % width] / sum;
+            probability *= importance[slot % width] / sum;
         }
         return probability;
     };

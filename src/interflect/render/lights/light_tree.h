@@ -65,7 +65,7 @@ class LightTree {
             z[i] = v.z;
         }
     };
-    /// Up to eight lights or nodes; others have no power.
+    /// Up to eight children, which are lights or nodes. Unused children have no power.
     struct alignas(64) Node {
         Vectors centre, half_size;  // bounding boxes [m]
         Vectors axis;               // axes of the cones
@@ -75,7 +75,7 @@ class LightTree {
         Floats radius{};          // half diagonal of the box [m]; positive
         std::array<std::uint32_t, width> child{};
         std::array<bool, width> is_light{};
-        std::uint32_t place_in_parent = none;  // index of the parent times `width`, plus the number of this child
+        std::uint32_t slot_in_parent = none;  // index of the parent times `width`, plus the number of this child
     };
     struct Choices {
         Floats importance;
@@ -88,13 +88,14 @@ class LightTree {
     static Cone bounding_cone(const Cone& a, const Cone& b);
     static Split best_split(std::span<const Light> lights, const Box& centres);
     static std::uint32_t build(std::span<Light> lights, std::vector<BinaryNode>& nodes);
-    void add_node(const std::vector<BinaryNode>& binary, std::uint32_t root, std::uint32_t place_in_parent);
+    void add_node(const std::vector<BinaryNode>& binary, std::uint32_t root, std::uint32_t slot_in_parent);
     static Choices importance_of_children(const Node& node, const Floats& power, const V3f& x, const V3f& n);
     /// @param is_weighted  Whether to choose by the weighted power. The returned probability is the mean of both ways.
     Choice choose_by(bool is_weighted, const V3f& x, const V3f& n, double uniform) const;
 
     std::vector<Node> nodes_;
-    std::vector<std::uint32_t> place_;  // place of each light, encoded like Node::place_in_parent
+    std::vector<std::uint32_t>
+        slot_;  // slot of each light: index of its node times `width`, plus the number of the child
     std::size_t light_count_;
     bool is_weighted_ = false;
 };

@@ -25,6 +25,7 @@ std::optional<LightTree::Light> bounds(const PointLight& light) {
 }
 
 std::optional<LightTree::Light> bounds(const SpotLight& light) {
+    // The cosine bounds the light up to 90 degrees outside the cone
     const float angle = std::max(light.inner_angle, light.outer_angle - 90) * (std::numbers::pi_v<float> / 180);
     return bounded(light.position, V3f(0), light.intensity, {light.direction.normalized(), std::cos(angle)});
 }
@@ -60,7 +61,7 @@ std::optional<LightTree::Light> bounds(const UniformSky&) { return {}; }
 std::optional<LightTree::Light> bounds(const SkyDome&) { return {}; }
 std::optional<LightTree::Light> bounds(const EnvironmentMap&) { return {}; }
 
-std::vector<LightTree::Light> lights_with_a_place(const Scene& scene) {
+std::vector<LightTree::Light> positioned_lights(const Scene& scene) {
     std::vector<LightTree::Light> lights;
     for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i) {
         std::optional<LightTree::Light> light =
@@ -116,11 +117,11 @@ Illumination received(const Luminaire& luminaire, const V3f& x, const V3f& n, co
 }  // namespace
 
 LuminaireChoice::LuminaireChoice(const Scene& scene)
-    : scene_(scene), tree_(lights_with_a_place(scene), scene.luminaires.size()) {
+    : scene_(scene), tree_(positioned_lights(scene), scene.luminaires.size()) {
     for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i) {
         if (is_sky(scene.luminaires[i])) continue;
         const bool is_sun = std::holds_alternative<DirectionalLight>(scene.luminaires[i].kind);
-        if (is_sun) parallel_.push_back(i);
+        if (is_sun) directional_.push_back(i);
         Group& group = is_sun ? suns_ : lamps_;
         ++group.count;
         group.has_extent = group.has_extent || has_extent(scene.luminaires[i]);
@@ -143,7 +144,7 @@ LuminaireChoice::Chosen LuminaireChoice::choose_lamp(const V3f& x, const V3f& n,
 
 LuminaireChoice::Chosen LuminaireChoice::choose_sun(const V3f& x, const V3f& n, const LightSample& sample) const {
     Reservoir reservoir(sample.choice);
-    for (const std::uint32_t i : parallel_) reservoir.consider(i, received(scene_.luminaires[i], x, n, sample, 1));
+    for (const std::uint32_t i : directional_) reservoir.consider(i, received(scene_.luminaires[i], x, n, sample, 1));
     return reservoir.chosen();
 }
 

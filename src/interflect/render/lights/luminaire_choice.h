@@ -20,7 +20,7 @@ class LuminaireChoice {
 
     struct Group {
         std::uint32_t count = 0;
-        bool has_extent = false;  ///< Whether a luminaire of the group has an extent. Two rays to a point are equal.
+        bool has_extent = false;  ///< Whether a luminaire of the group has an extent. All rays to a point are equal.
     };
     const Group& lamps() const { return lamps_; }
     const Group& suns() const { return suns_; }
@@ -39,7 +39,7 @@ class LuminaireChoice {
 
   private:
     const Scene& scene_;
-    std::vector<std::uint32_t> parallel_;
+    std::vector<std::uint32_t> directional_;
     LightTree tree_;
     Group lamps_, suns_;
 };

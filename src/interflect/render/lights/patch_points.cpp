@@ -10,7 +10,7 @@ namespace {
 
 using Imath::V3d;
 
-/// Uses double precision, because the angles of small triangles sum to almost 180 degrees.
+/// Spherical triangle, in double precision because the angles of small triangles sum to almost 180 degrees.
 struct SphericalTriangle {
     V3d a, b, c;      // unit vectors
     double area = 0;  // solid angle [sr]
@@ -28,8 +28,8 @@ struct SphericalTriangle {
         const V3d to_b = (b - a * cosine_of_side).normalized(), to_c = (c - a * a.dot(c)).normalized();
         const double cosine = std::clamp(to_b.dot(to_c), -1.0, 1.0), sine = std::sqrt(1 - cosine * cosine);
         const double turn = u * area - std::acos(cosine), s = std::sin(turn), t = std::cos(turn);
-        const double p = t - cosine, q = s + sine * cosine_of_side, below = (q * s + p * t) * sine;
-        const double along = below != 0 ? std::clamp(((q * t - p * s) * cosine - q) / below, -1.0, 1.0) : 1;
+        const double p = t - cosine, q = s + sine * cosine_of_side, denominator = (q * s + p * t) * sine;
+        const double along = denominator != 0 ? std::clamp(((q * t - p * s) * cosine - q) / denominator, -1.0, 1.0) : 1;
         const V3d corner = a * along + to_c * std::sqrt(1 - along * along);
         const double height = 1 - v * (1 - corner.dot(b));
         const V3d across = corner - b * corner.dot(b);

@@ -37,13 +37,13 @@ float edge_integral(const V3f& a, const V3f& b, const V3f& n) {
 
 /// Returns the number of sampled points per axis of a luminaire; 1 if its centre gives the exact irradiance.
 int strata(const Luminaire& luminaire, const V3f& n) {
-    constexpr int of_extended = 4;
+    constexpr int strata_of_extended = 4;
     if (const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind))
-        return measured->web->opening.is_point() ? 1 : of_extended;
+        return measured->web->opening.is_point() ? 1 : strata_of_extended;
     const auto* sun = std::get_if<DirectionalLight>(&luminaire.kind);
     if (!sun || sun->diameter == 0) return 1;
     const float height = -n.dot(sun->direction.normalized());
-    return std::abs(height) > sun->disc_sine() ? 1 : of_extended;
+    return std::abs(height) > sun->disc_sine() ? 1 : strata_of_extended;
 }
 
 Rgb by_luminaire(const Luminaire& luminaire, const V3f& x, const V3f& n, float u, float v) {

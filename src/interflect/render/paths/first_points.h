@@ -22,8 +22,8 @@ namespace interflect::detail {
 ///
 /// U is a control variate: the expected value is the mean of V f / p for any coefficient c that does not depend on
 /// these shadow rays. Hence c comes from the other half of the batch, as the visible share of its shadow rays from
-/// points with similar normals (cross-fitting). Unbiased for any number of samples. If all or none are visible, c = V
-/// and only U has noise.
+/// points with similar normals (cross-fitting). The estimate is unbiased for any number of samples. If all or none are
+/// visible, c = V and only U has noise.
 ///
 /// Indirect light: each group of near points on a patch shares a lookup of IndirectField. It is biased by the
 /// interpolation. PathLight::record_error contains noise and bias.
@@ -72,7 +72,7 @@ class FirstPoints {
     struct Group {
         std::uint32_t batch = none, patch = none;
         V3f normal{0, 0, 0}, position{0, 0, 0};
-        float radius = 0;  // points within this distance share the lookup [m]; records reach at least four pixels
+        float radius = 0;  // points within this distance share the lookup [m]: half the reach of the nearest record
         Lookup lookup{};
         Rgb irradiance{0, 0, 0};
         float error = 0;  // standard error, mean channel

@@ -19,11 +19,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// A record gathers least_groups() to max_groups groups of paths, which are 128 to 1,024 paths in pictures with the
-/// usual samples. The difference between the two halves of a group estimates the error of the record.
-constexpr std::size_t paths_per_group = 16, usual_least_groups = 8, max_groups = 64;
-/// Paths of a record for each ray to a bright place. Two take 0.89 to 0.97 of the time of one in five scenes, with
-/// equal errors; four up to 1.05 times the error in blocks of 9 pixels.
+/// A record gathers least_groups() to max_groups groups of paths, which are 128 to 1,024 paths at full effort. The
+/// difference between the two halves of a group estimates the error of the record.
+constexpr std::size_t paths_per_group = 16, full_least_groups = 8, max_groups = 64;
+/// Number of paths of a record for each ray to a bright place. Two take 0.89 to 0.97 of the time of one in five scenes,
+/// with equal errors; four increase the error in blocks of 9 pixels to up to 1.05 times.
 constexpr std::uint32_t record_paths_per_place = 2;
 /// Number of groups of a record = groups_per_deviation x (sigma / E) x (reach / spacing). Here sigma is the standard
 /// deviation of a group and E the irradiance at the record, at least min_share_of_mean times the mean E. This number
@@ -34,10 +34,10 @@ constexpr std::uint32_t record_paths_per_place = 2;
 /// groups_per_deviation is between 8 and 16, which has 0.64 to 0.82 of the squared error in blocks of 9 pixels for 1.01
 /// to 1.29 times the processor time (four scenes, 3 M rays); 4 has 1.2 to 1.5 times that of 8.
 constexpr float groups_per_deviation = 12, min_share_of_mean = 0.25f;
-/// Pictures with fewer samples than this gather fewer groups, too: noise of pixels and of records stay in balance.
-constexpr float usual_samples = 8;
-/// Standard error of a record relative to E, unless it needs more than max_baked_groups. With 10%, walls of a room with
-/// lamps alone had visible clouds, in 0.63 of the time of the bake; 0.97 in another room.
+/// Pictures with fewer samples than this gather fewer groups, too, to balance the noise of pixels and of records.
+constexpr float full_effort_samples = 8;
+/// Standard error of a record relative to E, unless it needs more than max_baked_groups. With 10%, bakes of two rooms
+/// take 0.63 and 0.97 of the time, but walls that only lamps light are visibly blotchy.
 constexpr float max_baked_error = 0.05f;
 constexpr std::size_t max_baked_groups = 256;
 /// Reach of a record, relative to the harmonic mean length of its rays, and its limits in spacings of the points. With
@@ -46,9 +46,10 @@ constexpr std::size_t max_baked_groups = 256;
 constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
 /// A record and its neighbours halve their reach if the record differs from the fit of its neighbours by more than this
 /// share of all irradiance. The halved reach is at least min_halved_spacings, in bakes min_baked_spacings, because
-/// texels may be as wide as the gap beside a ball on the floor. At 20 texels a metre, irradiance 5 to 10 cm from such a
-/// contact is 1.17 times too high in place of 1.40 for a radius of 0.2 m, and 1.22 times with both for 0.13 m, where
-/// too few records find the difference. The time of bakes is up to 1.2 times as long.
+/// texels may be as wide as the gap beside a ball on the floor. At 20 texels per metre, irradiance 5 to 10 cm from the
+/// contact of a ball of radius 0.2 m is then 1.17 times too high, compared with 1.40 for min_halved_spacings. For a
+/// radius of 0.13 m, it is 1.22 times with both, because too few records find the difference. Bakes take up to 20%
+/// longer.
 constexpr float max_residual = 0.1f, min_halved_spacings = 2, min_baked_spacings = 1;
 /// Squared error of interpolation at a point, relative to the squared error at a record that is interpolated from its
 /// neighbours. Errors fall at least in proportion to the distance, and a point is half as far from the next record as
@@ -63,16 +64,17 @@ constexpr std::size_t points_per_task = 1024, records_per_task = 64, groups_per_
 /// Groups that each rank gathers before it checks again for a stop; they take one thread some seconds.
 constexpr std::size_t groups_of_rank = 1 << 16;
 
-/// Effort for records, relative to pictures with the usual samples. Bakes have full effort, and so do pictures with a
+/// Returns the fraction of the full number of groups, at most 1. Bakes have full effort, and so do pictures with a
 /// target of the error, because it includes the error of records.
 float effort_of(const PathPlan& plan) {
     const bool is_full = !plan.start.camera || plan.options.until > 0;
-    return is_full ? 1 : std::min(1.0f, static_cast<float>(plan.options.samples) / usual_samples);
+    return is_full ? 1 : std::min(1.0f, static_cast<float>(plan.options.samples) / full_effort_samples);
 }
-/// With two samples a pixel, a quarter of the usual groups has 1.17 times the squared error in 0.67 of the time.
+/// Returns the minimum number of groups. With two samples a pixel, a quarter of the full number has 1.17 times the
+/// squared error in 0.67 of the time.
 std::size_t least_groups(const PathPlan& plan) {
     constexpr float fewest = 2;
-    return static_cast<std::size_t>(std::max(fewest, effort_of(plan) * static_cast<float>(usual_least_groups)));
+    return static_cast<std::size_t>(std::max(fewest, effort_of(plan) * static_cast<float>(full_least_groups)));
 }
 
 V3f nearest_on(const Contact& contact, const V3f& x) {
@@ -179,11 +181,13 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
                            const CommonStop& stop, std::vector<float>* lengths) {
     std::vector<Gauge> gauges;
     for (const Record& r : records_) gauges.push_back({.position = r.position, .normal = r.normal});
-    constexpr std::uint32_t half = paths_per_group / 2;
+    // Each group of a record is a batch, which continues the sequences of the earlier groups
+    constexpr std::uint32_t half_size = paths_per_group / 2;
     std::vector<SampleBatch> batches;
     for (const std::uint32_t i : chosen)
         for (std::uint32_t group = 0; group < groups; ++group)
-            batches.push_back({.pixel = i, .first_index = (records_[i].gathered.groups + group) * half, .size = half});
+            batches.push_back(
+                {.pixel = i, .first_index = (records_[i].gathered.groups + group) * half_size, .size = half_size});
     PathStart start;
     start.gauges = gauges;
     const PathPlan gathering{.scene = plan.scene,
@@ -200,9 +204,9 @@ bool IndirectField::gather(const PathPlan& plan, std::span<const std::uint32_t> 
     const std::size_t at_once = stop.ranks() ? groups_of_rank * stop.ranks()->count() : batches.size();
     bool is_stopped = false;
     for (std::size_t first = 0; first < batches.size() && !is_stopped; first += at_once) {
-        const std::span<SampleBatch> some =
+        const std::span<SampleBatch> part =
             std::span(batches).subspan(first, std::min(at_once, batches.size() - first));
-        for (const GatheredGroup& group : gather_groups(gathering, some, stop)) {
+        for (const GatheredGroup& group : gather_groups(gathering, part, stop)) {
             rays_ += group.rays;
             if (!group.is_done) continue;
             Record& r = records_[group.record];
@@ -291,7 +295,7 @@ std::optional<IndirectField::Residual> IndirectField::residual(std::uint32_t i) 
 
 void IndirectField::shorten_reaches(const PathPlan& plan, std::size_t first_new) {
     const float least_spacings = plan.start.camera ? min_halved_spacings : min_baked_spacings;
-    constexpr double certain = 4;  // number of variances, which is the square of two standard errors
+    constexpr double certain = 4;  // in variances: squared residuals beyond two standard errors
     pool_variances();
     std::vector<std::uint8_t> fails(records_.size(), 0);
     parallel_for_ranges(records_.size() - first_new, records_per_task, [&](std::size_t begin, std::size_t end) {
@@ -301,6 +305,7 @@ void IndirectField::shorten_reaches(const PathPlan& plan, std::size_t first_new)
             fails[i] = found && found->square > allowed * allowed + certain * found->variance;
         }
     });
+    // Halve the reach of records that fail, and of those around them
     std::vector<std::uint8_t> shortens = fails;
     for (std::size_t i = first_new; i < records_.size(); ++i)
         if (fails[i] != 0)

@@ -27,9 +27,9 @@ namespace interflect::detail {
 /// variance of its own and near rays; in twenty rooms the resulting bias of the mean was below 0.02%.
 class IndirectField {
   public:
-    /// Makes records at points that no other records cover. Each point is tested once, so halved reaches can leave
-    /// gaps. After a stop, the field has fewer records; it ends within milliseconds or, with several ranks, within
-    /// seconds. Collective.
+    /// Adds records at points that no other records cover. Each point is tested once, so halved reaches can leave gaps.
+    /// After a stop, the field has fewer records, and the constructor returns within milliseconds or, with several
+    /// ranks, within seconds. Collective.
     /// @param plan  Must have known light, at which the paths of records end.
     IndirectField(const PathPlan& plan, std::span<const SurfacePoint> points, const Monitor& monitor);
 
@@ -43,7 +43,7 @@ class IndirectField {
     std::optional<Light> at(const V3f& x, const V3f& n, PatchIndex patch) const;
 
     std::size_t size() const { return records_.size(); }
-    SurfacePoint place(std::size_t record) const {
+    SurfacePoint point(std::size_t record) const {
         return {records_[record].position, records_[record].normal, records_[record].patch};
     }
     /// Calls visit(record, squared distance / squared reach) for each record that has x in its reach.
@@ -68,7 +68,7 @@ class IndirectField {
         float reach_elsewhere = 0;  // reach on other patches, at most the distance to the nearest contact [m]
         float irradiance = 0;       // luminance of direct and indirect irradiance, the scale of relative errors [as H]
         GroupMean gathered{};       // mean indirect irradiance over groups of paths [as H]
-        double difference = 0;      // sum over groups: half the difference between both halves, mean channel [as H]
+        double difference = 0;      // sum over groups of half the difference between their halves, mean channel [as H]
         float group_variance = 0;   // variance of a group, mean channel, pooled over near records
         float squared_bias = 0;     // squared error of interpolation near the record, mean channel
 
@@ -92,6 +92,7 @@ class IndirectField {
     };
     /// Fits a linear function to the records around x. @param omitted  Record to leave out, or none.
     Fit fit_at(const V3f& x, const V3f& n, PatchIndex patch, std::uint32_t omitted = none) const;
+    /// Adds records until they cover all points.
     void cover(const PathPlan& plan, std::span<const SurfacePoint> points, const Monitor& monitor,
                const CommonStop& stop);
     std::vector<SurfacePoint> uncovered_among(std::span<const SurfacePoint> points, Ranks* ranks) const;
@@ -100,8 +101,10 @@ class IndirectField {
     /// surface [m].
     bool gather(const PathPlan& plan, std::span<const std::uint32_t> chosen, std::size_t groups, const CommonStop& stop,
                 std::vector<float>* lengths = nullptr);
+    /// Adds a record at each point. Returns whether a stop was due.
     bool add_records(const PathPlan& plan, std::span<const SurfacePoint> points, const CommonStop& stop);
     void arrange_tree();
+    /// Computes Record::group_variance.
     void pool_variances();
     struct Residual {
         double square, variance;
@@ -110,7 +113,9 @@ class IndirectField {
     std::optional<Residual> residual(std::uint32_t i) const;
     /// Halves the reach of new records that differ from their fit, and of the records near them.
     void shorten_reaches(const PathPlan& plan, std::size_t first_new);
+    /// Computes Record::squared_bias.
     void estimate_bias();
+    /// Gathers more groups for records whose noise is large.
     void refine_noisy_records(const PathPlan& plan, const CommonStop& stop);
     /// Returns the mean over the records.
     float mean_irradiance() const;

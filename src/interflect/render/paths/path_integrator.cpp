@@ -162,7 +162,7 @@ bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
 void PathIntegrator::light_vertices() {
     for (Path& path : paths_.paths) {
         path.sampling = {};
-        if (vertex_ == 1) path.sampling.rays = plan_.first_rays;
+        if (vertex_ == 1) path.sampling.rays = plan_.first_shadow_rays;
         if (vertex_ == 1 && plan_.hybrid) {
             light_first_point(path);
             if (path.sampling.is_last) continue;
@@ -243,11 +243,11 @@ void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
     const Skies& skies = plan_.sources().skies();
     const std::uint32_t guide = path.sampling.guide;
     if (!skies.can_sample() && guide == none) return;
-    const bool takes_turns = guide != none && skies.can_sample();
-    const bool is_guided = guide != none && (!takes_turns || index % 2 == 0);
+    const bool alternates = guide != none && skies.can_sample();
+    const bool is_guided = guide != none && (!alternates || index % 2 == 0);
     const LightSample numbers =
         light_sample(keys_[path.half_batch], vertex_, is_guided ? LightStream::guided_skies : LightStream::skies,
-                     takes_turns ? index / 2 : index);
+                     alternates ? index / 2 : index);
     const V3f direction = is_guided
                               ? plan_.hybrid->guide->sample(guide, path.normal, numbers.choice, numbers.u, numbers.v)
                               : skies.sample(numbers.choice, numbers.u, numbers.v).direction;
@@ -303,7 +303,7 @@ void PathIntegrator::store(std::span<SampleBatch> batches) const {
         SampleBatch& batch = batches[b];
         for (std::size_t h = 0; h < 2; ++h) {
             batch.halves[h] = light_[2 * b + h] * per_radiance;
-            batch.halves[h].square_of_first_hit *= per_radiance;
+            batch.halves[h].square_of_first_hit *= per_radiance;  // a square has the factor twice
         }
         for (const std::size_t end = sample + 2 * std::size_t{batch.size}; sample < end; ++sample)
             batch.first += first_hits_[sample];

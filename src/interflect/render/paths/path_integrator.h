@@ -44,6 +44,7 @@ class PathIntegrator {
     /// Starts paths on the gauges, which are white surfaces.
     void start_at_gauges(std::span<const SampleBatch> batches);
     void arrive_at_surfaces();
+    /// Moves the path to its hit and adds the light emitted there. Returns whether the path continues.
     bool arrive(const Hit& hit, const Ray& ray, Path& path);
     void light_vertices();
     void leave_surfaces();
@@ -51,9 +52,11 @@ class PathIntegrator {
 
     // Contributions of a surface or the sky to a path:
     void add_sky(const Path& path, const V3f& direction);
-    /// Adds PathLight::predicted and the square. @param emitted, predicted  Radiance of the first surface or the sky.
+    /// Adds to PathLight::predicted and square_of_first_hit. @param emitted, predicted  Radiance of the first surface
+    /// or the sky.
     void add_first_hit(const Path& path, const Rgb& emitted, const Rgb& predicted);
     void add_emission(const Hit& hit, const V3f& direction, float distance, const Path& path, const Rgb& exitance);
+    /// Adds the known light of the hit if the path ends there. Returns whether it does.
     bool end_at_known_light(const Hit& hit, const V3f& x, const V3f& direction, float distance, const Path& path);
     /// Returns the share of the light from the hit to the path's last vertex that virtual lights do not represent.
     float share_beyond_bound(const Hit& hit, const V3f& direction, float distance, const Path& path) const;

@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t places_per_task = 256, place_groups_per_task = 1;
+constexpr std::size_t guide_records_per_task = 256, guide_groups_per_task = 1;
 constexpr int rounds = 8;                    // each round traces one ray per cell
 constexpr float share_of_neighbours = 0.1f;  // weight of light in neighbouring cells and groups of records
 
@@ -42,18 +42,18 @@ V3f direction_in(std::size_t cell, const SteadyFrame& frame, float u, float v) {
     return frame.direction((static_cast<float>(ring) + u) / side, (static_cast<float>(sector) + v) / side);
 }
 
-/// Returns the group of each record. A group consists of the records in reach of the same early record; most early
-/// records are far apart.
+/// Groups each record with the first record in whose reach it is. The first records are mostly far apart.
 std::vector<std::uint32_t> groups_of(const IndirectField& field) {
     std::vector<std::uint32_t> groups(field.size());
-    parallel_for_ranges(field.size(), places_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(field.size(), guide_records_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const SurfacePoint place = field.place(i);
+            const SurfacePoint point = field.point(i);
             groups[i] = static_cast<std::uint32_t>(i);
-            field.visit_near(place.position, place.normal, place.patch,
+            field.visit_near(point.position, point.normal, point.patch,
                              [&](std::uint32_t record, float) { groups[i] = std::min(groups[i], record); });
         }
     });
+    // Number the groups consecutively
     std::vector<std::uint32_t> number(field.size(), none);
     std::uint32_t count = 0;
     for (std::uint32_t& group : groups) {
@@ -63,12 +63,12 @@ std::vector<std::uint32_t> groups_of(const IndirectField& field) {
     return groups;
 }
 
-/// Returns the groups of all records that have one of the places in their reach, without repetitions.
+/// Returns the groups of all records that have one of the points in their reach, without repetitions.
 std::vector<std::uint32_t> groups_near(const IndirectField& field, std::span<const std::uint32_t> groups,
-                                       std::span<const SurfacePoint> places) {
+                                       std::span<const SurfacePoint> points) {
     std::vector<std::uint32_t> near;
-    for (const SurfacePoint& place : places)
-        field.visit_near(place.position, place.normal, place.patch,
+    for (const SurfacePoint& point : points)
+        field.visit_near(point.position, point.normal, point.patch,
                          [&](std::uint32_t record, float) { near.push_back(groups[record]); });
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
@@ -82,51 +82,53 @@ SkyGuide::SkyGuide(const TracedScene& scene, const IndirectField& field, std::ui
     if (!skies.can_sample() && !(channel_sum(skies.uniform_radiance()) > 0)) return;
     groups_ = groups_of(field);
     const std::size_t count = groups_.empty() ? 0 : *std::max_element(groups_.begin(), groups_.end()) + std::size_t{1};
-    std::vector<std::vector<SurfacePoint>> places(count);
-    for (std::size_t i = 0; i < field.size(); ++i) places[groups_[i]].push_back(field.place(i));
+    std::vector<std::vector<SurfacePoint>> points(count);
+    for (std::size_t i = 0; i < field.size(); ++i) points[groups_[i]].push_back(field.point(i));
 
+    // Find the light of the sky around each group, in all ranks together
     const auto is_stopped = [&] { return stop.within_process().is_due(); };
     std::vector<Cells> light(count, Cells{});
     std::vector<std::int64_t> rays(count);
-    parallel_for_own_ranges(stop.ranks(), count, place_groups_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_own_ranges(stop.ranks(), count, guide_groups_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end && !is_stopped(); ++g) {
-            const Search searched = search(scene, places[g], mix(mix(seed, g), 1));
+            const Search searched = search(scene, points[g], mix(mix(seed, g), 1));
             light[g] = searched.light();
             rays[g] = searched.traced;
         }
     });
-    collect_ranges(stop.ranks(), std::span(light), place_groups_per_task, Destination::all_ranks);
-    collect_ranges(stop.ranks(), std::span(rays), place_groups_per_task, Destination::all_ranks);
+    collect_ranges(stop.ranks(), std::span(light), guide_groups_per_task, Destination::all_ranks);
+    collect_ranges(stop.ranks(), std::span(rays), guide_groups_per_task, Destination::all_ranks);
     rays_ = std::accumulate(rays.begin(), rays.end(), std::int64_t{0});
+    // Compute densities, with a share of the light around neighbouring groups
     densities_.resize(count);
-    parallel_for_ranges(count, place_groups_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(count, guide_groups_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end && !is_stopped(); ++g) {
             Cells around = light[g];
-            for (const std::uint32_t near : groups_near(field, groups_, places[g]))
+            for (const std::uint32_t near : groups_near(field, groups_, points[g]))
                 for (std::size_t c = 0; c < cells; ++c) around[c] += share_of_neighbours * light[near][c];
             densities_[g] = density_of(around);
         }
     });
 }
 
-SkyGuide::Search SkyGuide::search(const TracedScene& scene, std::span<const SurfacePoint> places, std::uint64_t key) {
-    constexpr std::ptrdiff_t few_cells = 32;
-    Search search{scene, places, key};
-    search.by_chance();
+SkyGuide::Search SkyGuide::search(const TracedScene& scene, std::span<const SurfacePoint> points, std::uint64_t key) {
+    constexpr std::ptrdiff_t few_cells = 32;  // if fewer cells find the sky, uniform rays are traced once more
+    Search search{scene, points, key};
+    search.trace_uniformly();
     const std::ptrdiff_t dark = std::count(search.squares.begin(), search.squares.end(), 0.0f);
     if (dark == cells) return search;
-    if (static_cast<std::ptrdiff_t>(cells) - dark < few_cells) search.by_chance();
-    search.guided_by(density_of(search.light()));
+    if (static_cast<std::ptrdiff_t>(cells) - dark < few_cells) search.trace_uniformly();
+    search.trace_guided_by(density_of(search.light()));
     return search;
 }
 
-void SkyGuide::Search::by_chance() {
-    std::array<std::uint8_t, cells> each;
-    std::iota(each.begin(), each.end(), std::uint8_t{0});
-    for (int round = 0; round < rounds; ++round) trace(each);
+void SkyGuide::Search::trace_uniformly() {
+    std::array<std::uint8_t, cells> all_cells;
+    std::iota(all_cells.begin(), all_cells.end(), std::uint8_t{0});
+    for (int round = 0; round < rounds; ++round) trace(all_cells);
 }
 
-void SkyGuide::Search::guided_by(const Cumulative& density) {
+void SkyGuide::Search::trace_guided_by(const Cumulative& density) {
     std::array<std::uint8_t, cells> likely;
     for (std::size_t i = 0; i < cells; ++i)
         likely[i] = static_cast<std::uint8_t>(cell_at(density, (static_cast<double>(i) + 0.5) / cells));
@@ -138,10 +140,10 @@ void SkyGuide::Search::trace(std::span<const std::uint8_t, cells> cells_of_rays)
     std::array<Hit, cells> hits;
     for (std::size_t i = 0; i < cells; ++i) {
         const auto words = random_words(key, static_cast<std::uint64_t>(traced) + i);
-        const SurfacePoint& place = places[words[2] % places.size()];
+        const SurfacePoint& point = points[words[2] % points.size()];
         const std::size_t c = cells_of_rays[i];
-        sent[i] = {place.position,
-                   direction_in<side>(c, SteadyFrame(place.normal), unit_float(words[0]), unit_float(words[1]))};
+        sent[i] = {point.position,
+                   direction_in<side>(c, SteadyFrame(point.normal), unit_float(words[0]), unit_float(words[1]))};
         ++rays[c];
     }
     scene.ray_caster.trace(sent, hits);

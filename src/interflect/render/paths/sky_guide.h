@@ -26,7 +26,7 @@ class SkyGuide {
         return record < groups_.size() && densities_[groups_[record]].back() > 0;
     }
     /// Samples a direction. @param record  Must see the sky, also for density().
-    /// @param n           Normal at the place.
+    /// @param n           Normal of the surface.
     /// @param cell, u, v  Random numbers in [0, 1).
     V3f sample(std::uint32_t record, const V3f& n, double cell, float u, float v) const;
     /// Returns the density of sample() [1/sr].
@@ -40,22 +40,22 @@ class SkyGuide {
     using Cumulative = std::array<std::uint16_t, cells>;  // the last entry is max_cumulative, or 0 without visible sky
     static constexpr std::uint16_t max_cumulative = 0xFFFF;
 
-    /// Rays from some places, and the light of the sky that they found.
+    /// Rays from some points, and the light of the sky that they found.
     struct Search {
         const TracedScene& scene;
-        std::span<const SurfacePoint> places;
+        std::span<const SurfacePoint> points;
         std::uint64_t key;
         Cells rays{}, squares{};  // number of rays in each cell, and sum of the squared luminances that they found
         std::int64_t traced = 0;  // number of traced rays, with those behind panes
 
-        void by_chance();
-        void guided_by(const Cumulative& density);
+        void trace_uniformly();
+        void trace_guided_by(const Cumulative& density);
         void trace(std::span<const std::uint8_t, cells> cells_of_rays);
         /// Returns the root mean square of the light in each cell. Densities in proportion to it have the least
         /// variance.
         Cells light() const;
     };
-    static Search search(const TracedScene& scene, std::span<const SurfacePoint> places, std::uint64_t key);
+    static Search search(const TracedScene& scene, std::span<const SurfacePoint> points, std::uint64_t key);
     /// Returns a density in proportion to the light, with a share of the light of neighbouring cells.
     static Cumulative density_of(const Cells& light);
     static std::size_t cell_at(const Cumulative& density, double x);

@@ -89,7 +89,8 @@ Rendering draw_elements(const Scene& scene, const ElementForest& forest, const R
         for (std::size_t i = 0; i < samples.rays.size(); ++i) sum += value(samples.rays[i], samples.hits[i]);
         thread_local std::vector<Panes::HitBehind> behind;
         behind.clear();
-        if (!shows_irradiance) panes.trace(samples.rays, samples.hits, behind);  // panes have their own irradiance
+        if (!shows_irradiance)
+            panes.trace(samples.rays, samples.hits, behind);  // a picture of irradiance shows that of panes
         for (const auto& [ray, transmittance, hit] : behind) sum += value(samples.rays[ray], hit) * RgbD(transmittance);
         result.image.pixels[samples.pixel] = Rgb(sum / static_cast<double>(samples.rays.size()));
         if (escaped > 0) escaped_rays += escaped;

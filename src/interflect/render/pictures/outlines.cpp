@@ -14,6 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
+/// Rays at three corners of a square of the line's width. A sample is on a line if they hit different leaves.
 constexpr std::size_t rays_per_sample = 3;
 
 float outlined_share(const PixelSamples& samples, const ElementForest& forest) {

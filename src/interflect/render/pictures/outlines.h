@@ -9,9 +9,9 @@
 namespace interflect::detail {
 
 struct OutlineOptions {
-    float width = 1;             ///< Positive [pixels].
+    float width = 1;             ///< Width of a line [pixels], > 0.
     float opacity = 0.6f;        ///< In [0, 1].
-    Rgb colour{1, 0.35f, 0.0f};  ///< In linear Rec. 709.
+    Rgb colour{1, 0.35f, 0.0f};  ///< Linear Rec. 709.
 };
 
 /// Draws borders and silhouettes of visible leaves.

@@ -29,15 +29,15 @@ namespace {
 constexpr int min_parts = 8;
 /// Larger batches hardly improve the stratification, and fewer batches make the error estimate worse.
 constexpr int largest_half_batch = 64;
-bool is_limited(const PictureOptions& options) { return std::isfinite(options.time); }
+bool has_time_limit(const PictureOptions& options) { return std::isfinite(options.time); }
 
-/// Draws in rounds. The first round gives every pixel a few samples. The number of samples that a pixel needs is
-/// estimated from those of its neighbours. Later rounds multiply these numbers by a factor that is common to the
+/// Draws a picture in rounds. The first round gives every pixel a few samples. The number of samples that a pixel needs
+/// is estimated from those of its neighbours. Later rounds multiply these numbers by a factor that is common to the
 /// picture. So the number of samples of a pixel does not depend on their values, and its mean is unbiased (up to the
 /// influence of a pixel on the error of the picture).
 class PathPicture {
   public:
-    /// @param time_left  As PictureOptions::time.
+    /// @param time_left  Limit given by PictureOptions::time.
     PathPicture(const PathPlan& plan, SharedBatches& batches, const Monitor& monitor, const StopRequest& time_left)
         : plan_(plan),
           options_(plan.options),
@@ -47,15 +47,16 @@ class PathPicture {
           pixels_(static_cast<std::size_t>(options_.width) * static_cast<std::size_t>(options_.height)) {}
 
     void trace() {
-        const bool is_adaptive = plan_.hybrid || options_.until > 0 || is_limited(options_);
+        // Choose the number of samples of each half in the first round, and its limit in later rounds
+        const bool is_adaptive = plan_.hybrid || options_.until > 0 || has_time_limit(options_);
         const std::uint32_t least_parts = error_source() == ErrorSource::batches ? 2 : 1;
-        const std::uint32_t usual = std::max(samples_of_half(options_.samples), least_parts * batch_size());
+        const std::uint32_t requested = std::max(samples_of_half(options_.samples), least_parts * batch_size());
         const std::uint32_t allowed = samples_of_half(std::max(options_.max_samples, options_.samples));
-        const bool is_open_ended = options_.until > 0 || is_limited(options_);
-        const std::uint32_t most = is_open_ended ? allowed / batch_size() * batch_size() : usual;
+        const bool is_open_ended = options_.until > 0 || has_time_limit(options_);
+        const std::uint32_t most = is_open_ended ? allowed / batch_size() * batch_size() : requested;
         const std::uint32_t least =
-            plan_.hybrid || is_limited(options_) ? std::min(usual, least_parts * first_samples()) : usual;
-        foreseen_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
+            plan_.hybrid || has_time_limit(options_) ? std::min(requested, least_parts * first_samples()) : requested;
+        expected_samples_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
         trace_round(std::vector<std::uint32_t>(pixels_.size(), least));
         has_all_pixels_ = true;
         if (plan_.hybrid && plan_.start.camera && predicts_light() && !stopped()) add_first_hits();
@@ -64,11 +65,11 @@ class PathPicture {
         const std::vector<double> needed = needed_by_pixels();
         // Within a time limit, small steps spread the samples evenly over the picture.
         constexpr double first_step = 1.0 / 8;
-        for (double factor = is_limited(options_) ? first_step : 1; !is_over(); factor *= 2) {
+        for (double factor = has_time_limit(options_) ? first_step : 1; !is_over(); factor *= 2) {
             const bool more = trace_round(wanted(needed, factor, most));
             const bool has_target = options_.until > 0;
             if (has_target && error_of_picture() <= options_.until) break;
-            if (!has_target && !is_limited(options_)) break;
+            if (!has_target && !has_time_limit(options_)) break;
             if (!more && factor >= most) break;  // each pixel has the maximum number of samples, or no noise
         }
         if (!stopped()) report(1);
@@ -105,17 +106,17 @@ class PathPicture {
     double error_of_picture() const { return relative_error(pixels_, options_); }
     static std::uint32_t samples_of_half(int samples) { return static_cast<std::uint32_t>((samples + 1) / 2); }
 
-    /// Samples of each half in the first round, before the noise determines the number of samples.
-    std::uint32_t first_samples() const { return is_limited(options_) && !plan_.hybrid ? 2 : 4; }
+    /// Returns the number of samples of each half in the first round.
+    std::uint32_t first_samples() const { return has_time_limit(options_) && !plan_.hybrid ? 2 : 4; }
 
-    /// Samples of each half in a batch. A power of two, except in hybrid shading, where all batches of a pixel continue
-    /// the same two sequences.
+    /// Returns the number of samples of each half in a batch. It is a power of two, except in hybrid shading, where all
+    /// batches of a pixel continue the same two sequences.
     std::uint32_t batch_size() const {
         if (plan_.hybrid) return std::min(samples_of_half(options_.samples), first_samples());
         const int parts = error_source() == ErrorSource::batches ? 2 * min_parts : min_parts;
         const auto size =
             std::bit_floor(static_cast<unsigned>(std::clamp(options_.samples / parts, 1, largest_half_batch)));
-        return is_limited(options_) ? std::min(size, first_samples()) : size;
+        return has_time_limit(options_) ? std::min(size, first_samples()) : size;
     }
 
     /// @param part       Returns the light of a pixel: its mean, or the mean of one half.
@@ -168,7 +169,8 @@ class PathPicture {
     std::vector<double> needed_by_pixels() const {
         const bool is_uniform = !plan_.hybrid && !(options_.until > 0);
         if (is_uniform)
-            return std::vector<double>(pixels_.size(), is_limited(options_) ? 2.0 * pixels_[0].samples_of_half() : 0);
+            return std::vector<double>(pixels_.size(),
+                                       has_time_limit(options_) ? 2.0 * pixels_[0].samples_of_half() : 0);
         const double target = options_.until > 0 ? options_.until : hybrid_target;
         if (!plan_.start.camera) {
             const double excess = error_of_picture() / target;
@@ -181,11 +183,11 @@ class PathPicture {
     /// stratify best, and limits it to `most`.
     std::vector<std::uint32_t> wanted(const std::vector<double>& needed, double factor, std::uint32_t most) {
         std::vector<std::uint32_t> wanted(pixels_.size());
-        foreseen_ = 0;
+        expected_samples_ = 0;
         for (std::size_t i = 0; i < pixels_.size(); ++i) {
-            const double in_all = std::clamp<double>(factor * needed[i], pixels_[i].samples_of_half(), most);
-            wanted[i] = std::min(most, std::bit_ceil(static_cast<std::uint32_t>(std::ceil(in_all))));
-            foreseen_ += wanted[i];
+            const double samples = std::clamp<double>(factor * needed[i], pixels_[i].samples_of_half(), most);
+            wanted[i] = std::min(most, std::bit_ceil(static_cast<std::uint32_t>(std::ceil(samples))));
+            expected_samples_ += wanted[i];
         }
         return wanted;
     }
@@ -217,8 +219,8 @@ class PathPicture {
         return has_traced;
     }
 
-    /// Whether the solution predicts the light of the picture. It has the light of suns, whose edges would be noise in
-    /// a picture without.
+    /// Whether the solution predicts the light of the picture. A solution includes the light of suns. In a picture
+    /// without it, the edges of their shadows would add noise.
     bool predicts_light() const { return plan_.has_suns || plan_.sources().useful_rays(SourceKind::suns, 1) == 0; }
 
     /// Traces camera rays alone at edges and textures, even if the time is over: they are cheap.
@@ -271,7 +273,7 @@ class PathPicture {
             samples_done_ += batch.size;
         }
         chunk.clear();
-        report(std::min(1.0, static_cast<double>(samples_done_) / foreseen_));
+        report(std::min(1.0, static_cast<double>(samples_done_) / expected_samples_));
     }
 
     void report(double fraction) {
@@ -291,7 +293,7 @@ class PathPicture {
     SharedBatches& shared_;
     bool has_all_pixels_ = false;
     std::vector<PixelStatistics> pixels_;
-    double foreseen_ = 0;  // expected number of samples of each half, summed over the pixels
+    double expected_samples_ = 0;  // expected number of samples of each half, summed over the pixels
     std::int64_t samples_done_ = 0;
     double error_ = std::numeric_limits<double>::infinity();  // last computed error of the picture
     std::int64_t samples_of_error_ = 0;                       // samples_done_ when error_ was computed

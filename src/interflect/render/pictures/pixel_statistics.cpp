@@ -15,9 +15,10 @@ namespace {
 
 /// A neighbourhood of radius r has (2 r + 1)^2 pixels.
 constexpr std::size_t neighbourhood_radius = 3, radius_of_lamps = 1, radius_of_edges = 1;
-/// First hits are added where their error, relative to the light around, exceeds this.
+/// First hits are added to pixels whose error, relative to the light around, exceeds this.
 constexpr double first_hit_target = hybrid_target / 6;
-/// Most first hits of a half. Where a whole picture shows edges, they take about as long as eight samples a pixel.
+/// Maximum number of first hits of a half. If a whole picture shows edges, they take about the time of eight samples a
+/// pixel.
 constexpr double most_first_hits = 32;
 
 std::array<RgbD, 3> parts_of(const PathLight& light) {
@@ -128,7 +129,7 @@ PathLight PixelStatistics::half_mean(std::size_t h) const {
     if (number_of_first_hits_ == 0) return mean;
     const RgbD emitted(first_hits_[h][0]), predicted(first_hits_[h][1]);
     const RgbD missing = predicted - mean.predicted;
-    // The other half divides the difference between direct and indirect light: its share is independent of it.
+    // Divide the difference into direct and indirect light in the ratio of the other half, which is independent of it.
     const PathLight& other = sums_[1 - h];
     for (int k = 0; k < 3; ++k) {
         const double reflected = other.direct[k] + other.indirect[k];
@@ -160,12 +161,12 @@ FirstHit PixelStatistics::first() const {
     return mean;
 }
 
-RgbD PixelStatistics::sampling_error(std::size_t part) const {
+RgbD PixelStatistics::squared_sampling_error(std::size_t part) const {
     if (!has_error()) return RgbD(0);
     return spread_.squares[part] / ((spread_.parts - 1.0) * spread_.parts);
 }
 
-RgbD PixelStatistics::record_error() const {
+RgbD PixelStatistics::squared_record_error() const {
     const PathLight mean = light();
     const double indirect = mean_channel(mean.indirect);
     if (!(indirect > 0)) return RgbD(mean.record_error * mean.record_error);
@@ -191,8 +192,9 @@ std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, c
                                    double target) {
     const std::vector<double> scale = error_scale(pixels, options);
     // Variance of a mean of two samples, one from each half
-    const std::vector<double> variance = of_pixels(
-        pixels, [](const PixelStatistics& p) { return mean_channel(p.sampling_error()) * p.samples_of_half(); });
+    const std::vector<double> variance = of_pixels(pixels, [](const PixelStatistics& p) {
+        return mean_channel(p.squared_sampling_error()) * p.samples_of_half();
+    });
     const std::vector<double> sums = sums_around(variance, options);
     const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options);
     std::vector<double> needed(pixels.size(), 0);
@@ -207,7 +209,7 @@ std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>&
                                              const PictureOptions& options) {
     // At an edge, the error of a mean of n stratified samples is about their standard deviation times n to the power of
     // -3/4.
-    constexpr double samples_per_error = 4.0 / 3;
+    constexpr double exponent = 4.0 / 3;
     const std::vector<double> scale = error_scale(pixels, options);
     const std::vector<double> emitted =
         of_pixels(pixels, [](const PixelStatistics& p) { return mean_channel(p.light().emitted); });
@@ -226,7 +228,7 @@ std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>&
         const double relative_to = std::max(scale[i], lamps);
         if (!(relative_to > 0)) continue;
         const double deviation = std::sqrt(std::max(0.0, sums[i] - variance[i]) / others) / relative_to;
-        const double of_half = std::pow(deviation / first_hit_target, samples_per_error) / 2;
+        const double of_half = std::pow(deviation / first_hit_target, exponent) / 2;
         if (of_half > pixels[i].samples_of_half())
             needed[i] = std::bit_ceil(static_cast<std::uint32_t>(std::min(most_first_hits, of_half)));
     }

@@ -40,12 +40,12 @@ class PixelStatistics {
     double reflected() const { return mean_channel(light().direct + light().indirect); }
 
     /// Squared standard errors per channel, with the error of records.
-    RgbD squared_error() const { return sampling_error(0) + record_error(); }
-    RgbD direct_squared_error() const { return sampling_error(1); }
-    RgbD indirect_squared_error() const { return sampling_error(2) + record_error(); }
+    RgbD squared_error() const { return squared_sampling_error(0) + squared_record_error(); }
+    RgbD direct_squared_error() const { return squared_sampling_error(1); }
+    RgbD indirect_squared_error() const { return squared_sampling_error(2) + squared_record_error(); }
     /// Returns the squared error of sampling, without the error of records, which more samples do not reduce.
     /// @param part  0: all light, 1: direct, 2: indirect.
-    RgbD sampling_error(std::size_t part = 0) const;
+    RgbD squared_sampling_error(std::size_t part = 0) const;
 
   private:
     /// Mean and squared deviations of independent parts (Welford 1962).
@@ -54,7 +54,7 @@ class PixelStatistics {
         std::uint32_t parts = 0;
         void add(const PathLight& light);
     };
-    RgbD record_error() const;
+    RgbD squared_record_error() const;
 
     std::array<PathLight, 2> sums_{};  // sum over the samples of each half
     std::uint32_t samples_ = 0;        // number of samples of each half

@@ -34,7 +34,7 @@ PathPlan PreparedLight::plan() const {
     if (sources_) plan.seen_sources = &*sources_;
     if (!light_) return plan;
     plan.known = &*light_;
-    plan.first_rays = first_shadow_rays;
+    plan.first_shadow_rays = first_shadow_rays;
     if (guide_) plan.hybrid = &hybrid_;
     return plan;
 }

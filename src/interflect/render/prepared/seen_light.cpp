@@ -43,7 +43,7 @@ float mean_radiosity(const KnownLight& light, const TracedScene& scene, std::spa
         std::vector<Ray> rays;
         for (std::size_t i = begin; i < end; ++i) {
             const auto words = random_words(key, i);
-            const SurfacePoint& p = random_one(points, words[0]);
+            const SurfacePoint& p = random_point(points, words[0]);
             rays.push_back({p.position, cosine_direction(p.normal, unit_float(words[1]), unit_float(words[2]))});
         }
         double found = 0;
@@ -63,11 +63,12 @@ std::vector<float> seen_shares(const KnownLight& light, const TracedScene& scene
                                std::uint64_t key) {
     const std::size_t count = test_rays_for(points);
     const TestedSources tested = send_test_rays(scene, scene.geometry.size(), count, [&](std::size_t i) {
-        const auto words = random_words(mix(key, 1), i), places = random_words(mix(key, 2), i);
-        const SurfacePoint& p = random_one(points, words[0]);
-        const KnownLight::Place place =
-            light.sample(p.position, p.normal, unit_float(words[1]), unit_float(places[0]), unit_float(places[1]))
-                .place;
+        const auto words = random_words(mix(key, 1), i), more_words = random_words(mix(key, 2), i);
+        const SurfacePoint& p = random_point(points, words[0]);
+        const KnownLight::Place place = light
+                                            .sample(p.position, p.normal, unit_float(words[1]),
+                                                    unit_float(more_words[0]), unit_float(more_words[1]))
+                                            .place;
         if (place.patch == none) return TestRay{};
         const V3f to = scene.geometry[place.patch].point(place.parameters) - p.position;
         if (!(p.normal.dot(to) > 0 && scene.geometry[place.patch].normal().dot(to) < 0)) return TestRay{};

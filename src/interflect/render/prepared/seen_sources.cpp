@@ -19,9 +19,9 @@ TestedSources test(const TracedScene& scene, const LightSources& sources, Source
                    std::span<const SurfacePoint> points, std::uint64_t key) {
     const std::size_t count = std::max(scene.scene.patches.size(), scene.scene.luminaires.size());
     return send_test_rays(scene, count, test_rays_for(points), [&](std::size_t i) {
-        const auto words = random_words(mix(key, 1), i), places = random_words(mix(key, 2), i);
-        const SurfacePoint& p = random_one(points, words[0]);
-        const LightSample numbers{unit_float(words[1]), unit_float(places[0]), unit_float(places[1]),
+        const auto words = random_words(mix(key, 1), i), more_words = random_words(mix(key, 2), i);
+        const SurfacePoint& p = random_point(points, words[0]);
+        const LightSample numbers{unit_float(words[1]), unit_float(more_words[0]), unit_float(more_words[1]),
                                   unit_float(words[2])};
         const SourceSample source = sources.sample(kind, p.position, p.normal, numbers);
         if (!(channel_sum(source.irradiance) > 0)) return TestRay{};
@@ -59,7 +59,7 @@ std::optional<LightSources> seen_sources(const TracedScene& scene, std::span<con
         if (tested.light_arrived >= least_arriving * tested.light_sent) continue;
         if (!seen) seen.emplace(scene.sources);
         seen->weigh(kind, weights(tested));
-        // Test the sources that hidden ones have outshone
+        // Test again: bright hidden sources received most of the first test rays
         add(tested, test(scene, *seen, kind, points, mix(key, 1)));
         seen->weigh(kind, weights(tested));
     }

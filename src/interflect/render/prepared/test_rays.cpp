@@ -18,7 +18,7 @@ std::size_t test_rays_for(std::span<const SurfacePoint> points) {
     return std::clamp(points.size(), min_rays, max_rays);
 }
 
-const SurfacePoint& random_one(std::span<const SurfacePoint> points, std::uint32_t word) {
+const SurfacePoint& random_point(std::span<const SurfacePoint> points, std::uint32_t word) {
     return points[static_cast<std::size_t>((std::uint64_t{word} * points.size()) >> 32)];
 }
 
@@ -33,17 +33,18 @@ TestedSources send_test_rays(const TracedScene& scene, std::size_t sources, std:
     parallel_for_ranges(count, tests_per_task, [&](std::size_t begin, std::size_t end) {
         ShadowRays rays;
         RayCounts counts;
-        std::vector<std::size_t> number;  // index of each ray in `sent`
+        std::vector<std::size_t> indices;  // index of each ray in `sent`
         for (std::size_t i = begin; i < end; ++i) {
             const TestRay test = sample(i);
             if (test.source == none) continue;
             sent[i].source = test.source;
             sent[i].light = test.light;
             rays.add(test.ray, test.patch, test.distance);
-            number.push_back(i);
+            indices.push_back(i);
         }
         const std::span<const Rgb> transmittance = rays.trace(scene.ray_caster, scene.panes, counts);
-        for (std::size_t k = 0; k < number.size(); ++k) sent[number[k]].arrives = largest_channel(transmittance[k]) > 0;
+        for (std::size_t k = 0; k < indices.size(); ++k)
+            sent[indices[k]].arrives = largest_channel(transmittance[k]) > 0;
     });
     TestedSources tested;
     tested.sent.resize(sources);

@@ -30,7 +30,7 @@ struct TestedSources {
 /// Returns the number of test rays for these points: about one per point, a small part of the rays that light it.
 std::size_t test_rays_for(std::span<const SurfacePoint> points);
 
-const SurfacePoint& random_one(std::span<const SurfacePoint> points, std::uint32_t word);
+const SurfacePoint& random_point(std::span<const SurfacePoint> points, std::uint32_t word);
 
 /// Traces `count` test rays.
 /// @param sources  Greater than every TestRay::source.

@@ -24,10 +24,10 @@ CoarseLight::CoarseLight(const PictureLayers& layers, const Image& picture)
 }
 
 std::optional<Rgb> CoarseLight::at(float column, float row, const V3f& x, const V3f& n) const {
-    constexpr int radius = 2;             // of the tent over pixels
+    constexpr int radius = 2;             // radius of the tent filter [pixels]
     constexpr float normal_scale = 0.1f;  // squared difference of normals, about 18 degrees
     constexpr float plane_scale = 1.5f;   // height above the tangent plane, relative to the pixel spacing
-    // Where no pixel shows the same plane, those at a small height count, else all.
+    // If no pixel shows the same plane, pixels at a small height above it determine the light, else all pixels.
     constexpr float share_of_far = 0.03f, share_of_heights = 1e-3f, share_of_all = 1e-6f;
     const float first_column = std::floor(column - 0.5f) - (radius - 1),
                 first_row = std::floor(row - 0.5f) - (radius - 1);
@@ -55,7 +55,7 @@ std::optional<Rgb> CoarseLight::at(float column, float row, const V3f& x, const 
             weights += weight;
         }
     if (!(weights > 0)) return std::nullopt;
-    // Pixels count in proportion to their reflectance, because the light of dark ones is hardly known.
+    // Weight pixels by their reflectance, because the light of dark pixels is uncertain.
     constexpr float darkest = 0.002f;
     Rgb light(0);
     for (int c = 0; c < 3; ++c) light[c] = std::max(0.0f, reflected[c]) / std::max(albedo[c], darkest * weights);

@@ -16,7 +16,7 @@ class CoarseLight {
 
     /// Returns the reflected light per reflectance at a point of a surface: irradiance / pi, or irradiance in pictures
     /// of it. Returns nullopt if no near pixel shows the surface.
-    /// @param column, row  Place in the picture [pixels]. @param x, n  Point and shading normal.
+    /// @param column, row  Position in the picture [pixels]. @param x, n  Point and shading normal.
     std::optional<Rgb> at(float column, float row, const V3f& x, const V3f& n) const;
 
   private:

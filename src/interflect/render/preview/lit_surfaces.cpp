@@ -36,11 +36,11 @@ LitSurfaces::LitSurfaces(const TracedScene& scene, const Solution& solution, con
 
 RayCounts LitSurfaces::draw(std::size_t begin, std::span<Rgb> pixels) const {
     RayCounts counts;
-    std::vector<V2f> places;
-    PathRays rays = camera_rays(begin, pixels.size(), places);
+    std::vector<V2f> raster;
+    PathRays rays = camera_rays(begin, pixels.size(), raster);
     find_surfaces(scene_, splits_, options_.mirrors, rays, counts);
     Sums sums(pixels.size(), RgbD(0));
-    std::vector<std::uint32_t> shown(places.size(), none);  // path whose hit each camera ray shows, as in layers
+    std::vector<std::uint32_t> shown(raster.size(), none);  // path whose hit each camera ray shows, as in layers
     for (std::uint32_t i = 0; i < rays.rays.size(); ++i) {
         const Path& path = rays.paths[i];
         sums[path.sample / camera_rays_] += RgbD(path.throughput * emitted_light(rays.rays[i], rays.hits[i]));
@@ -49,13 +49,13 @@ RayCounts LitSurfaces::draw(std::size_t begin, std::span<Rgb> pixels) const {
         else if (path.sets_first_hit)
             shown[path.sample] = i;
     }
-    // Light of panes and mirrors that also reflect diffusely includes all that they show
+    // Add coarse light. For panes and mirrors that also reflect diffusely, it includes all light from them
     std::vector<bool> is_lit(rays.rays.size(), false);
     for (std::size_t k = 0; k < shown.size(); ++k) {
         if (shown[k] == none) continue;
         const Hit& hit = rays.hits[shown[k]];
         const V3f x = point_of(rays.rays[shown[k]], hit);
-        const std::optional<Rgb> light = light_at(hit, x, places[k]);
+        const std::optional<Rgb> light = light_at(hit, x, raster[k]);
         const float per_light = shows_irradiance_ ? 1 : pi;
         const Rgb irradiance = light ? *light * per_light : irradiance_of_element(hit.patch, x);
         is_lit[shown[k]] = !light;
@@ -66,7 +66,7 @@ RayCounts LitSurfaces::draw(std::size_t begin, std::span<Rgb> pixels) const {
     return counts;
 }
 
-PathRays LitSurfaces::camera_rays(std::size_t begin, std::size_t count, std::vector<V2f>& places) const {
+PathRays LitSurfaces::camera_rays(std::size_t begin, std::size_t count, std::vector<V2f>& raster) const {
     const auto width = static_cast<std::size_t>(options_.width);
     PathRays rays;
     PointBlock points;
@@ -76,8 +76,8 @@ PathRays LitSurfaces::camera_rays(std::size_t begin, std::size_t count, std::vec
         const std::size_t column = pixel % width, row = pixel / width;
         const V2f corner(static_cast<float>(column), static_cast<float>(row));
         for (std::uint32_t k = 0; k < camera_rays_; ++k, ++path.sample) {
-            places.push_back(corner + V2f(points.coordinate[0][k], points.coordinate[1][k]));
-            rays.add(path, camera_.ray(places.back().x, places.back().y));
+            raster.push_back(corner + V2f(points.coordinate[0][k], points.coordinate[1][k]));
+            rays.add(path, camera_.ray(raster.back().x, raster.back().y));
         }
     }
     return rays;
@@ -93,9 +93,9 @@ Rgb LitSurfaces::per_irradiance(const Hit& hit, const V3f& x) const {
     return shows_irradiance_ ? Rgb(1) : scene_.colours(hit.patch, x).reflectance / pi;
 }
 
-std::optional<Rgb> LitSurfaces::light_at(const Hit& hit, const V3f& x, const V2f& place) const {
-    const float from_middle = place.x - static_cast<float>(options_.width) / 2;
-    return light_.at(coarse_axis_ + scale_ * from_middle, scale_ * place.y, x, scene_.geometry[hit.patch].normal());
+std::optional<Rgb> LitSurfaces::light_at(const Hit& hit, const V3f& x, const V2f& raster) const {
+    const float from_middle = raster.x - static_cast<float>(options_.width) / 2;
+    return light_.at(coarse_axis_ + scale_ * from_middle, scale_ * raster.y, x, scene_.geometry[hit.patch].normal());
 }
 
 Rgb LitSurfaces::irradiance_of_element(PatchIndex patch, const V3f& x) const {

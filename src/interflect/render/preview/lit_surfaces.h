@@ -20,7 +20,7 @@ namespace interflect::detail {
 class LitSurfaces {
   public:
     /// Arguments must outlive this.
-    /// @param options  Of the picture. @param light  Light without that of suns at first points.
+    /// @param options  Options of the picture. @param light  Light without that of suns at first points.
     /// @param coarse   Options of the coarser picture. Both pictures have the same view, and their centres coincide
     ///                 horizontally.
     LitSurfaces(const TracedScene& scene, const Solution& solution, const View& view, const PictureOptions& options,
@@ -32,13 +32,13 @@ class LitSurfaces {
   private:
     using Sums = std::vector<RgbD>;  // light of all camera rays, by pixel
 
-    /// @param places  Receives the place of each camera ray in the picture [pixels].
-    PathRays camera_rays(std::size_t begin, std::size_t count, std::vector<V2f>& places) const;
+    /// @param raster  Receives the position of each camera ray in the picture [pixels].
+    PathRays camera_rays(std::size_t begin, std::size_t count, std::vector<V2f>& raster) const;
     Rgb emitted_light(const Ray& ray, const Hit& hit) const;
     /// Returns the reflectance over pi, or 1 in a picture of irradiance.
     Rgb per_irradiance(const Hit& hit, const V3f& x) const;
-    /// Returns the light per reflectance. @param place  [pixels]
-    std::optional<Rgb> light_at(const Hit& hit, const V3f& x, const V2f& place) const;
+    /// Returns the light per reflectance. @param raster  Position in the picture [pixels].
+    std::optional<Rgb> light_at(const Hit& hit, const V3f& x, const V2f& raster) const;
     Rgb irradiance_of_element(PatchIndex patch, const V3f& x) const;
     /// @param is_lit  Whether each path has this light already.
     void add_light_of_suns(std::size_t begin, const PathRays& rays, const std::vector<bool>& is_lit, Sums& sums,
@@ -49,8 +49,9 @@ class LitSurfaces {
     const PictureOptions& options_;
     const CoarseLight& light_;
     const Camera camera_;
-    const float scale_, coarse_axis_;  // pixels of the coarser picture: per pixel, and left of its middle
-    const std::uint32_t camera_rays_;  // of a pixel
+    const float scale_;                // pixels of the coarser picture per pixel
+    const float coarse_axis_;          // column of the middle of the coarser picture [pixels]
+    const std::uint32_t camera_rays_;  // number per pixel
     const bool shows_irradiance_, splits_;
 };
 

@@ -47,13 +47,14 @@ Rendering preview(const Scene& scene, const Solution& solution, const RayCaster&
         throw InputError(fmt::format("a reduction of {}: expected 1 or more", preview_options.reduction));
     require_picture(view, options.width, options.height, scene.origin);
     constexpr double share_of_light = 0.7;  // rough share of the time, for progress reports
-    const PictureOptions few = reduced(options, preview_options.reduction);
-    Monitor of_light = monitor_section(monitor, 0, share_of_light);
-    of_light.on_picture = {};
+    const PictureOptions coarse = reduced(options, preview_options.reduction);
+    Monitor light_monitor = monitor_section(monitor, 0, share_of_light);
+    light_monitor.on_picture = {};
     KnownIrradiance known = known_irradiance(scene, *solution.forest, solution.irradiance);
     known.is_interpolated = true;
-    Rendering result = trace_picture(scene, ray_caster, start_at_camera(view, few, scene.origin), few, of_light, &known,
-                                     /*has_suns=*/false);
+    Rendering result =
+        trace_picture(scene, ray_caster, start_at_camera(view, coarse, scene.origin), coarse, light_monitor, &known,
+                      /*has_suns=*/false);
     const CoarseLight light(result.layers, denoise(result.layers, preview_options.denoiser).image);
     result.layers = {};
     result.standard_error = {};
@@ -62,7 +63,8 @@ Rendering preview(const Scene& scene, const Solution& solution, const RayCaster&
 
     result.image = Image(options.width, options.height);
     const TracedScene traced(scene, ray_caster);
-    const LitSurfaces surfaces(traced, solution, view, options, light, few, camera_rays_for(preview_options.reduction));
+    const LitSurfaces surfaces(traced, solution, view, options, light, coarse,
+                               camera_rays_for(preview_options.reduction));
     std::atomic<std::int64_t> rays{0}, escaped{0};
     parallel_for_ranges(result.image.pixels.size(), pixels_per_task, [&](std::size_t begin, std::size_t end) {
         if (monitor.stop && *monitor.stop) return;

@@ -30,13 +30,13 @@ struct HybridLight {
     const SkyGuide* guide = nullptr;       ///< Directions to the sky around the records; may be null.
 };
 
-/// Inputs of a PathIntegrator. For it, pictures, texels, vertices and measuring points differ only in their plan:
+/// Inputs of a PathIntegrator. Pictures, texels, vertices and measuring points differ only in their plan:
 ///
 ///     path tracing                             the defaults
 ///     instant radiosity                        virtual_lights
-///     final gathering                          known, first_rays
-///     hybrid shading                           known, first_rays, hybrid with its field and guide
-///     direct light of texels and vertices      first_rays, hybrid without a field
+///     final gathering                          known, first_shadow_rays
+///     hybrid shading                           known, first_shadow_rays, hybrid with its field and guide
+///     direct light of texels and vertices      first_shadow_rays, hybrid without a field
 ///     indirect light of a record               known, paths_per_place, has_direct = false
 ///
 /// All may have seen_sources.
@@ -44,7 +44,7 @@ struct PathPlan {
     const TracedScene& scene;
     const PathStart& start;
     const PictureOptions& options;
-    std::uint32_t first_rays = 1;                ///< Shadow rays to each kind of source at first points.
+    std::uint32_t first_shadow_rays = 1;         ///< Shadow rays to each kind of source at first points.
     bool has_direct = true;                      ///< Whether light that is reflected once is included.
     bool has_suns = true;                        ///< Whether directional lights light the first points.
     const LightSources* seen_sources = nullptr;  ///< Sources weighted by visibility; null: those of the scene.

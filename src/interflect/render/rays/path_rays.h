@@ -21,7 +21,7 @@ struct SourceSampling {
 
 struct Path {
     Rgb throughput{1, 1, 1};
-    std::uint32_t half_batch = 0;         ///< Index of the half batch.
+    std::uint32_t half_batch = 0;         ///< Index of the half batch: 2 k and 2 k + 1 are the halves of batch k.
     std::uint32_t sample = 0;             ///< Index of the camera or gauge sample among all half batches.
     std::uint32_t index_in_sequence = 0;  ///< Index of the path in the sequence of its half.
     // The last vertex of the path:
@@ -30,8 +30,9 @@ struct Path {
     V3f normal{0, 0, 0};    ///< Shading normal.
     PatchIndex patch{};     ///< Patch of the vertex; none for the camera and gauges in space.
     SourceSampling sampling{};
-    float travelled = 0;         ///< Distance from the vertex to the ray's origin, through panes and by mirrors [m].
-    bool sets_first_hit = true;  ///< Whether only clear panes and pure mirrors are in front of the first hit.
+    float travelled = 0;  ///< Distance from the vertex to the ray's origin, through panes and by mirrors [m].
+    bool sets_first_hit =
+        true;  ///< Whether only clear panes and pure mirrors precede the next hit, which is then the first hit.
     /// Number of samples for which the first hit of this path gives the level of the element; 0 for most paths, because
     /// elements are found slowly.
     std::uint32_t level_samples = 0;

@@ -60,7 +60,7 @@ struct PathLight {
 /// and fits coefficients across them (FirstPoints).
 struct SampleBatch {
     std::uint32_t pixel = 0;
-    std::uint32_t number = 0;       ///< Batches of different numbers are independent.
+    std::uint32_t number = 0;       ///< Number of the batch of its pixel. Batches of different numbers are independent.
     std::uint32_t first_index = 0;  ///< Index of the first path in the sequence of each half.
     std::uint32_t size = 1;         ///< Number of paths of each half.
     /// Whether the paths end at their first hit, with emitted and predicted light alone.

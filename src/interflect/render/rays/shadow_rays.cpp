@@ -24,8 +24,8 @@ std::span<const Rgb> ShadowRays::trace(const RayCaster& ray_caster, const Panes&
 }
 
 void ShadowRays::pass_panes(const RayCaster& ray_caster, const Panes& panes, RayCounts& counts) {
-    std::vector<std::size_t> passing;
-    std::vector<Ray> rest;
+    std::vector<std::size_t> passing;  // indices of the rays that pass a pane
+    std::vector<Ray> rest;             // their parts behind the pane
     std::vector<Hit> behind;
     for (int round = 0; round < Panes::max_consecutive_panes; ++round) {
         passing.clear();

@@ -30,6 +30,7 @@ class KnownLight {
     /// Returns the power of each patch to which sample() is proportional, sum of channels [lm or W].
     std::span<const float> sampling_powers() const { return power_; }
 
+    /// Point on a leaf of the solution.
     struct Place {
         PatchIndex patch;
         ElementIndex leaf;
@@ -41,7 +42,8 @@ class KnownLight {
     const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
     Rgb reflected_radiance(const Place& place) const;
 
-    /// Whether the leaf is small at this squared distance [m^2].
+    /// Whether the leaf fills a small solid angle at this squared distance [m^2]. Otherwise its constant radiosity
+    /// would be visible.
     bool is_far(const Place& place, float distance2) const {
         constexpr float max_solid_angle = 0.25f;  // [sr]
         return forest_.area(place.leaf) <= max_solid_angle * distance2;

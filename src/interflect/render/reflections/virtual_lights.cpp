@@ -46,12 +46,12 @@ VirtualLights::VirtualLights(const Scene& scene, const RayCaster& ray_caster, st
     for (std::size_t part = 0; part < emission_.part_count(); ++part)
         source_power_.push_back(channel_sum(emission_.power(part)));
     total_power_ = std::accumulate(source_power_.begin(), source_power_.end(), 0.0);
-    measure_bounds();
+    compute_bounds();
 }
 
 /// Bounds the geometric term by the density of the lights [1/m^2]. Computes the bounds from a pilot set of lights that
 /// draws no picture, because bounds that depend on the lights in use would bias the picture.
-void VirtualLights::measure_bounds() {
+void VirtualLights::compute_bounds() {
     renew(none);
     const double area = std::accumulate(geometry_.begin(), geometry_.end(), 0.0,
                                         [](double sum, const PatchGeometry& g) { return sum + double{g.area()}; });
@@ -72,7 +72,7 @@ void VirtualLights::renew(std::uint32_t number) {
     for (std::uint32_t step = 1; !walks.empty(); ++step) {
         const std::uint64_t step_key = mix(key, step);
         walks = survivors(meet_surfaces(walks), random_double(step_key, 0));
-        leave_lights(walks, mix(step_key, 1));
+        add_lights(walks, mix(step_key, 1));
     }
     std::vector<LightTree::Light> lights;
     lights.reserve(lights_.size());
@@ -106,7 +106,7 @@ std::vector<VirtualLights::Walk> VirtualLights::start(std::uint64_t key) const {
 void VirtualLights::start_at_patch(PatchIndex patch, std::uint64_t key, std::span<Walk> walks) const {
     const PatchGeometry& geometry = geometry_[patch];
     const V3f n = geometry.normal();
-    // Power of the patch over the expected number of its walks, per exitance.
+    // Flux of a walk per exitance: the power of the patch over the expected number of its walks.
     const auto flux_per_exitance = static_cast<float>(double{geometry.area()} * total_power_ /
                                                       (source_power_[patch] * static_cast<double>(walks_)));
     PointBlock points;
@@ -133,11 +133,11 @@ void VirtualLights::start_at_patch(PatchIndex patch, std::uint64_t key, std::spa
 
 void VirtualLights::start_at_luminaire(std::size_t part, std::uint64_t key, std::span<Walk> walks) const {
     const double power = source_power_[geometry_.size() + part];
-    const auto walks_of_power = static_cast<float>(power * static_cast<double>(walks_) / total_power_);
+    const auto expected_walks = static_cast<float>(power * static_cast<double>(walks_) / total_power_);
     PointBlock points;
     std::vector<Ray> rays(walks.size());
     emission_.shoot(part, PointSet::sobol, key, 0, points, rays);
-    for (std::size_t i = 0; i < walks.size(); ++i) walks[i] = {rays[i], Rgb(emission_.power(part)) / walks_of_power};
+    for (std::size_t i = 0; i < walks.size(); ++i) walks[i] = {rays[i], Rgb(emission_.power(part)) / expected_walks};
 }
 
 std::vector<VirtualLights::Walk> VirtualLights::meet_surfaces(std::span<const Walk> walks) {
@@ -180,7 +180,7 @@ std::vector<VirtualLights::Walk> VirtualLights::survivors(std::vector<Walk> walk
     return alive;
 }
 
-void VirtualLights::leave_lights(std::span<Walk> walks, std::uint64_t key) {
+void VirtualLights::add_lights(std::span<Walk> walks, std::uint64_t key) {
     for (std::uint32_t i = 0; i < walks.size(); ++i) {
         Walk& walk = walks[i];
         if (walk.patch == none) continue;

@@ -17,7 +17,7 @@
 namespace interflect::detail {
 
 /// Point lights that represent all reflected light of a scene (instant radiosity, Keller 1997). Random walks from the
-/// light sources leave a light at each diffuse reflection. For any function f, the expected value of the sum of (flux /
+/// light sources add a light at each diffuse reflection. For any function f, the expected value of the sum of (flux /
 /// pi) f(position) over the lights is the integral of f times the reflected radiance over all surfaces. Constant
 /// methods are thread-safe.
 class VirtualLights {
@@ -59,8 +59,8 @@ class VirtualLights {
     std::vector<Walk> meet_surfaces(std::span<const Walk> walks);
     std::vector<Walk> survivors(std::vector<Walk> walks, double uniform) const;
     /// Adds the lights of reflected walks and samples their directions.
-    void leave_lights(std::span<Walk> walks, std::uint64_t key);
-    void measure_bounds();
+    void add_lights(std::span<Walk> walks, std::uint64_t key);
+    void compute_bounds();
 
     const Scene& scene_;
     const RayCaster& ray_caster_;

@@ -40,12 +40,12 @@ ReceivedOrder receive_order(Ranks& ranks) {
     received.start.pixel_angle = header.pixel_angle;
     received.start.pixel_size = header.pixel_size;
     if (header.has_camera) {
-        received.start.camera.emplace(View{}, 1, 1, Imath::V3d(0));  // overwritten
+        received.start.camera.emplace(View{}, 1, 1, Imath::V3d(0));  // overwritten by the broadcast
         broadcast(ranks, std::span(&*received.start.camera, 1));
     }
     received.gauges.resize(header.gauges);
     broadcast(ranks, std::span(received.gauges));
-    received.start.gauges = received.gauges;  // the array does not move with the vector
+    received.start.gauges = received.gauges;  // remains valid if the vector is moved
     return received;
 }
 

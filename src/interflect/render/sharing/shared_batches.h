@@ -46,10 +46,12 @@ class SharedBatches {
     void help(const StopRequest& time_left);
 
   private:
+    /// Fields of a SampleBatch that other ranks need to trace it.
     struct Key {
         std::uint32_t pixel, number, first_index, size;
         bool ends_at_first_hit;
     };
+    /// Header of the message to the other ranks.
     struct Chunk {
         std::size_t batches = 0;         // number of batches; 0: the picture is finished
         std::uint32_t light_set = none;  // number of the set of virtual lights

@@ -20,38 +20,40 @@ std::uint32_t corner_count(const Corners& corners) { return corners[3] == none ?
 
 /// Corners of each child, as points of the parent: 0 to 3 are its corners, 4 + c is the midpoint of the edge that
 /// starts at corner c, and 8 is its centre.
-using Places = std::array<std::array<std::uint32_t, 4>, 4>;
-constexpr Places quadrilateral_children{{{0, 4, 8, 7}, {4, 1, 5, 8}, {7, 8, 6, 3}, {8, 5, 2, 6}}};
-constexpr Places triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};
+using ChildCorners = std::array<std::array<std::uint32_t, 4>, 4>;
+constexpr ChildCorners quadrilateral_children{{{0, 4, 8, 7}, {4, 1, 5, 8}, {7, 8, 6, 3}, {8, 5, 2, 6}}};
+constexpr ChildCorners triangle_children{{{0, 4, 6, 3}, {4, 1, 5, 3}, {6, 5, 2, 3}, {5, 6, 4, 3}}};
 
-/// Hash table with open addressing. It is several times faster here than std::unordered_map.
+/// Hash table from keys of edges to vertices, with open addressing. It is several times faster here than
+/// std::unordered_map.
 class KeyTable {
   public:
-    explicit KeyTable(std::size_t most) : entries_(std::bit_ceil(most + most / 2 + 1)) {}
+    explicit KeyTable(std::size_t max_keys) : entries_(std::bit_ceil(max_keys + max_keys / 2 + 1)) {}
 
-    std::uint32_t find(std::uint64_t key) const { return entries_[slot(key)].number; }
-    std::uint32_t find_or_insert(std::uint64_t key, std::uint32_t number) {
+    std::uint32_t find(std::uint64_t key) const { return entries_[slot(key)].vertex; }
+    std::uint32_t find_or_insert(std::uint64_t key, std::uint32_t vertex) {
         TableEntry& entry = entries_[slot(key)];
-        if (entry.number == none) entry = {key, number};
-        return entry.number;
+        if (entry.vertex == none) entry = {key, vertex};
+        return entry.vertex;
     }
 
   private:
     struct TableEntry {
         std::uint64_t key = 0;
-        std::uint32_t number = none;
+        std::uint32_t vertex = none;
     };
 
     std::size_t slot(std::uint64_t key) const {
         const std::size_t mask = entries_.size() - 1;
         std::size_t i = mix(key, 0) & mask;
-        while (entries_[i].number != none && entries_[i].key != key) i = (i + 1) & mask;
+        while (entries_[i].vertex != none && entries_[i].key != key) i = (i + 1) & mask;
         return i;
     }
 
     std::vector<TableEntry> entries_;
 };
 
+/// Numbers the vertices of all elements, and finds the vertices inside edges of leaves.
 class VertexBuilder {
   public:
     VertexBuilder(const Scene& scene, const ElementForest& forest, const SmoothingOptions& options)
@@ -64,7 +66,7 @@ class VertexBuilder {
         for (PatchIndex p{0}; p < forest.patch_count(); ++p)
             for (std::uint32_t c = 0; c < 4; ++c) corners_[p][c] = surfaces_.corners.group[CornerIndex(p, c)];
         for (ElementIndex e{0}; e < forest.size(); ++e)
-            if (!forest.is_leaf(e)) give_vertices_to_children(e);
+            if (!forest.is_leaf(e)) add_vertices_of_children(e);
     }
 
     std::uint32_t count() const { return static_cast<std::uint32_t>(edges_of_.size()); }
@@ -76,7 +78,7 @@ class VertexBuilder {
         for (ElementIndex e{0}; e < forest_.size(); ++e)
             if (forest_.is_leaf(e)) mark_middles_of_edges(e, hangs);
         for (std::uint32_t v = surfaces_.corners.count; v < count(); ++v) {
-            hangs[v] = hangs[v] || lies_on_half_of_a_leafs_edge(v, hangs);
+            hangs[v] = hangs[v] || is_on_half_of_leaf_edge(v, hangs);
             if (hangs[v]) hanging.push_back({v, edges_of_[v]});
         }
     }
@@ -111,7 +113,7 @@ class VertexBuilder {
         if (middle == count()) add_vertex(ends_of_edge(e, c));
         return middle;
     }
-    void give_vertices_to_children(ElementIndex e) {
+    void add_vertices_of_children(ElementIndex e) {
         const Corners& corners = corners_[e];
         std::array<std::uint32_t, 9> vertex{};
         std::copy(corners.begin(), corners.end(), vertex.begin());
@@ -128,8 +130,9 @@ class VertexBuilder {
         for (std::uint32_t c = 0; c < corner_count(corners_[leaf]); ++c)
             if (const std::uint32_t middle = middles_.find(edge_key(leaf, c)); middle != none) hangs[middle] = true;
     }
-    /// Requires the final values of `hangs` for all vertices before v.
-    bool lies_on_half_of_a_leafs_edge(std::uint32_t v, const std::vector<bool>& hangs) const {
+    /// Whether v is the middle of one half of a leaf edge: the half ends at the vertex that hangs in the middle of
+    /// that edge. Requires the final values of `hangs` for all vertices before v.
+    bool is_on_half_of_leaf_edge(std::uint32_t v, const std::vector<bool>& hangs) const {
         const auto [end, later_end] = edges_of_[v];
         return later_end != none && hangs[later_end] &&
                (edges_of_[later_end][0] == end || edges_of_[later_end][1] == end);
@@ -186,25 +189,28 @@ class VertexBuilder {
     struct SeamVertex {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;
-        float fraction, angle;
+        float fraction;
+        float angle;        // angle at the vertex on its side of the seam [rad]
         float edge_length;  // distance from ends[0] to ends[1] [m]
     };
 
+    /// Finds the leaf edge of the other side around each vertex on side k of the seam.
     static void add_seam_vertices(const SmoothSurfaces::Seam& seam, const SeamSides& sides, std::size_t k,
                                   std::vector<SeamVertex>& found) {
-        constexpr float margin = 1e-5f;
+        constexpr float margin = 1e-5f;  // for rounding of positions along the patch edge
         const std::size_t other = 1 - k;
         const auto& leaves = sides[other].leaves;
         const auto add = [&](std::uint32_t vertex, float at) {
             if (at < seam.from[k] - margin || at > seam.to[k] + margin) return;
             const bool is_end = at < seam.from[k] + margin || at > seam.to[k] - margin;
-            const float share = std::clamp((at - seam.from[k]) / (seam.to[k] - seam.from[k]), 0.0f, 1.0f);
-            const float there = seam.to[other] + share * (seam.from[other] - seam.to[other]);
+            // Both sides run in opposite directions
+            const float along_seam = std::clamp((at - seam.from[k]) / (seam.to[k] - seam.from[k]), 0.0f, 1.0f);
+            const float at_other = seam.to[other] + along_seam * (seam.from[other] - seam.to[other]);
             const auto leaf =
-                std::find_if(leaves.begin(), leaves.end(), [&](const LeafEdge& l) { return there <= l.at[1]; });
+                std::find_if(leaves.begin(), leaves.end(), [&](const LeafEdge& l) { return at_other <= l.at[1]; });
             if (leaf == leaves.end() || leaf->vertices[0] == vertex || leaf->vertices[1] == vertex) return;
             constexpr float pi = std::numbers::pi_v<float>;
-            found.push_back({vertex, leaf->vertices, std::clamp((there - leaf->at[0]) / leaf->size(), 0.0f, 1.0f),
+            found.push_back({vertex, leaf->vertices, std::clamp((at_other - leaf->at[0]) / leaf->size(), 0.0f, 1.0f),
                              is_end ? pi / 2 : pi, leaf->size() * sides[other].length});
         };
         for (const LeafEdge& leaf : sides[k].leaves) add(leaf.vertices[0], leaf.at[0]);
@@ -234,6 +240,7 @@ class VertexBuilder {
         for (const SeamVertex& v : found)
             if (v.edge_length > clearly_longer * longest_own[v.vertex] && hangs.insert(v.vertex).second)
                 hanging.push_back({v.vertex, v.ends, v.fraction});
+        // The other vertices are coupled; each has a total share of 1/2
         std::unordered_map<std::uint32_t, float> angle;  // sum of the angles of all couplings of a vertex
         for (const SeamVertex& v : found) angle[v.vertex] += v.angle;
         for (const SeamVertex& v : found)
@@ -245,7 +252,7 @@ class VertexBuilder {
     const SmoothSurfaces surfaces_;
     std::vector<Corners> corners_;
     std::vector<Ends> edges_of_;  // for each vertex, the ends of the edge that it halves, or no_edge
-    KeyTable middles_;
+    KeyTable middles_;            // vertex in the middle of each divided edge
 };
 
 }  // namespace

@@ -21,8 +21,8 @@ class ElementVertices {
         std::array<std::uint32_t, 2> ends;
         float fraction = 0.5f;  // position on the edge: 0 at ends[0], 1 at ends[1]
     };
-    /// Vertex on a seam (SmoothSurfaces::Seam), inside a leaf edge of the other side that is not clearly longer than
-    /// its own leaf edges. Its value is averaged with the value of the other side.
+    /// Vertex on a seam (SmoothSurfaces::Seam), inside a leaf edge of the other side. That edge is not clearly longer
+    /// than the vertex's own leaf edges, so its value is averaged with the value of the other side.
     struct Coupling {
         std::uint32_t vertex;
         std::array<std::uint32_t, 2> ends;

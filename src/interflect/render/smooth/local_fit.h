@@ -45,9 +45,10 @@ class LocalFit {
         const float determinant = a * d - st_ * st_;
         const float s = determinant > 0 ? (s_ * d - t_ * st_) / determinant : 0;
         const float t = determinant > 0 ? (t_ * a - s_ * st_) / determinant : 0;
-        const float own = weight_ - s_ * s - t_ * t;
-        if (!(own > 0)) return {1 / weight_, 0, 0};
-        return {1 / own, -s / own, -t / own};
+        // Schur complement of the slopes: the weight of the constant
+        const float remaining = weight_ - s_ * s - t_ * t;
+        if (!(remaining > 0)) return {1 / weight_, 0, 0};
+        return {1 / remaining, -s / remaining, -t / remaining};
     }
     /// Returns the value at the origin, within the range of the values.
     Rgb value() const {

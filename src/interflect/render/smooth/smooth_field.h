@@ -25,7 +25,7 @@ class SmoothField {
   private:
     const ElementForest& forest_;
     const ElementVertices& vertices_;
-    std::vector<Rgb> value_;
+    std::vector<Rgb> value_;  // of each vertex
 };
 
 }  // namespace interflect::detail

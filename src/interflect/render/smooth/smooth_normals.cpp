@@ -11,9 +11,11 @@ namespace interflect::detail {
 
 namespace {
 
-/// Ridge that bounds G if neighbours are nearly coplanar. It reduces G by 2% on a regular mesh.
+/// Ridge of the fit of G, relative to the squared variation of the corner normals. It bounds G if neighbours are nearly
+/// coplanar, and reduces G by 2% on a regular mesh.
 constexpr double relative_ridge = 0.02;
 
+/// Returns the mean irradiance of the leaves along edge c of an element.
 Rgb mean_along_edge(const ElementForest& forest, std::span<const Rgb> irradiance, ElementIndex e, std::uint32_t c,
                     bool is_triangle) {
     if (forest.is_leaf(e)) return irradiance[e];
@@ -57,6 +59,7 @@ SmoothNormals::SmoothNormals(const Scene& scene, const SmoothSurfaces& surfaces)
     if (scene.normals.empty()) return;
     const CornerNormals normals(scene, surfaces);
     const std::vector<V3f> own = patch_normals(scene);
+    // Find the patch edges that form each shared edge
     std::vector<std::array<EdgeIndex, 2>> members(surfaces.edges.count);
     for (std::size_t i = 0; i < surfaces.edges.group.size(); ++i) {
         if (surfaces.edges.group[i] == none) continue;
@@ -90,6 +93,7 @@ SmoothNormals::Gradient SmoothNormals::gradient(const ElementForest& forest, std
     const auto along = [&](PatchIndex patch, std::uint32_t edge) {
         return mean_along_edge(forest, irradiance, patch, edge, forest.geometry(patch).is_triangle());
     };
+    // Fit G to the steps of irradiance across all edges, by least squares
     Imath::M33d squares(0, 0, 0, 0, 0, 0, 0, 0, 0);
     Gradient found{{Imath::V3d(0), Imath::V3d(0), Imath::V3d(0)}, Rgb(0)};
     for (const Neighbour& n : neighbours(curved)) {
@@ -113,6 +117,7 @@ SmoothNormals::Gradient SmoothNormals::gradient(const ElementForest& forest, std
 }
 
 void SmoothNormals::apply(const ElementForest& forest, std::vector<Rgb>& irradiance) const {
+    // Gradients use the uncorrected irradiance of all neighbours
     std::vector<Gradient> gradients(curved_.size());
     constexpr std::size_t patches_per_task = 256;
     parallel_for_ranges(curved_.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {

@@ -44,7 +44,7 @@ class SmoothNormals {
     };
     struct Gradient {
         std::array<Imath::V3d, 3> by_normal;  ///< G of each channel.
-        Rgb largest_change;
+        Rgb largest_change;                   ///< Largest step of irradiance across an edge.
     };
 
     Gradient gradient(const ElementForest& forest, std::span<const Rgb> irradiance, const CurvedPatch& curved) const;

@@ -55,12 +55,12 @@ Deviation reciprocity_deviation(const ViewFactors& f) {
             const bool is_first_of_pair = back == Transposed::absent ? j != i : i < j;
             if (!is_first_of_pair || !(std::min(f.areas[i], f.areas[j]) > 0)) continue;
             const bool has_back = back != Transposed::absent;
-            const double there = f.areas[i] * f.values[e], there_error = f.areas[i] * f.errors[e];
-            const double home = has_back ? f.areas[j] * f.values[static_cast<std::size_t>(back)] : 0;
-            const double home_error =
+            const double x_ij = f.areas[i] * f.values[e], error_ij = f.areas[i] * f.errors[e];
+            const double x_ji = has_back ? f.areas[j] * f.values[static_cast<std::size_t>(back)] : 0;
+            const double error_ji =
                 f.areas[j] * (has_back ? double{f.errors[static_cast<std::size_t>(back)]} : f.smallest_error());
             const double scale = std::min(f.areas[i], f.areas[j]);
-            sum.add((there - home) / scale, std::hypot(there_error, home_error) / scale);
+            sum.add((x_ij - x_ji) / scale, std::hypot(error_ij, error_ji) / scale);
         }
     return sum.result();
 }

@@ -26,7 +26,7 @@ struct Average {
     double value, variance;  // [m^2], [m^4]
 };
 
-/// Symmetric in i and j, bit for bit.
+/// Averages X_ij and X_ji. Symmetric in i and j, bit for bit.
 Average average(const ViewFactors& f, std::size_t i, std::size_t j, ViewFactors::Factor there,
                 ViewFactors::Factor back) {
     const double a = f.areas[i], b = f.areas[j];
@@ -87,6 +87,7 @@ ExchangeAreas directed_exchange(const ViewFactors& f) {
 }
 
 ExchangeAreas symmetric_exchange(const ViewFactors& f) {
+    // Allocate rows with room for entries whose opposite entry alone exists
     const std::vector<std::int64_t> absent = count_absent(f);
     ExchangeAreas x;
     x.row_offsets.assign(1, 0);
@@ -101,6 +102,7 @@ ExchangeAreas symmetric_exchange(const ViewFactors& f) {
         x.values[entry] = static_cast<float>(a.value);
         x.variances[entry] = static_cast<float>(a.variance);
     };
+    // Write the added entries of each row first, then its own entries; both are in increasing order
     std::vector<std::size_t> added(f.size(), 0);
     Transposed transposed(f);
     for (std::size_t i = 0; i < f.size(); ++i) {

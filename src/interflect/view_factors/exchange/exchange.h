@@ -9,11 +9,12 @@
 
 namespace interflect::detail {
 
-/// ExchangeAreas areas X_ij = A_i F_ij [m^2] with their variances, as a sparse matrix. Symmetric to the last bit if the
-/// two directions of each pair were averaged.
+/// Exchange areas X_ij = A_i F_ij [m^2] with their variances, as a sparse matrix. It is symmetric to the last bit if
+/// the two directions of each pair were averaged.
 struct ExchangeAreas {
-    static constexpr std::size_t others = 3;          ///< Sky, ground and blocked.
-    static constexpr std::size_t rows_per_task = 64;  ///< Milliseconds, even for rows of thousands of entries.
+    static constexpr std::size_t others = 3;  ///< Sky, ground and blocked.
+    /// Tasks take milliseconds, even for rows of thousands of entries.
+    static constexpr std::size_t rows_per_task = 64;
 
     std::vector<std::int64_t> row_offsets;
     std::vector<std::int32_t> columns;
@@ -25,7 +26,7 @@ struct ExchangeAreas {
     std::size_t end(std::size_t row) const { return static_cast<std::size_t>(row_offsets[row + 1]); }
 };
 
-/// Converts factors as they are.
+/// Converts factors without averaging the two directions of a pair.
 ExchangeAreas directed_exchange(const ViewFactors& factors);
 
 /// Averages both directions of each pair, with weights 1 / (A_i (1 - F_ij)): the inverse of the variance of independent

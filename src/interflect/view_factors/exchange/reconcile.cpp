@@ -13,7 +13,7 @@ using namespace detail;
 
 namespace {
 
-/// Closure, relative to each row: below the rounding of a sum of floats.
+/// Tolerance of closure, relative to the area of each row: below the rounding of a sum of floats.
 constexpr double tolerance = 1e-8;
 /// Far above the numbers in use: 1 to 3 solves with 4 to 26 iterations in total (docs/method/view-factors.md).
 constexpr int max_solves = 50, max_iterations = 1000;
@@ -21,7 +21,7 @@ constexpr int max_solves = 50, max_iterations = 1000;
 /// Weighted least squares: minimises sum (X - Y)^2 / V over X >= 0 whose rows sum to the areas, for the values Y and
 /// variances V of an ExchangeAreas. Its solution is X_ij = max(0, Y_ij + V_ij (lambda_i + lambda_j)), or without
 /// lambda_j if the directions are independent. Newton's method finds the multipliers lambda: each solve has a symmetric
-/// positive semidefinite matrix, of the entries that are positive at the moment.
+/// positive semidefinite matrix, of the entries that are currently positive.
 class Fit {
   public:
     Fit(const ExchangeAreas& exchange, const std::vector<double>& areas, bool is_symmetric)
@@ -70,7 +70,7 @@ class Fit {
         return largest;
     }
 
-    /// Multiplies by the derivative of the rows' sums by lambda.
+    /// Multiplies v by the derivative of the row sums with respect to lambda.
     std::vector<double> multiply(const std::vector<double>& v) const {
         return by_row([&](std::size_t i) {
             double sum = 0;
@@ -116,7 +116,7 @@ class Fit {
             if (stop.is_due()) throw Interrupted();
             const std::vector<double> image = multiply(direction);
             const double curvature = dot(direction, image);
-            if (!(curvature > 0)) break;  // incompatible laws: the rest cannot be reduced
+            if (!(curvature > 0)) break;  // closure contradicts reciprocity, so the rest cannot be reduced
             const double length = rest_z / curvature;
             for (std::size_t i = 0; i < rest.size(); ++i) {
                 step[i] += length * direction[i];

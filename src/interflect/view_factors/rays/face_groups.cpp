@@ -47,7 +47,7 @@ Scene with_opaque_backs(const Scene& scene) {
     Scene result = scene;
     const auto black = static_cast<std::uint32_t>(result.materials.size());
     result.materials.emplace_back();
-    // Larger surfaces have lower priority: all backs together are one.
+    // All backs form one surface, because faces of larger surfaces have lower priority.
     std::uint32_t surface = 0;
     for (const Patch& patch : scene.patches)
         if (patch.surface != none) surface = std::max(surface, patch.surface + 1);

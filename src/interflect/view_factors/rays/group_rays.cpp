@@ -43,23 +43,22 @@ void GroupRays::make(std::uint64_t key, std::uint64_t first, std::size_t count, 
     const auto& [a, b, c, d] = batch.points.coordinate;
     batch.rays.resize(count);
     batch.sources.resize(count);
-    const double whole = sources_.back().area_up_to_here;
+    const double total_area = sources_.back().area_up_to_here;
     for (std::size_t i = 0; i < count; ++i) {
         // The first coordinate selects the patch; the rest of it is uniform again.
-        const double at = a[i] * whole;
-        const auto above =
-            std::upper_bound(sources_.begin(), sources_.end() - 1, at,
-                             [](double area, const Source& source) { return area < source.area_up_to_here; });
-        const double before = above == sources_.begin() ? 0 : std::prev(above)->area_up_to_here;
-        const auto rest = static_cast<float>((at - before) / (above->area_up_to_here - before));
-        const PatchGeometry& geometry = above->geometry;
+        const double area = a[i] * total_area;
+        const auto source = std::upper_bound(sources_.begin(), sources_.end() - 1, area,
+                                             [](double x, const Source& s) { return x < s.area_up_to_here; });
+        const double before = source == sources_.begin() ? 0 : std::prev(source)->area_up_to_here;
+        const auto rest = static_cast<float>((area - before) / (source->area_up_to_here - before));
+        const PatchGeometry& geometry = source->geometry;
         const V3f normal = geometry.normal();
         const TangentFrame frame(normal);
         const float radius = std::sqrt(c[i]), turn = 2 * std::numbers::pi_v<float> * d[i];  // Malley's method
         batch.rays[i] = {
-            geometry.point(geometry.uniform_parameters(std::clamp(rest, 0.0f, 1.0f), b[i])) + normal * above->offset,
+            geometry.point(geometry.uniform_parameters(std::clamp(rest, 0.0f, 1.0f), b[i])) + normal * source->offset,
             frame.s * (radius * std::cos(turn)) + frame.t * (radius * std::sin(turn)) + normal * std::sqrt(1 - c[i])};
-        batch.sources[i] = static_cast<std::uint32_t>(above - sources_.begin());
+        batch.sources[i] = static_cast<std::uint32_t>(source - sources_.begin());
     }
     if (has_covered_parts_) drop_covered_starts(batch);
 }

@@ -16,16 +16,16 @@ class GroupRays {
   public:
     GroupRays(const Scene& scene, const RayCaster& ray_caster, const FaceGroup& group);
 
-    double area() const { return area_; }  ///< Uncovered [m^2].
+    double area() const { return area_; }  ///< Uncovered area [m^2].
 
     struct Batch {
         PointBlock points;
         std::vector<Ray> rays;
-        std::vector<Ray> probes;  // down to the start points of covered patches
+        std::vector<Ray> probes;  // rays down to the start points, to find those on covered parts
         std::vector<Hit> hits;
-        std::vector<std::uint32_t> sources;
+        std::vector<std::uint32_t> sources;  // index into sources_ of each ray
     };
-    /// Makes rays first ... of the sequence `key` in batch.rays. Omits rays that start on covered parts.
+    /// Generates the rays from `first` on of the sequence `key` in batch.rays. Omits rays that start on covered parts.
     /// @param count  At most PointBlock::capacity.
     void make(std::uint64_t key, std::uint64_t first, std::size_t count, Batch& batch) const;
 
@@ -34,7 +34,7 @@ class GroupRays {
         PatchGeometry geometry;
         PatchIndex patch;
         float offset;            // of the rays' origins above the patch [m]
-        double area_up_to_here;  // with covered parts [m^2]
+        double area_up_to_here;  // cumulative area, with covered parts [m^2]
     };
     void drop_covered_starts(Batch& batch) const;
 
