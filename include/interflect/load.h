@@ -57,7 +57,8 @@ struct PlacedLuminaire {
     double turn = 0;  ///< Rotation about its axis, counter-clockwise seen from above the luminaire [degrees].
     std::optional<double> lumens{};  ///< Lamp flux, instead of the file's; luminaire flux if the file has none.
     double maintenance = 1;          ///< Maintenance factor of its light, for ageing lamps and dust.
-    bool by_top = false;  ///< Whether `position` is 1 mm above the top of its opening, at a ceiling, or its middle.
+    /// Whether `position` is on a ceiling, 1 mm above the top of the opening; else it is the opening's middle.
+    bool by_top = false;
 };
 
 /// Returns the measured light at its place. Without `turn` its C0 half plane contains x, or z if the luminaire faces

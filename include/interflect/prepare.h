@@ -90,8 +90,9 @@ std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, c
 
 /// Fast part of validate(), in milliseconds: probable mistakes in placement, units or axes. Problems: "close-luminaire"
 /// (more than half of its light falls on a surface within 2 cm, or within a hundredth of a scene smaller than 2 m),
-/// "outside-luminaire" (all of its light escapes; in a closed room, more than half of it, or a quarter of all
-/// directions are free), "wide-opening" (larger than the scene, or through its walls), "enclosed-luminaire" (in a
+/// "outside-luminaire" (all of its light escapes; in a closed room, more than half of it, or rays in a quarter of
+/// all directions), "wide-opening" (larger than the scene, or through its walls), "sunk-luminaire" (the upper half of
+/// its opening is in a ceiling or wall), "enclosed-luminaire" (in a
 /// closed space without a view that is too narrow for a room, or that keeps all light from the views) and
 /// "shut-out-sky" (a sky or a sun, and a closed scene seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT
 /// in one scene), "probable-unit" and "probable-up-axis" (for formats without either), and "contradicting-normals"
@@ -122,7 +123,7 @@ struct UpAxis {
     V3f direction() const;  ///< Unit vector.
 };
 
-/// Returns the common up axis of the views, or opposite to most emitted light, since most lamps hang.
+/// Returns the common up axis of the views, else the axis opposite to most emitted light, since most lamps hang.
 /// @return  nullopt if neither exists.
 std::optional<UpAxis> find_up_axis(const Scene& scene);
 
