@@ -90,8 +90,8 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
     if (options.refinement.max_elements < scene.patches.size())
         throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}",
                                      options.refinement.max_elements, scene.patches.size(), scene.name));
-    const std::size_t there_is = usable_memory();
-    const std::size_t bytes = memory > 0 ? std::min(memory, there_is) : there_is;
+    const std::size_t usable = usable_memory();
+    const std::size_t bytes = memory > 0 ? std::min(memory, usable) : usable;
     const MemoryNeed need = memory_need(scene, ray_caster, options);
     require_memory(need.with(scene.patches.size()), scene.name);
     if (options.method.bytes_per_ray > 0) {
