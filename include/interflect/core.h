@@ -129,7 +129,7 @@ struct Monitor {
     /// null, except in the command, which shares them.
     Ranks* ranks = nullptr;
     /// Receives unfinished pictures of render() in hybrid shading, on the calling thread: from the first samples of
-    /// every pixel on, as long as more may follow. May be empty.
+    /// every pixel on, while more may follow. May be empty.
     std::function<void(const Rendering&)> on_picture = {};
 };
 

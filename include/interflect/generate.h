@@ -54,7 +54,7 @@ Scene make_boxes(const BoxesOptions& options);
 
 struct TwoRoomsOptions {
     float turn = 0;          ///< Rotation of the partition about the vertical [degrees], -40 to 40.
-    bool furniture = false;  ///< Whether to add two cabinets per side, and paper on one of them.
+    bool furniture = false;  ///< Whether to add two cabinets per side, and paper on a cabinet.
 };
 
 /// Creates two sealed rooms of 4 x 4 x 3 m with common floor, ceiling and outer wall polygons, which a rotated

@@ -113,7 +113,7 @@ void bind_findings(py::module_& m) {
             .raises(""));
 }
 
-/// Sets `value` to that of a keyword, if it is given, and removes the keyword.
+/// Sets `value` from a keyword, if it is given, and removes the keyword.
 template <class Value>
 void take(py::dict& remaining, const char* name, Value& value) {
     if (!remaining.contains(name)) return;

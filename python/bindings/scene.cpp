@@ -13,7 +13,7 @@ namespace {
 
 using SharedScene = std::shared_ptr<Scene>;
 
-/// Returns a function that converts an attribute of the vertices to an array, or to None if the scene has none.
+/// Returns a function that converts an attribute of the vertices to an array, or to None if it is missing.
 template <class Member>
 auto vertex_array(Member Scene::*member) {
     return [member](const SharedScene& scene) -> py::object {

@@ -254,8 +254,8 @@ bool is_replaceable(const std::filesystem::path& output) {
     return !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
 }
 
-/// Whether rough pictures precede the last one. Without --progressive, there are none under a time limit, in .exr and
-/// .hdr, and for small pictures.
+/// Whether rough pictures precede the last one. Without --progressive, they are omitted under a time limit, in .exr
+/// and .hdr, and for small pictures.
 bool takes_previews(const RenderArguments& options) {
     constexpr std::size_t fewest_pixels = 1 << 16;  // smaller pictures take less than a second
     if (options.progressive) return true;

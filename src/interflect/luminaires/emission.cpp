@@ -17,7 +17,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Returns the scene's bounding box with a margin, so that its rays start outside the scene.
+/// Returns the scene's bounding box with a margin, which keeps origins of rays outside the scene.
 Imath::Box3f box_around(const Scene& scene) {
     constexpr float margin = 1e-3f;  // relative to the diagonal
     Imath::Box3f box;

@@ -39,7 +39,7 @@ RayStart ray_start(const Scene& scene, const MeasuringPoint& point, float offset
 }
 
 struct FirstHits {
-    std::uint64_t escaped = 0;      ///< Rays that hit nothing but panes.
+    std::uint64_t escaped = 0;      ///< Rays that leave the scene, perhaps through panes.
     std::uint64_t met = 0;          ///< Rays with a hit.
     std::uint64_t passed_back = 0;  ///< Rays that pass the back of a one-sided face before the hit.
     bool is_inside_solid() const { return 2 * passed_back > met; }

@@ -49,7 +49,7 @@ class Paths {
         return path;
     }
 
-    /// Whether paths from `x` leave to the sky or see one of the lit points.
+    /// Whether paths from `x` leave to the sky or see a lit point.
     bool is_lit(const V3f& x, std::span<const V3f> lit, bool has_sky) const {
         constexpr std::uint64_t paths = 16, segments = 8;
         for (std::uint64_t i = 0; i < paths; ++i) {

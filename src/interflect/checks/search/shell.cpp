@@ -71,7 +71,7 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
         if (hit.patch == none) continue;
         ++met;
         const MetFace face = met_face(scene, ray_caster, line(i), hit);
-        // The inner side is one that few rays leave: the back of the face or, for lines through an opening, its front.
+        // Few rays leave the inner side, which is the back of the face or, for lines through an opening, its front.
         SightLines::RayOutcomes inner =
             lines.trace_from_surface(face.back, -face.normal, seed_of_sides, max_escaped_inside);
         if (inner.escaped > max_escaped_inside)
