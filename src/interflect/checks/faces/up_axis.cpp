@@ -63,7 +63,7 @@ std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, 
 
 constexpr std::size_t min_objects = 4;
 
-/// Returns the bounding boxes of at least four objects, else those of sets of connected faces.
+/// Returns the bounding boxes of the objects. Fewer than four objects are divided into connected faces.
 std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
     std::vector<Imath::Box3f> boxes =
         boxes_of_parts(scene, scene.objects.size(), [](const Patch& patch) { return patch.object; });
