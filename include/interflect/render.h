@@ -88,10 +88,10 @@ struct Rendering {
     PictureLayers layers;  ///< Empty in flat and smooth shading, as are `standard_error` and `batches`.
     /// Standard error of each pixel and channel, in the same unit, from the spread of independent samples.
     Image standard_error;
-    /// Standard error over the largest of the mean radiance of the 48 pixels around, the mean emitted radiance of the
-    /// pixel and the eight around it, and the picture's mean reflected radiance (channel means), root mean square over
-    /// the pixels; 0 for a picture without light. Infinite if any pixel has fewer than two batches; NaN in flat and
-    /// smooth shading.
+    /// Root mean square over the pixels of their relative standard errors (channel means). The error of a pixel is
+    /// relative to the largest of: the mean radiance of the 48 pixels around, the mean emitted radiance of the pixel
+    /// and the eight around it, and the picture's mean reflected radiance. 0 for a picture without light. Infinite if
+    /// any pixel has fewer than two batches; NaN in flat and smooth shading.
     double relative_error = std::numeric_limits<double>::quiet_NaN();
     std::int64_t rays = 0;               ///< Camera rays, reflected rays and shadow rays.
     std::int64_t shadow_rays = 0;        ///< Number of shadow rays, which are included in `rays`.
@@ -104,10 +104,10 @@ struct Rendering {
 
 /// Draws a view of a solved scene by any Shading.
 ///
-/// The samples of a pixel form two independent halves. Without a target, in all shadings but hybrid, every pixel gets
-/// `samples`, rounded up to whole batches. With one, and in hybrid shading, the number of samples follows from the
-/// noise of the pixels around it, not from its own, which would bias it; later rounds multiply all numbers by a common
-/// factor.
+/// The samples of a pixel form two independent halves. Without a target, in all shadings except hybrid, every pixel
+/// gets `samples`, rounded up to whole batches. With a target, and in hybrid shading, the number of samples follows
+/// from the noise of the pixels around it, not from its own, which would bias it; later rounds multiply all numbers by
+/// a common factor.
 ///
 /// @param solution  Of the same scene, as is `ray_caster`.
 /// @return          The same bits for the same seed and any number of threads, unless interrupted or out of time.

@@ -96,8 +96,8 @@ std::string illuminance_figure(const ReportPlan& plan) {
 }
 
 std::string values_figure(const ReportPlan& plan, std::span<const MeasuredGrid> areas) {
-    constexpr double widest_digits = 2.6;  // width of four digits and a gap, in font heights
-    constexpr double smallest = 7, largest = 19;
+    constexpr double widest_digits = 2.6;         // width of four digits and a gap, in font heights
+    constexpr double smallest = 7, largest = 19;  // font sizes
     const Frame frame(plan);
     Image pale = plan.outlines;
     for (Rgb& pixel : pale.pixels) pixel = Rgb(0.45f) + pixel * 0.55f;

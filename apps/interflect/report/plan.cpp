@@ -201,8 +201,8 @@ Image outlines_below(const Scene& scene, const RayCaster& ray_caster, const Rast
                 seen[static_cast<std::size_t>(row) * width + c] = {rays[c].origin.z - hits[c].distance,
                                                                    patch_normal(scene, scene.patches[hits[c].patch])};
     }
-    constexpr float step = 0.02f;  // visible difference in height [m]
-    constexpr float crease = 0.9f;
+    constexpr float step = 0.02f;   // visible difference in height [m]
+    constexpr float crease = 0.9f;  // cosine between normals
     const auto differ = [](const Seen& a, const Seen& b) {
         return std::abs(a.z - b.z) > step * (1 + 4 * (1 - std::min(a.normal.z, b.normal.z))) ||
                a.normal.dot(b.normal) < crease;

@@ -39,7 +39,7 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
 
 /// Warns if one-sided faces stop light but not reversed paths, or the reverse.
 void warn_of_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
-    constexpr double min_share = 0.02, min_reflected = 0.01;
+    constexpr double min_share = 0.02, min_reflected = 0.01;  // of all received light
     const OneWayLight found = find_one_way_light(scene, ray_caster, solution);
     if (std::abs(found.share) < min_share && std::abs(found.reflected_share) < min_reflected) return;
     const bool is_bright = found.share > 0;

@@ -71,8 +71,8 @@ bool has_integer_coordinates(const Scene& scene) {
 void add_unit(const Scene& scene, const Shell& shell, std::vector<Finding>& findings) {
     for (const Warnings::Entry& warning : scene.warnings.entries())
         if (warning.kind == "implausible-size") return;  // the reader has already asked for the unit
-    constexpr float largest_path = 80;  // a hangar of 300 x 100 x 40 m has 52; a room in centimetres 230
-    constexpr float largest_mesh = 200;
+    constexpr float largest_path = 80;   // a hangar of 300 x 100 x 40 m has 52; a room in centimetres 230
+    constexpr float largest_mesh = 200;  // diagonal [m]
     const float size = core_bounds(scene).size().length();
     std::string evidence;
     if (shell.mean_free_path > largest_path)

@@ -82,6 +82,7 @@ std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<PatchIndex> pa
     for (const PatchGeometry& g : geometry) box.extendBy(g.centre());
     const double tolerance = same_plane_distance * (static_cast<double>(box.size().length()) +
                                                     std::sqrt(static_cast<double>(geometry[order[0]].area())));
+    // Add each patch, from the largest on, to the first plane that contains it.
     std::vector<PlanarArea> planes;
     std::vector<V3f> on_plane;  // a point of each plane
     for (const std::size_t k : order) {

@@ -88,7 +88,7 @@ std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     if (boxes.size() < min_objects) return shares;
     Imath::Box3f all;
     for (const Imath::Box3f& box : boxes) all.extendBy(box);
-    constexpr float min_distance = 0.01f;
+    constexpr float min_distance = 0.01f;  // of the scene's diagonal
     const float distance = min_distance * all.size().length();
     for (const Imath::Box3f& box : boxes)
         for (int axis = 0; axis < 3; ++axis) {
@@ -113,7 +113,7 @@ bool is_flat(const V3f& extent, int axis) {
 }  // namespace
 
 const char* detail::find_other_up_axis(const Scene& scene) {
-    constexpr double min_standing = 0.5, min_advantage = 0.25;
+    constexpr double min_standing = 0.5, min_advantage = 0.25;  // share of the objects, and its advantage over z
     if (scene.patches.empty() || axis_of_views(scene)) return nullptr;
     const char* const of_light = axis_of_light(scene);
     const auto standing = standing_objects(scene);

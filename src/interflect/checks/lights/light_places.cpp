@@ -44,8 +44,8 @@ Outcome outcome_of(const Scene& scene, std::span<const Ray> rays, const SightLin
 /// Whether more than a twentieth of a luminaire's light would start behind a wall after a shift.
 bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const SightLines& lines,
                            const V3f& shift = V3f(0)) {
-    constexpr std::size_t step = 4;
-    constexpr float flush = 0.99f;  // an opening may touch a ceiling
+    constexpr std::size_t step = 4;  // tests a quarter of the rays
+    constexpr float flush = 0.99f;   // an opening may touch a ceiling
     std::size_t outside = 0;
     for (std::size_t i = 0; i < rays.size(); i += step) {
         const V3f start = middle + flush * (rays[i].origin - middle) + shift;

@@ -48,7 +48,7 @@ MetFace met_face(const Scene& scene, const RayCaster& ray_caster, const Ray& lin
 }
 
 bool is_seen_inside(const Scene& scene, const SightLines& lines) {
-    constexpr float min_extent = 2;
+    constexpr float min_extent = 2;  // of a room [m]
     if (scene.views.empty()) {
         const V3f extent = core_bounds(scene).size();
         return std::min({extent.x, extent.y, extent.z}) >= min_extent;
