@@ -128,8 +128,8 @@ struct Monitor {
     /// process reads `stop`, which then ends the work within some seconds. Pictures, measurements and exports need
     /// null, except in the command, which shares them.
     Ranks* ranks = nullptr;
-    /// Receives unfinished pictures of render() in hybrid shading, on the calling thread: from the first samples of
-    /// every pixel on, while more may follow. May be empty.
+    /// Receives an unfinished picture from render() in hybrid shading, on the calling thread: once, after the first
+    /// samples of every pixel, if more may follow. May be empty.
     std::function<void(const Rendering&)> on_picture = {};
 };
 

@@ -38,8 +38,8 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
 /// Drawing takes at most this share of the time that is left.
 constexpr double largest_drawing_share = 0.9;
 
-/// Returns the part of `left` [s] that is reserved for drawing: at least the predicted time. If more samples refine the
-/// picture, it is also at least three quarters, as in the default run of an office.
+/// Returns the part of `left` [s] that is reserved for drawing: the predicted time, at most largest_drawing_share. If
+/// more samples refine the picture, it is at least three quarters, as in the default run of an office.
 double reserved_for(const DrawingTime& predicted, bool is_refined, double left);
 
 }  // namespace interflect::command
