@@ -73,6 +73,7 @@ int run(int argc, char** argv) {
     return exit_code;
 }
 
+/// Ends the other processes when the command ends.
 struct Dismissal {
     Dismissal() = default;
     ~Dismissal() { interflect::command::dismiss_ranks(); }
@@ -80,7 +81,7 @@ struct Dismissal {
     Dismissal& operator=(const Dismissal&) = delete;
 };
 
-/// Returns the exit code.
+/// Works for the first process until it ends. Returns the exit code.
 int serve() try {
     interflect::command::serve_first_rank();
     return interflect::command::done;

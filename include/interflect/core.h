@@ -118,18 +118,18 @@ struct Progress {
 class Ranks;
 struct Rendering;
 
-/// Progress reports and early termination of long work, and who shares it.
+/// Progress reports and early termination of long work, and the processes that share it.
 struct Monitor {
     /// Called on the calling thread: after each iteration of the solver, or several times a second. May be empty.
     std::function<void(const Progress&)> on_progress;
     /// Once true, the work ends within milliseconds. May be set by another thread or a signal handler; may be null.
     const std::atomic<bool>* stop = nullptr;
-    /// Processes that share a run of the solver; null: this one works alone. All of them make the same call. `stop` of
-    /// the first one counts, and ends the work after some seconds. Only the command shares pictures, measurements and
-    /// exports; elsewhere their monitor needs null.
+    /// Processes that share a run of the solver, each with the same call; null: this process alone. Only the first
+    /// process reads `stop`, which then ends the work within some seconds. Pictures, measurements and exports need
+    /// null, except in the command, which shares them.
     Ranks* ranks = nullptr;
-    /// Called on the calling thread by render() in hybrid shading with a picture so far, once every pixel has its first
-    /// samples, if more may follow. May be empty.
+    /// Receives an unfinished picture from render() in hybrid shading, on the calling thread: once, after the first
+    /// samples of every pixel, if more may follow. May be empty.
     std::function<void(const Rendering&)> on_picture = {};
 };
 

@@ -56,7 +56,7 @@ DenoisedPicture denoise(const PictureLayers& layers, Denoiser denoiser = Denoise
 /// Library of Denoiser::oidn.
 struct DenoiserLibrary {
     std::string version;  ///< "2.5.1"; empty if none can be used.
-    std::string file;     ///< Or its name for the dynamic linker.
+    std::string file;     ///< Path, or name for the dynamic linker.
     std::string fault;    ///< Reason, if none can be used.
 };
 

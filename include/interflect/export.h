@@ -26,7 +26,7 @@ struct BakeOptions {
     /// number in default_samples. Ignored by Shading::smooth.
     int samples = 0;
     std::uint64_t seed = 1;
-    std::optional<Denoiser> denoiser = Denoiser::own;  ///< Of lightmaps by Shading::hybrid; empty: none.
+    std::optional<Denoiser> denoiser = Denoiser::own;  ///< Filter of lightmaps by Shading::hybrid; empty: none.
 };
 
 /// Triangulation for light in vertices, which is finer where direct light varies. Ignored by Shading::smooth.
@@ -60,8 +60,8 @@ struct LightmapOptions {
     std::string image = ".exr";  ///< Format of the images beside the file: .exr or .hdr.
     bool own_charts = false;     ///< Whether Scene::lightmap_coordinates are ignored.
     /// Whether the light of a scene from a glTF file is added to that file (Scene::files), which keeps its nodes,
-    /// meshes and materials. Else, and with a warning if the file is not there as it was read, the faces of the scene
-    /// are written anew.
+    /// meshes and materials. Else the faces of the scene are written as a new file; also, with a warning, if the file
+    /// is missing or has changed since it was read.
     bool keep_file = true;
     bool keep_lights = false;  ///< Whether a file that is kept keeps its light sources, whose light is in the lightmap.
     /// Memory limit [bytes], checked before allocation.

@@ -23,7 +23,8 @@ struct MazeOptions {
 /// @throws InputError for options out of range.
 Scene make_maze(const MazeOptions& options);
 
-/// Returns the number for about `patches` patches; ignores options.rooms. @throws InputError above max_rooms.
+/// Returns the number of rooms with about `patches` patches in total; ignores options.rooms. @throws InputError above
+/// max_rooms.
 std::uint32_t maze_rooms_for(std::uint64_t patches, const MazeOptions& options);
 
 struct OfficeOptions {
@@ -52,8 +53,8 @@ struct BoxesOptions {
 Scene make_boxes(const BoxesOptions& options);
 
 struct TwoRoomsOptions {
-    float turn = 0;          ///< About the vertical [degrees], -40 to 40.
-    bool furniture = false;  ///< Two cabinets per side, paper on one.
+    float turn = 0;          ///< Rotation of the partition about the vertical [degrees], -40 to 40.
+    bool furniture = false;  ///< Whether to add two cabinets per side, and paper on a cabinet.
 };
 
 /// Creates two sealed rooms of 4 x 4 x 3 m with common floor, ceiling and outer wall polygons, which a rotated

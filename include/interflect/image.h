@@ -119,7 +119,7 @@ enum class Tonemap {
     srgb,      ///< Linear, clipped at 1: displays true ratios of light.
     reinhard,  ///< On luminance, which preserves hue; 4 becomes white (Eq. 4 of Reinhard et al. 2002).
     filmic,    ///< Narkowicz's fit of the ACES response, per channel; keeps mid-grey 0.18, 10 becomes white.
-    agx,       ///< Sobotka's AgX: bright colours desaturate as on film; 0.18 becomes 0.22, 6.5 stops more become white.
+    agx,       ///< Sobotka's AgX: bright colours desaturate as on film; 0.18 becomes 0.22; 6.5 stops above is white.
     ward,      ///< A single factor that preserves the visibility of threshold contrasts (Ward 1994).
     tumblin,  ///< Preserves brightness by Stevens' law (Tumblin and Rushmeier 1993, as revised by Tumblin et al. 1999).
     ferwerda,  ///< Thresholds of cones and rods; colours fade below 20 cd/m^2 (Ferwerda et al. 1996, without acuity).

@@ -1,5 +1,5 @@
 #pragma once
-/// Types of indices, so that an element cannot be taken for a patch.
+/// Index types, which prevent confusion of elements with patches.
 
 #include <concepts>
 #include <cstddef>
@@ -35,8 +35,8 @@ struct PatchIndex {
     }
 };
 
-/// Index into the vectors of a Solution. Elements are patches and pieces of them; a patch has the same index as an
-/// element, but an element is no patch.
+/// Index into the vectors of a Solution. Elements are patches and their pieces. A patch index converts to an element
+/// index, but an element index does not convert to a patch index.
 struct ElementIndex {
     std::uint32_t value = none;
 

@@ -12,9 +12,10 @@ namespace interflect {
 
 /// Rays that leave a scene, sampled from the surfaces of a solution.
 struct Escapes {
-    std::int64_t rays = 0;          ///< Rays traced; 0 if all surfaces are dark.
-    std::int64_t escaped = 0;       ///< Rays that left the scene.
-    std::int64_t through_gaps = 0;  ///< Escaped rays with hits of most parallel rays, 2% of the scene's diagonal away.
+    std::int64_t rays = 0;     ///< Rays traced; 0 if all surfaces are dark.
+    std::int64_t escaped = 0;  ///< Rays that left the scene.
+    /// Escaped rays for which most parallel rays, 2% of the scene's diagonal away, have a hit.
+    std::int64_t through_gaps = 0;
 
     /// Fraction of the power leaving the surfaces that leaves the scene, in [0, 1]; 0 without rays.
     double share() const { return rays > 0 ? static_cast<double>(escaped) / static_cast<double>(rays) : 0; }

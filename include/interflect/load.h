@@ -28,13 +28,14 @@ struct ReadOptions {
     /// Flat pieces per quarter circle of a curved surface, 1 to 1000. Pieces of an emitting surface have its exact
     /// area.
     int curve_divisions = 4;
-    std::uint64_t max_patches = 50'000'000;  ///< Total patches, at most 4 * 10^9; also bounds the work for arrays.
+    std::uint64_t max_patches = 50'000'000;  ///< Total patches, at most 4 * 10^9; also bounds the copies of MGF arrays.
     int max_include_depth = 32;              ///< Nested include files; 0 refuses every include.
     int max_nesting = 1000;                  ///< Nested transforms, and nested objects.
     std::size_t max_line_length = 1 << 16;   ///< Characters, including continuation lines.
-    std::size_t max_face_vertices = 1024;    ///< Twice the limit of MGF's own parser; crossing loops cost its square.
-    std::size_t max_name_length = 256;       ///< Characters of one name; four times that for a dotted object name.
-    std::size_t max_photometric_bytes = 1 << 24;             ///< Size of one photometric file (.ies, .ldt).
+    /// Twice the limit of MGF's own parser. The time for crossing outlines grows with its square.
+    std::size_t max_face_vertices = 1024;
+    std::size_t max_name_length = 256;            ///< Characters of one name; four times that for a dotted object name.
+    std::size_t max_photometric_bytes = 1 << 24;  ///< Size of one photometric file (.ies, .ldt).
     std::uint64_t max_model_bytes = std::uint64_t{1} << 32;  ///< Mesh file, with referenced and unpacked data.
     std::size_t max_json_bytes = 1 << 26;                    ///< Size of the text of a glTF file.
     /// Radiance files that are read after the scene's file, in any folder. They see the modifiers of earlier files, as
@@ -57,7 +58,8 @@ struct PlacedLuminaire {
     double turn = 0;  ///< Rotation about its axis, counter-clockwise seen from above the luminaire [degrees].
     std::optional<double> lumens{};  ///< Lamp flux, instead of the file's; luminaire flux if the file has none.
     double maintenance = 1;          ///< Maintenance factor of its light, for ageing lamps and dust.
-    bool by_top = false;  ///< Whether `position` is 1 mm above the top of its opening, at a ceiling, or its middle.
+    /// Whether `position` is on a ceiling, 1 mm above the top of the opening; else it is the opening's middle.
+    bool by_top = false;
 };
 
 /// Returns the measured light at its place. Without `turn` its C0 half plane contains x, or z if the luminaire faces

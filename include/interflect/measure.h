@@ -298,7 +298,7 @@ struct ProbeGrid {
 inline constexpr std::int64_t max_probes = 1'000'000;
 
 /// Measures the light of probes in a solution as measure_irradiance() does, at 128 points for each probe: the facets of
-/// a small ball, in a random rotation. The coefficients are unbiased but for the solution's error from the second
+/// a small ball, in a random rotation. The coefficients are unbiased except for the solution's error from the second
 /// bounce on. For light from a single direction, degree 1 is exact, and the facets give irradiance() an error of 0.18%
 /// of the light (root mean square over normals and rotations; at most 1.3%).
 /// @param ray_caster  Of the same scene, as is `solution`.

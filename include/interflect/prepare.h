@@ -90,14 +90,15 @@ std::vector<Finding> validate(const Scene& scene, const RayCaster& ray_caster, c
 
 /// Fast part of validate(), in milliseconds: probable mistakes in placement, units or axes. Problems: "close-luminaire"
 /// (more than half of its light falls on a surface within 2 cm, or within a hundredth of a scene smaller than 2 m),
-/// "outside-luminaire" (all of its light escapes; in a closed room, more than half of it, or a quarter of all
-/// directions are free), "wide-opening" (larger than the scene, or through its walls), "enclosed-luminaire" (in a
-/// closed space without a view that is too narrow for a room, or that keeps all light from the views) and
-/// "shut-out-sky" (a sky or a sun, and a closed scene seen from inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT
-/// in one scene), "probable-unit" and "probable-up-axis" (for formats without either), and "contradicting-normals"
-/// (Scene::normals that deviate by 10 degrees or more from plane faces, which ignore them). Traces 384 to 1280 rays for
-/// each point light, spot and measured light, and at most 64 x 66 for its opening, for at most 1024 of them; 2^17 rays
-/// from views or points if a space is closed; and 2^14 lines to find openings to the sky.
+/// "outside-luminaire" (all of its light escapes; in a closed room, more than half of it, or rays in a quarter of all
+/// directions), "wide-opening" (larger than the scene, or through its walls), "sunk-luminaire" (the upper half of its
+/// opening is in a ceiling or wall), "enclosed-luminaire" (in a closed space without a view that is too narrow for a
+/// room, or that keeps all light from the views) and "shut-out-sky" (a sky or a sun, and a closed scene seen from
+/// inside). Notes: "mixed-photometry" (LM-63 and EULUMDAT in one scene), "probable-unit" and "probable-up-axis" (for
+/// formats without either), and "contradicting-normals" (Scene::normals that deviate by 10 degrees or more from plane
+/// faces, which ignore them). Traces 384 to 1280 rays for each point light, spot and measured light, and at most 64 x
+/// 66 for its opening, for at most 1024 of them; 2^17 rays from views or points if a space is closed; and 2^14 lines to
+/// find openings to the sky.
 /// @return  In this order, the same for any number of threads. @throws InputError as validate() does.
 std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_caster,
                                     const ValidateOptions& options = {});
@@ -122,7 +123,7 @@ struct UpAxis {
     V3f direction() const;  ///< Unit vector.
 };
 
-/// Returns the common up axis of the views, or opposite to most emitted light, since most lamps hang.
+/// Returns the common up axis of the views, else the axis opposite to most emitted light, since most lamps hang.
 /// @return  nullopt if neither exists.
 std::optional<UpAxis> find_up_axis(const Scene& scene);
 

@@ -26,7 +26,7 @@ class Ranks {
 
     /// Sends parts[r] to rank r. @return  Received bytes, by sender.
     virtual std::vector<Bytes> exchange(const std::vector<Bytes>& parts) = 0;
-    /// Returns the bytes of all ranks, whose numbers may differ.
+    /// Returns the bytes of all ranks. Their sizes may differ.
     virtual std::vector<Bytes> gather(std::span<const std::byte> bytes) = 0;
     /// Copies the bytes of rank 0 to all ranks. All ranks must pass equal sizes.
     virtual void broadcast(std::span<std::byte> bytes) = 0;

@@ -74,7 +74,7 @@ struct PictureLayers {
     Image normal;    ///< Normal of the visible surface, towards the camera; shorter than 1 as a mean of several.
     Image position;  ///< Position of the visible surface, relative to the scene's origin [m].
     std::vector<float> depth;  ///< Distance of the visible surface from the camera [m]; 0 without a hit.
-    std::vector<float> level;  ///< Level of the visible element of the solution, of some samples; 0 without one.
+    std::vector<float> level;  ///< Level of the visible element, from some of the samples; 0 without one.
     float pixel_angle = 0;     ///< Angle of a pixel's side at the centre of the picture [rad]; 0 if orthographic.
     float pixel_size = 0;      ///< Side of a pixel in an orthographic picture [m]; else 0.
 };
@@ -88,10 +88,10 @@ struct Rendering {
     PictureLayers layers;  ///< Empty in flat and smooth shading, as are `standard_error` and `batches`.
     /// Standard error of each pixel and channel, in the same unit, from the spread of independent samples.
     Image standard_error;
-    /// Standard error over the largest of the mean radiance of the 48 pixels around, the mean emitted radiance of the
-    /// pixel and the eight around it, and the picture's mean reflected radiance (channel means), root mean square over
-    /// the pixels; 0 for a picture without light. Infinite if any pixel has fewer than two batches; NaN in flat and
-    /// smooth shading.
+    /// Root mean square over the pixels of their relative standard errors (channel means). The error of a pixel is
+    /// relative to the largest of: the mean radiance of the 48 pixels around, the mean emitted radiance of the pixel
+    /// and the eight around it, and the picture's mean reflected radiance. 0 for a picture without light. Infinite if
+    /// any pixel has fewer than two batches; NaN in flat and smooth shading.
     double relative_error = std::numeric_limits<double>::quiet_NaN();
     std::int64_t rays = 0;               ///< Camera rays, reflected rays and shadow rays.
     std::int64_t shadow_rays = 0;        ///< Number of shadow rays, which are included in `rays`.
@@ -104,18 +104,19 @@ struct Rendering {
 
 /// Draws a view of a solved scene by any Shading.
 ///
-/// The samples of a pixel form two independent halves. Without a target, in all shadings but hybrid, every pixel gets
-/// `samples`, rounded up to whole batches. With one, and in hybrid shading, the number of samples follows from the
-/// noise of the pixels around it, not from its own, which would bias it; later rounds multiply all numbers by a common
-/// factor.
+/// The samples of a pixel form two independent halves. Without a target, in all shadings except hybrid, every pixel
+/// gets `samples`, rounded up to whole batches. With a target, and in hybrid shading, the number of samples follows
+/// from the noise of the pixels around it, not from its own, which would bias it; later rounds multiply all numbers by
+/// a common factor.
 ///
 /// @param solution  Of the same scene, as is `ray_caster`.
 /// @return          The same bits for the same seed and any number of threads, unless interrupted or out of time.
 /// @throws InputError for a view that defines no picture, an option out of range, and a solution or a ray caster of
 ///         another scene.
-/// Cost: of flat and smooth shading, a ray per sample; of others, two rays a vertex, 250 bytes a patch and 760 a pixel.
-/// Paths have two vertices in gathering; in path tracing 1 / (1 - rho) or a few more for reflectances about rho.
-/// Instant radiosity has three more shadow rays at the first vertex and fewer bounces, and takes 0.5 to 4 kB a walk.
+/// Cost: flat and smooth shading trace a ray per sample; others trace two rays per vertex of a path, and take 250 bytes
+/// per patch and 760 per pixel. Paths have two vertices in gathering, and about 1 / (1 - rho) or a few more in path
+/// tracing, for reflectances about rho. Instant radiosity traces three more shadow rays at the first vertex and fewer
+/// bounces, and takes 0.5 to 4 kB per walk.
 Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                  const PictureOptions& options = {}, const Monitor& monitor = {});
 
@@ -147,7 +148,7 @@ struct QuantityPicture {
 };
 
 /// Draws a number of the visible elements, without shading, in false colours. The scale is fitted to the visible
-/// values, and logarithmic but for levels.
+/// values, and logarithmic except for levels.
 /// @param options  Its size, `samples` >= 1 and `seed`.
 /// @throws InputError as render() does, and for importance of a solution without views.
 QuantityPicture draw_quantity(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,

@@ -101,8 +101,8 @@ struct Material {
     /// Textures that multiply the reflectance and the exitance (indices into Scene::textures, or none). The products
     /// obey the limits above.
     std::uint32_t reflectance_texture = none, exitance_texture = none;
-    /// Fraction of light that passes straight through: thin glass, or with a texture the holes of a leaf or a fence. At
-    /// most 1 in sum with both reflectances.
+    /// Fraction of light that passes straight through: thin glass, or with a texture the holes of a leaf or a fence.
+    /// The sum with both reflectances is at most 1.
     Rgb transmittance{0, 0, 0};
     std::uint32_t transmittance_texture = none;  ///< Multiplies the transmittance.
     /// Mirrored fraction of light. The camera sees it in gathered and path-traced pictures; the solver loses it.
@@ -120,9 +120,11 @@ struct Patch {
     /// Counter-clockwise seen from the lit side; [3] == none for a triangle.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
     std::uint32_t material = 0;
-    PatchIndex other_side{};       ///< Patch on the back of the face; none if one-sided.
-    std::uint32_t object = 0;      ///< Index into Scene::objects.
-    std::uint32_t surface = none;  ///< Equal within a flat surface with cut faces; none: derived from edges.
+    PatchIndex other_side{};   ///< Patch on the back of the face; none if one-sided.
+    std::uint32_t object = 0;  ///< Index into Scene::objects.
+    /// Number of the flat surface that contains the patch, if cut_at_contacts() cut its faces; none: the surface is
+    /// derived from whole edges.
+    std::uint32_t surface = none;
 
     bool is_triangle() const { return vertices[3] == none; }
     int vertex_count() const { return is_triangle() ? 3 : 4; }
@@ -158,7 +160,7 @@ struct Scene {
     /// (u, v) of every vertex, or empty if no patch is textured.
     std::vector<V2f> texture_coordinates;
     /// (u, v) in [0, 1] of every vertex in its object's own lightmap, if the file provides one (TEXCOORD_1 of glTF);
-    /// (0, 0) is the lower left corner. Empty without any. The corners of a patch either all have coordinates or are
+    /// (0, 0) is the lower left corner. Empty if no vertex has any. The corners of a patch all have coordinates or are
     /// all NaN.
     std::vector<V2f> lightmap_coordinates;
     /// Unit normal of the smooth surface at every vertex, as the file has it (glTF NORMAL, OBJ vn, PLY nx ny nz, MGF
@@ -186,7 +188,7 @@ struct Scene {
 std::vector<Fault> scene_faults(const Scene& scene);
 
 /// @param purpose  Start of the message: "cannot solve".
-/// @throws InputError that lists the faults, if any: "cannot solve 'room.mgf':" and a line each.
+/// @throws InputError that lists the faults, if any: "cannot solve 'room.mgf':" and one line per fault.
 void require_no_faults(const std::vector<Fault>& faults, const std::string& purpose, const Scene& scene);
 
 /// Largest coordinate of faces and views, in the world and from the scene's origin [m]; a double resolves 1/8 m there.
@@ -217,7 +219,7 @@ View overview(const Scene& scene);
 View cut_view(const Scene& scene, const Imath::V3d& point, const Imath::V3d& direction, float aspect);
 
 /// @throws InputError for a view that defines no picture of this size: without a direction, with pixels finer than
-///         coordinates or directions of rays, or with too many pixels.
+///         the rounding of coordinates or ray directions, or with too many pixels.
 /// @param origin  Scene::origin.
 void require_picture(const View& view, int width, int height, const Imath::V3d& origin);
 

@@ -16,7 +16,7 @@ enum class Shading {
     /// Irradiance of the solution, interpolated between the leaves of a smooth surface: continuous, linear on triangles
     /// and bilinear on quadrilaterals.
     smooth,
-    /// Direct light by shadow rays, with the light without occluders as a control variate: unbiased for any number of
+    /// Direct light by shadow rays, with unoccluded light as a control variate: unbiased for any number of
     /// samples. Indirect light is interpolated between sparse points that gather 128 to 1,024 directions each
     /// (irradiance caching, Ward et al. 1988); where no point is near, it is gathered. Biased by the error of the
     /// solution from the second bounce on, and by interpolation. The standard error includes the noise of the points
@@ -27,7 +27,7 @@ enum class Shading {
     /// rays, which end at the radiosity rho H of the element hit. If that element fills too large a solid angle, as in
     /// corners, the path continues as in path tracing. Contact shadows are therefore sharp, and the mesh affects only a
     /// small fraction of indirect light. For finer elements the light converges to path tracing. Unbiased for any
-    /// number of samples but for the error of the solution from the second bounce on, which the standard error
+    /// number of samples except for the error of the solution from the second bounce on, which the standard error
     /// excludes.
     gather,
     /// Path tracing (Kajiya 1986), an independent reference for the radiosity solver. Surfaces are diffuse; light
@@ -39,10 +39,10 @@ enum class Shading {
     /// for any number of samples.
     path,
     /// Instant radiosity (Keller 1997) without bias (Kollig and Keller 2004). Direct light as by `path`, indirect light
-    /// by shadow rays to virtual lights, which random walks from the light sources leave at their reflections. Paths
-    /// find the light of near virtual lights, whose contributions are bounded. The expected value is that of path
-    /// tracing, unless a one-sided face is between a source and a lit surface. The standard error includes the error of
-    /// the lights: each batch of a pixel has another set.
+    /// by shadow rays to virtual lights, which random walks from the light sources leave at their reflections. The
+    /// contributions of near virtual lights are bounded; paths add the missing light. The expected value is that of
+    /// path tracing, unless a one-sided face is between a source and a lit surface. The standard error includes the
+    /// error of the lights: each batch of a pixel has another set.
     instant,
 };
 

@@ -43,7 +43,7 @@ struct IterationReport {
     double discretisation_estimate = std::numeric_limits<double>::infinity();
     /// Payload of a ray relative to the mean of all rays: maximum, and value exceeded by 0.1% of the rays.
     double largest_payload = 1, high_payload = 1;
-    /// Share of all hits whose places refinement has lost; method photon-mesh only. Not in the history of solution
+    /// Share of all hits whose positions refinement has lost; method photon-mesh only. Not in the history of solution
     /// files.
     double discarded_hits = 0;
 };

@@ -48,7 +48,7 @@ struct Method {
     const char* no_importance = nullptr;            ///< Reason why importance is not supported; null if it is.
     bool is_stochastic = true;                      ///< Its noise is measured and decreases with the rays.
     bool takes_luminaires = true;                   ///< Supports light sources that are not surfaces.
-    std::size_t bytes_per_ray = 0;                  ///< Peak of the memory for each ray of a run that is kept.
+    std::size_t bytes_per_ray = 0;                  ///< Peak memory per ray of methods that keep all rays; others 0.
     bool separates_groups = false;                  ///< Keeps the light of each light group separate.
     bool separates_direct = false;                  ///< Supports SolveOptions::keep_direct.
     bool shares_rays = false;                       ///< Divides its rays among Monitor::ranks; others repeat all work.
@@ -91,9 +91,10 @@ struct RefinementOptions {
 /// Use of the views (Method::importance).
 struct ImportanceOptions {
     int camera_rays = 1 << 16;  ///< Rays per view of the first estimate of V, 1 to max_camera_rays; more follow later.
-    /// Fraction of the parent's importance in the importance that controls an element's rays and refinement; exponent
-    /// of importance in the sampling probability. In [0, 1]; 0 and 1, respectively, as in the paper.
-    double smoothing = 0.9, exponent = 0.75;
+    /// Fraction of the parent's importance in the importance that controls an element's rays and refinement, in [0, 1];
+    /// 0: as in the paper.
+    double smoothing = 0.9;
+    double exponent = 0.75;  ///< Exponent of importance in the sampling probability, in [0, 1]; 1: as in the paper.
 };
 
 /// Variants of the paper. Names, meanings and defaults may change with any version.
@@ -104,7 +105,7 @@ struct ExperimentalOptions {
     /// passes are averaged. If true, each iteration is one bounce of the running mean, as in the paper, from darkness
     /// through warm_up iterations; methods that keep every ray then skip the initial pass.
     bool one_bounce = false;
-    int warm_up = 0;     ///< Iterations with tau = 1 before averaging begins; >= 0.
+    int warm_up = 0;     ///< Iterations before averaging begins, >= 0; each replaces the mean (tau = 1 in Eq. 6).
     int iterations = 0;  ///< Number of averaged iterations, >= 0; 0: until a limit is reached.
     /// Rays per iteration, at most max_rays_per_iteration; 0: grows with the number of rays averaged.
     std::int64_t rays_per_iteration = 0;

@@ -53,7 +53,7 @@ class Solver {
 
     /// Continues until a limit is reached, the plan is complete or the run is stopped. Rays requested beyond a complete
     /// plan extend it. Rays and time count from this call. The last iteration is completed, so the rays may be
-    /// exceeded. No iteration begins after the time, but at least one is completed; it takes a second or two.
+    /// exceeded. No iteration begins after the time limit, but at least one is completed, in a second or two.
     /// @param monitor  Its `stop` may be set by another thread or a signal handler.
     AdvanceReport advance(const Limits& limits, const Monitor& monitor = {});
 

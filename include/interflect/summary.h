@@ -33,7 +33,7 @@ struct SceneSummary {
     double area = 0;                         ///< Area of all faces, one side of each [m^2].
     RgbD emitted_power{0, 0, 0};             ///< Power emitted by surfaces, and by luminaires into the scene [lm or W].
     std::vector<MaterialSummary> materials;  ///< Used materials, by index.
-    std::vector<RgbD> luminaires;            ///< Power of each luminaire; of outside light, into the scene [lm or W].
+    std::vector<RgbD> luminaires;            ///< Power of each luminaire; of skies and suns, into the scene [lm or W].
 };
 
 /// Summarises a scene. Parts of emitters that coincident faces cover do not emit. O(patches).

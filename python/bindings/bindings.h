@@ -57,13 +57,13 @@ class Light {
 };
 using SharedLight = std::shared_ptr<Light>;
 
-/// pybind11 has no const objects; the bindings of `T` offer no member that changes it.
+/// Removes const, because pybind11 has no const objects. The bindings of `T` have no member that changes it.
 template <class T>
 std::shared_ptr<T> without_const(std::shared_ptr<const T> object) {
     return std::const_pointer_cast<T>(std::move(object));
 }
 
-/// Read-only array over memory that `owner` keeps alive.
+/// Returns a read-only array over memory that `owner` keeps alive.
 /// @param strides  Distances between entries along each dimension [bytes].
 template <class Number>
 py::array read_only(std::shared_ptr<const void> owner, const Number* first, const std::vector<py::ssize_t>& shape,
@@ -75,8 +75,8 @@ py::array read_only(std::shared_ptr<const void> owner, const Number* first, cons
     return result;
 }
 
-/// The same for a member of each structure in a vector. The array has a row of `columns` numbers per structure, or one
-/// number if `columns` is 0.
+/// Returns a read-only array of a member of each structure in a vector, with a row of `columns` numbers per structure,
+/// or one number if `columns` is 0.
 template <class Number, class Structure, class Member>
 py::array column(std::shared_ptr<const void> owner, const std::vector<Structure>& rows, Member Structure::*member,
                  py::ssize_t columns = 0) {
@@ -90,7 +90,7 @@ py::array column(std::shared_ptr<const void> owner, const std::vector<Structure>
     return read_only(std::move(owner), start, {count, columns}, {stride, inner});
 }
 
-/// The same for a vector of numbers (columns = 0), colours, points or coordinates.
+/// Returns a read-only array of a vector of numbers, colours, points or coordinates, with a row per entry.
 template <class Number, class T>
 py::array rows(std::shared_ptr<const void> owner, const std::vector<T>& values) {
     static const T nothing{};
@@ -106,7 +106,7 @@ py::array_t<float> array_of(Image image);
 
 /// Returns the filter of the keyword `denoise`: False or None, True for "auto", or a label of Denoiser.
 std::optional<Denoiser> denoiser_of(const py::object& denoise);
-/// Sets INTERFLECT_OIDN to the library of the Python package pyoidn if the package is installed and it is not set.
+/// Sets INTERFLECT_OIDN, unless it is set, to the library of the Python package pyoidn if that is installed.
 void name_library_of_pyoidn();
 /// @param name  Name of the argument, for messages.
 /// @throws InputError unless the array has the shape (height, width, 3).
@@ -120,7 +120,7 @@ inline std::optional<int> optional_samples(int samples) { return samples > 0 ? s
 
 /// Returns one sentence per warning.
 std::vector<std::string> sentences(const Warnings& warnings);
-/// Reports warnings by warnings.warn(). @param stack_level  1: at the caller of the C++ function.
+/// Reports warnings by warnings.warn(). @param stack_level  1: caller of the C++ function.
 void warn(const Warnings& warnings, int stack_level);
 
 /// Returns the view of that name, or the given view itself, or the scene's first view for None.

@@ -113,12 +113,12 @@ void bind_findings(py::module_& m) {
             .raises(""));
 }
 
-/// Returns the number of a keyword, or its default. Removes the keyword from `left`.
+/// Sets `value` from a keyword, if it is given, and removes the keyword.
 template <class Value>
-void take(py::dict& left, const char* name, Value& value) {
-    if (!left.contains(name)) return;
-    value = argument<Value>(left[name], name);
-    PyDict_DelItemString(left.ptr(), name);
+void take(py::dict& remaining, const char* name, Value& value) {
+    if (!remaining.contains(name)) return;
+    value = argument<Value>(remaining[name], name);
+    PyDict_DelItemString(remaining.ptr(), name);
 }
 
 /// Returns the up axis that `interflect export` would choose.
@@ -134,54 +134,57 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
     if (is_scene_export(path)) throw InputError(path, 0, "export_scene() writes this format");
     ExportOptions options;
     LightmapOptions texels;
-    py::dict left(keywords);
+    py::dict remaining(keywords);
     std::string shading = label(options.bake.shading), content = "irradiance";
     std::optional<int> samples;
-    take(left, "exposure", options.exposure);
+    // Display and orientation
+    take(remaining, "exposure", options.exposure);
     Warnings warnings;
     options.warnings = &warnings;
-    if (left.contains("up")) {
-        take(left, "up", options.up);
+    if (remaining.contains("up")) {
+        take(remaining, "up", options.up);
     } else {
         options.up = up_of(*light->scene, warnings);
     }
-    take(left, "shading", shading);
-    take(left, "samples", samples);
-    take(left, "seed", options.bake.seed);
-    if (left.contains("denoise")) {
-        options.bake.denoiser = denoiser_of(left["denoise"]);
-        PyDict_DelItemString(left.ptr(), "denoise");
+    // Light of texels, vertices and probes
+    take(remaining, "shading", shading);
+    take(remaining, "samples", samples);
+    take(remaining, "seed", options.bake.seed);
+    if (remaining.contains("denoise")) {
+        options.bake.denoiser = denoiser_of(remaining["denoise"]);
+        PyDict_DelItemString(remaining.ptr(), "denoise");
     }
     name_library_of_pyoidn();
     options.probes.seed = options.bake.seed;
-    take(left, "max_error", options.vertices.max_error);
-    take(left, "min_edge", options.vertices.min_edge);
-    take(left, "max_edge", options.vertices.max_edge);
-    take(left, "max_triangles", options.vertices.max_triangles);
-    take(left, "polygons", options.polygons);
-    take(left, "spacing", options.probes.spacing);
-    take(left, "rays", options.probes.rays);
+    take(remaining, "max_error", options.vertices.max_error);
+    take(remaining, "min_edge", options.vertices.min_edge);
+    take(remaining, "max_edge", options.vertices.max_edge);
+    take(remaining, "max_triangles", options.vertices.max_triangles);
+    take(remaining, "polygons", options.polygons);
+    take(remaining, "spacing", options.probes.spacing);
+    take(remaining, "rays", options.probes.rays);
+    // Lightmaps
     if (lightmap) {
-        take(left, "texels_per_metre", texels.texels_per_metre);
-        if (left.contains("densities")) {
-            for (const auto& [pattern, density] : left["densities"].cast<py::dict>())
+        take(remaining, "texels_per_metre", texels.texels_per_metre);
+        if (remaining.contains("densities")) {
+            for (const auto& [pattern, density] : remaining["densities"].cast<py::dict>())
                 texels.densities.push_back({pattern.cast<std::string>(), density.cast<float>()});
-            PyDict_DelItemString(left.ptr(), "densities");
+            PyDict_DelItemString(remaining.ptr(), "densities");
         }
-        take(left, "max_size", texels.max_size);
-        take(left, "gutter", texels.gutter);
-        take(left, "image", texels.image);
-        take(left, "own_charts", texels.own_charts);
-        take(left, "keep_file", texels.keep_file);
-        take(left, "keep_lights", texels.keep_lights);
-        take(left, "groups", texels.groups);
-        take(left, "content", content);
+        take(remaining, "max_size", texels.max_size);
+        take(remaining, "gutter", texels.gutter);
+        take(remaining, "image", texels.image);
+        take(remaining, "own_charts", texels.own_charts);
+        take(remaining, "keep_file", texels.keep_file);
+        take(remaining, "keep_lights", texels.keep_lights);
+        take(remaining, "groups", texels.groups);
+        take(remaining, "content", content);
         if (content != "irradiance" && content != "radiance")
             throw InputError(fmt::format("content: expected irradiance or radiance, found '{}'", content));
         if (content == "radiance") texels.content = LightmapContent::radiance;
         options.lightmap = texels;
     }
-    for (const auto& [name, value] : left)
+    for (const auto& [name, value] : remaining)
         throw py::type_error("export: unknown option " + found(name) + (lightmap ? "" : " without lightmap=True"));
     options.bake.shading = find_shading(shading, lightmap ? &DefaultSamples::texel : &DefaultSamples::vertex);
     options.bake.samples = samples_of(samples);

@@ -60,6 +60,7 @@ SharedMeasurement measure(const SharedLight& light, const Doubles& points, const
     });
 }
 
+/// Returns a function that computes an array with a value for each point.
 template <class Value>
 auto each_point(const Value& value) {
     return [value](const Measurement& m) {

@@ -21,14 +21,14 @@ namespace {
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using SharedRendering = std::shared_ptr<Rendering>;
 
-/// Scene and ray caster of a solution, or of a scene.
-struct Place {
+/// Scene to draw, with its ray caster, and its solution if it is solved.
+struct LitScene {
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const RayCaster> ray_caster;
     std::shared_ptr<const Solution> solution;
 };
 
-Place place_of(const py::object& lit, int threads) {
+LitScene lit_scene_of(const py::object& lit, int threads) {
     if (py::isinstance<Light>(lit)) {
         const auto light = py::cast<SharedLight>(lit);
         return {light->scene, light->ray_caster, light->solution};
@@ -39,12 +39,12 @@ Place place_of(const py::object& lit, int threads) {
 
 SharedRendering draw(const py::object& lit, const py::object& view, const PictureOptions& options, int threads,
                      const py::object& progress) {
-    const Place place = place_of(lit, threads);
-    const View camera = view_of(*place.scene, view);
+    const LitScene drawn = lit_scene_of(lit, threads);
+    const View camera = view_of(*drawn.scene, view);
     return long_work(progress, threads, [&](const Monitor& monitor) {
         return std::make_shared<Rendering>(
-            place.solution ? render(*place.scene, *place.solution, *place.ray_caster, camera, options, monitor)
-                           : render(*place.scene, *place.ray_caster, camera, options, monitor));
+            drawn.solution ? render(*drawn.scene, *drawn.solution, *drawn.ray_caster, camera, options, monitor)
+                           : render(*drawn.scene, *drawn.ray_caster, camera, options, monitor));
     });
 }
 

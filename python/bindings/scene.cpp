@@ -13,7 +13,7 @@ namespace {
 
 using SharedScene = std::shared_ptr<Scene>;
 
-/// Returns None for a scene without these attributes.
+/// Returns a function that converts an attribute of the vertices to an array, or to None if it is missing.
 template <class Member>
 auto vertex_array(Member Scene::*member) {
     return [member](const SharedScene& scene) -> py::object {
@@ -22,7 +22,7 @@ auto vertex_array(Member Scene::*member) {
     };
 }
 
-/// Parts of a scene, which may be changed in Python without effect on the scene.
+/// Returns a function that copies parts of a scene, because Python may change them.
 template <class Part>
 auto copies(std::vector<Part> Scene::*member) {
     return [member](const Scene& scene) -> std::vector<Part> { return scene.*member; };

@@ -107,19 +107,19 @@ void check_seats(const ProbeArguments& options) {
 }
 
 MeasuringPoint measuring_point(const Imath::V3d& position, const MeasuringGrid& grid, const ProbeArguments& options) {
-    V3f faces(0);
-    if (!options.directions.empty()) faces = V3f(Imath::V3d(options.directions[0].x, options.directions[0].y, 0));
+    V3f facing(0);
+    if (!options.directions.empty()) facing = V3f(Imath::V3d(options.directions[0].x, options.directions[0].y, 0));
     switch (options.quantity) {
         case ProbedQuantity::surface:
             return {position, grid.normal};
         case ProbedQuantity::horizontal:
             return {position};
         case ProbedQuantity::vertical:
-            return {position, faces};
+            return {position, facing};
         case ProbedQuantity::cylindrical:
             return {position, {}, Receiver::cylindrical};
         case ProbedQuantity::semicylindrical:
-            return {position, faces, Receiver::semicylindrical};
+            return {position, facing, Receiver::semicylindrical};
         case ProbedQuantity::ugr:
             break;
     }
@@ -222,6 +222,7 @@ void measure_and_write(const Scene& scene, const Solution* solution, const RayCa
 }
 
 void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
+    // Check all options before long work.
     const ThreadLimit threads(options.solver.threads);
     options.measuring.samples =
         require_samples(options.measuring.shading, &DefaultSamples::point, options.measuring.samples);
@@ -240,6 +241,7 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     std::optional<PendingFile> output;
     if (!options.output.empty()) output.emplace(options.output);
 
+    // Read the solution, or read the scene and cut or divide it.
     const bool solved_before = is_solution_file(options.scene.path);
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
     require_no_scene_files(solved.scene, outputs);
@@ -250,12 +252,15 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     else if (!solved_before)
         solved.scene = options.mesh.cut(std::move(solved.scene), options.scene.read);
+
+    // Solve it if light is gathered from the solution.
     StatsFile stats(options.solver.threads, options.solver.stats);
     const RayCaster ray_caster = make_ray_caster(solved.scene);
     grids = open_grids(solved.scene, ray_caster, std::move(grids));
     warn_of_setup(solved.scene, ray_caster);
     if (solves) solved.solution = run_solve(solved.scene, ray_caster, solve_options, options.solver.memory);
 
+    // Measure. A signal now ends the measurement early.
     options.measuring.until = options.solver.until();
     options.measuring.seed = options.solver.seed();
     stop_on_signal();

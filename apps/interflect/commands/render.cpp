@@ -109,7 +109,9 @@ struct Picture {
     TracedPicture traced{};  // result of path tracing, from which layers are written
 };
 
-bool is_for_people(const RenderArguments& options) { return needs_tone_mapping(require_image_format(options.output)); }
+bool is_display_format(const RenderArguments& options) {
+    return needs_tone_mapping(require_image_format(options.output));
+}
 
 bool is_black(const Image& image) {
     return std::all_of(image.pixels.begin(), image.pixels.end(), [](const Rgb& pixel) { return pixel == Rgb(0); });
@@ -126,7 +128,7 @@ float exposure_of(const Image& light, const RenderArguments& options) {
 Picture picture_of_numbers(const Image& values, const RenderArguments& options) {
     Picture picture;
     picture.quantity = options.false_colour.label();
-    picture.image = is_for_people(options) ? options.false_colour.draw(values, options.legend_rows > 0) : values;
+    picture.image = is_display_format(options) ? options.false_colour.draw(values, options.legend_rows > 0) : values;
     return picture;
 }
 
@@ -134,8 +136,9 @@ Picture picture_of_numbers(const Image& values, const RenderArguments& options) 
 Picture picture_of_light(const Image& light, const RenderArguments& options) {
     Picture picture;
     picture.exposure = exposure_of(light, options);
-    picture.image =
-        is_for_people(options) ? tone_map(light, *picture.exposure, options.tonemap, options.display_luminance) : light;
+    picture.image = is_display_format(options)
+                        ? tone_map(light, *picture.exposure, options.tonemap, options.display_luminance)
+                        : light;
     return picture;
 }
 
@@ -209,7 +212,7 @@ std::string label(const RenderArguments& options) {
 /// Returns the height of the legend [pixels], or 0 if it does not fit.
 int legend_rows(const RenderArguments& options) {
     const auto [width, height] = options.size;
-    if (!is_for_people(options) || !options.is_in_false_colours()) return 0;
+    if (!is_display_format(options) || !options.is_in_false_colours()) return 0;
     if (legend_fits(width, height, label(options))) return legend_height(width);
     spdlog::warn("{} x {} pixels have no room for a legend: the colours are not explained", width, height);
     return 0;
@@ -221,7 +224,7 @@ Picture draw_quantity(const SolvedScene& solved, const RayCaster& ray_caster, co
     DrawingProgress progress;
     QuantityPicture drawn = show_quantity(options.shown, solved, ray_caster, view, options.picture, progress.monitor());
     if (options.legend_rows > 0) drawn.shown = with_legend(drawn.shown, drawn.scale, label(options));
-    Image& image = is_for_people(options) ? drawn.shown : drawn.values;
+    Image& image = is_display_format(options) ? drawn.shown : drawn.values;
     return {std::move(image), label(options), {}, drawn.non_finite_pixels};
 }
 
@@ -234,7 +237,7 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
                 options.path.layers ? layers_of(picture.traced) : std::vector<ImageLayer>());
     if (picture.non_finite_pixels > 0)
         spdlog::warn("{} pixels have no valid value (overflow or NaN)", picture.non_finite_pixels);
-    const bool is_exposed = picture.exposure && is_for_people(options);
+    const bool is_exposed = picture.exposure && is_display_format(options);
     spdlog::info("{}: {} x {}, view '{}', {}{}", options.output.string(), picture.image.width, picture.image.height,
                  view.name, picture.quantity, is_exposed ? fmt::format(", exposure {:+.2f}", *picture.exposure) : "");
 }
@@ -251,12 +254,12 @@ bool is_replaceable(const std::filesystem::path& output) {
     return !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
 }
 
-/// Whether rough pictures precede the last one. Without --progressive, not under a time limit, in .exr and .hdr, and
-/// for small pictures.
+/// Whether rough pictures precede the last one. Without --progressive, they are omitted under a time limit, in .exr
+/// and .hdr, and for small pictures.
 bool takes_previews(const RenderArguments& options) {
     constexpr std::size_t fewest_pixels = 1 << 16;  // smaller pictures take less than a second
     if (options.progressive) return true;
-    return !std::isfinite(options.solver.time()) && is_for_people(options) && options.shown == Shown::light &&
+    return !std::isfinite(options.solver.time()) && is_display_format(options) && options.shown == Shown::light &&
            options.size.pixels() >= fewest_pixels && is_replaceable(options.output);
 }
 
@@ -278,15 +281,15 @@ DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const Ray
         const DrawingTime paths =
             predict_time_of_paths(scene, solution, ray_caster, view, options.picture, options.path.denoise, limit);
         const double left = options.seconds_left();
-        const bool fits = paths.total() <= largest_drawing_share * left;
+        const bool is_in_time = paths.total() <= largest_drawing_share * left;
         options.reduction = paths.reduction;
         if (paths.reduction > 1)
             spdlog::warn(
                 "--time is too short for all pixels: light is traced for one in {} x {}, so small shadows are "
                 "blurred; a smaller --size takes less time",
                 paths.reduction, paths.reduction);
-        if (fits || options.picture.shading == Shading::hybrid || options.path.needs_paths()) {
-            if (!fits)
+        if (is_in_time || options.picture.shading == Shading::hybrid || options.path.needs_paths()) {
+            if (!is_in_time)
                 spdlog::warn("drawing takes about {}, but --time leaves {}: the picture will be late",
                              duration(paths.total()), duration(std::max(0.0, left)));
             return paths;
@@ -321,6 +324,7 @@ Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, co
 
 /// Draws the light of a solution. If the input is a scene, solves it first.
 void run_solution(RenderArguments& options, PendingFile& output) {
+    // Read the solution, or read the scene and divide it.
     const bool solved_before = is_solution_file(options.scene.path);
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
     require_no_scene_files(solved.scene, outputs_of(options));
@@ -347,7 +351,7 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     }
 
     std::optional<DrawingTime> planned;
-    // Called once after some seconds of solving. Writes a preview; with --time, predicts the drawing time and returns
+    // Called with the first light of the run. Writes a preview; with --time, predicts the drawing time and returns
     // the time limit that remains for solving.
     const auto preview_and_plan_time = [&](const Solution& so_far) -> std::optional<Limits> {
         if (takes_previews(options))
@@ -365,11 +369,14 @@ void run_solution(RenderArguments& options, PendingFile& output) {
         solved.solution =
             run_solve(solved.scene, ray_caster, solve_options, options.solver.memory, {},
                       {.after = seconds_to_preview, .repeats = options.progressive, .use = preview_and_plan_time});
+
+    // Write a better preview, or predict the drawing time of a finished solution.
     if (options.progressive && options.picture.shading == Shading::hybrid && !is_stop_requested())
         write_light_so_far(solved.scene, solved.solution, ray_caster, view, options, usual_reduction / 2);
     else if (traces_paths(options.picture.shading) && !planned && !is_stop_requested())
         preview_and_plan_time(solved.solution);
 
+    // Draw within the remaining time.
     if (is_limited && planned && options.reduction == 1) {
         PictureOptions& picture = options.picture;
         picture.time = std::max(shortest_time, options.seconds_left() - planned->finishing);
@@ -413,7 +420,7 @@ void check_tone_options(const RenderArguments& options, const CLI::App& command)
         if (command.get_option(name)->count() == 0) continue;
         if (options.is_in_false_colours())
             spdlog::warn("{} has no effect: numbers are drawn in false colours", name);
-        else if (!is_for_people(options))
+        else if (!is_display_format(options))
             spdlog::warn("{} does not change linear values, which {} holds: it is for .png and .jpg", name,
                          options.output.string());
     }
@@ -425,7 +432,7 @@ void check_false_colours(const RenderArguments& options) {
         throw UsageError("it measures the light, which --show does not draw");
     const bool is_drawn =
         options.false_colour.scale || options.false_colour.logarithmic || options.false_colour.isolines;
-    if (is_drawn && !is_for_people(options))
+    if (is_drawn && !is_display_format(options))
         spdlog::warn("{} holds the numbers themselves: --scale, --logarithmic and --isolines are for .png and .jpg",
                      options.output.string());
 }
@@ -444,6 +451,7 @@ void check_progress(const RenderArguments& options) {
 
 /// Checks all options before it traces the first ray, then draws the picture.
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
+    // Refuse options that the output or the shading does not use.
     const ThreadLimit threads(options.solver.threads);
     check_option("--output", [&] { return require_image_format(options.output); });
     Shading& shading = options.picture.shading;
@@ -462,15 +470,16 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
         throw UsageError("--size",
                          fmt::format("{} x {} pixels are too many for a PNG: expected fewer, or another format",
                                      options.size.width, options.size.height));
-    if (options.shown == Shown::mesh && !is_for_people(options))
+    if (options.shown == Shown::mesh && !is_display_format(options))
         throw UsageError("--show", fmt::format("the mesh is drawn for people: expected an --output that ends in .png "
                                                "or .jpg, found '{}'",
                                                options.output.string()));
+    // Check each group of options, and derive the options of the picture.
     options.scene.check(command, traces_paths(shading));
     options.view.check();
     if (options.view.count() > 1) throw UsageError("--view", "a picture has one view, but several were given");
     options.dimming.require_solution(options.scene.path);
-    if (uses_solution && command.get_option("--denoise")->count() == 0 && is_for_people(options))
+    if (uses_solution && command.get_option("--denoise")->count() == 0 && is_display_format(options))
         options.path.denoise = Denoiser::automatic;
     check_tone_options(options, command);
     check_false_colours(options);

@@ -27,7 +27,7 @@ using namespace detail;
 
 namespace {
 
-/// The previous checkpoint may be another name of the checkpoint: the last one may have been too large for the disk.
+/// @param others  Without the checkpoint itself: after a failed save, the previous one is another name of it.
 void require_distinct_previous(const Checkpoints& checkpoints, std::span<const NamedFile> others) {
     const NamedFile previous{"the previous checkpoint (--checkpoint)", checkpoints.previous()};
     require_distinct_files(others, {&previous, 1});

@@ -25,7 +25,7 @@ using namespace detail;
 
 namespace {
 
-/// Largest number of groups whose factors are printed, because a row of more does not fit on a line of a terminal.
+/// Maximum number of groups whose factors are printed, with one line per pair.
 constexpr std::size_t most_printed_groups = 12;
 
 enum class Grouping { objects, materials, facets };

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int bar_width = 24;
 constexpr double seconds_between_lines = 2;  // used if stderr is not a terminal
-constexpr double min_fraction = 1e-5;        // share of the work after which the remaining time is told
+constexpr double min_fraction = 1e-5;        // share of the work after which the remaining time is shown
 
 }  // namespace
 

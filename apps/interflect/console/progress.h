@@ -14,7 +14,7 @@ struct WorkDone {
     std::optional<double> error;  ///< Estimated relative error of work that has one; infinite while it is unknown.
 };
 
-/// Overwrites a line on a terminal. Elsewhere, prints a line now and then, and the last one.
+/// Overwrites a line on a terminal. Elsewhere, prints a line every two seconds, and the last one.
 class ProgressBar {
   public:
     ProgressBar();

@@ -23,7 +23,7 @@ struct Growth {
     int reduction;
     double exponent;
 };
-constexpr Growth of_hybrid{8, 0.81}, of_gathering{16, 1}, of_elements{4, 0.6};
+constexpr Growth hybrid_growth{8, 0.81}, gathering_growth{16, 1}, element_growth{4, 0.6};
 
 constexpr double writing = 0.5e-6;  // [s] per pixel: exposure, tone mapping and compression
 
@@ -69,6 +69,7 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
             });
         });
     };
+    // Measure the preparation and the start of the filter with a picture of one pixel.
     PictureOptions one = options;
     one.time = shortest;
     one.samples = DrawingTime::least_samples;
@@ -78,13 +79,15 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
         return denoiser ? seconds_of([&] { denoise(traced.layers, *denoiser); }) : 0;
     };
     const double preparation = seconds_to_draw(one), starting_filter = seconds_to_filter();
+    // Measure a smaller picture.
     PictureOptions small = options;
     small.time = shortest;
     small.samples = DrawingTime::least_samples;
-    const Growth& growth = options.shading == Shading::hybrid ? of_hybrid : of_gathering;
+    const Growth& growth = options.shading == Shading::hybrid ? hybrid_growth : gathering_growth;
     const double ratio = reduce(small.width, small.height, growth.reduction);
     const double drawing = seconds_to_draw(small);
     const double of_pixels = std::max(0.0, drawing - preparation), filtering = seconds_to_filter() - starting_filter;
+    // Extrapolate to all pixels, or to a preview that the limit permits.
     const double pixels = static_cast<double>(options.width) * options.height;
     // Surfaces of a preview take two to four camera rays per pixel; other rays take more time than these.
     const double of_surfaces = 2 * pixels * of_pixels / static_cast<double>(std::max<std::int64_t>(1, traced.rays));
@@ -103,9 +106,9 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                      const View& view, const PictureOptions& options) {
     PictureOptions small = options;
-    const double ratio = reduce(small.width, small.height, of_elements.reduction);
+    const double ratio = reduce(small.width, small.height, element_growth.reduction);
     const double drawing = seconds_of([&] { render(scene, solution, ray_caster, view, small, {{}, &stop_flag()}); });
-    const double least = std::pow(ratio, of_elements.exponent) * drawing;
+    const double least = std::pow(ratio, element_growth.exponent) * drawing;
     return {least, writing * options.width * options.height};
 }
 

@@ -25,21 +25,21 @@ struct DrawingTime {
 /// Predicts the time of a picture from a smaller one. Within 25% for hybrid shading of 960 x 540 pixels in three
 /// offices and a corridor.
 /// @param options  Options of the full picture.
-/// @param limit    Maximum time [s]. If hybrid shading exceeds it, the prediction is for a preview whose reduction is
-/// as
-///                 small as the limit permits, at most largest_reduction.
+/// @param limit    Maximum time [s]. If hybrid shading exceeds it, the prediction is for a preview with the smallest
+///                 reduction within the limit, at most largest_reduction.
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser,
                                   double limit);
 constexpr int largest_reduction = 4;
+/// Predicts the time of flat or smooth shading from a smaller picture.
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                      const View& view, const PictureOptions& options);
 
 /// Drawing takes at most this share of the time that is left.
 constexpr double largest_drawing_share = 0.9;
 
-/// Returns the part of `left` [s] that solving leaves to drawing: for paths, whose noise more samples reduce, three
-/// quarters, as in the default run of an office; at least the predicted time.
+/// Returns the part of `left` [s] that is reserved for drawing: the predicted time, at most largest_drawing_share. If
+/// more samples refine the picture, it is at least three quarters, as in the default run of an office.
 double reserved_for(const DrawingTime& predicted, bool is_refined, double left);
 
 }  // namespace interflect::command

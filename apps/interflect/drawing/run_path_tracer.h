@@ -29,6 +29,7 @@ struct PathTracerArguments {
     /// @throws UsageError for fewer than two --samples, whose variance gives the error, and for --max-samples below
     /// that or without --until.
     static void check_samples(const CLI::App& app, int samples);
+    /// Whether the output contains results of path tracing other than the picture.
     bool needs_paths() const { return layers || !error_image.empty(); }
 };
 

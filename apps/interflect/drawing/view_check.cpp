@@ -9,7 +9,7 @@ namespace interflect::command {
 
 namespace {
 
-constexpr double all = 1;
+constexpr double all = 1;  // share of the rays of a picture
 
 }  // namespace
 

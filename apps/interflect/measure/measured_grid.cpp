@@ -18,12 +18,12 @@ using namespace detail;
 
 namespace {
 
-/// @param is_meant  Function that selects points by their indices.
+/// Warns about the points that `is_selected` selects by their indices.
 void warn_of_points(std::span<const MeasuringPoint> points, const char* what,
-                    const std::function<bool(std::size_t)>& is_meant) {
+                    const std::function<bool(std::size_t)>& is_selected) {
     std::size_t count = 0, first = 0;
     for (std::size_t i = points.size(); i-- > 0;)
-        if (is_meant(i)) {
+        if (is_selected(i)) {
             ++count;
             first = i;
         }
@@ -100,6 +100,7 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
     for (MeasuringGrid& grid : grids) result.push_back({std::move(grid), {}, 0, {}});
     if (solution && !result.empty())
         compare_with_paths(shared_light, scene, ray_caster, points, measured, options, result);
+    // Keep the points that were reached.
     std::size_t next = 0, lost = 0;
     for (MeasuredGrid& of_grid : result) {
         MeasuringGrid& grid = of_grid.grid;
@@ -122,8 +123,8 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
     return result;
 }
 
-std::optional<double> exterior_of(const Scene& scene, const std::optional<double>& told) {
-    if (told) return told;
+std::optional<double> exterior_of(const Scene& scene, const std::optional<double>& given) {
+    if (given) return given;
     const std::optional<double> exterior = exterior_illuminance(scene);
     if (exterior && has_other_light_than_sky(scene)) {
         spdlog::warn("not only the sky shines: no daylight factors (--exterior LUX gives them all the same)");

@@ -29,8 +29,8 @@ std::vector<MeasuredGrid> measure_grids(const Scene& scene, const Solution* solu
                                         std::vector<MeasuringGrid> grids, const std::vector<MeasuringPoint>& points,
                                         const MeasuringOptions& options);
 
-/// Returns the exterior illuminance of daylight factors [lx]: `told`, or that of the sky if it is the only light. Warns
-/// if other light prevents daylight factors.
-std::optional<double> exterior_of(const Scene& scene, const std::optional<double>& told);
+/// Returns the exterior illuminance of daylight factors [lx]: `given`, or the sky's if the sky is the only light.
+/// Warns if other light prevents daylight factors.
+std::optional<double> exterior_of(const Scene& scene, const std::optional<double>& given);
 
 }  // namespace interflect::command

@@ -22,10 +22,10 @@ struct GridArguments {
 
 /// Places that `probe` measures.
 struct MeasuringPlaces {
-    std::vector<std::string> tops, surfaces;
-    std::optional<V3f> facing;  ///< Side from which surfaces are measured, if it is ambiguous.
-    std::vector<double> planes;
-    std::string over;  ///< Object below the planes; empty for the floor.
+    std::vector<std::string> tops, surfaces;  ///< Objects whose tops or planar surfaces are measured.
+    std::optional<V3f> facing;                ///< Side from which surfaces are measured, if it is ambiguous.
+    std::vector<double> planes;               ///< Heights z of horizontal grids [m].
+    std::string over;                         ///< Object below the planes; empty for the floor.
     std::vector<Imath::V3d> points;
     std::vector<Line> lines;
     GridArguments grid;

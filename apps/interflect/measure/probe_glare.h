@@ -8,7 +8,7 @@
 
 namespace interflect::command {
 
-/// Ratings at the points of a grid in several directions, or of a seat, without those not reached.
+/// Ratings of the observers reached: of a grid, in several directions at each point, or of a seat.
 struct RatedGrid {
     MeasuringGrid grid;
     std::vector<Observer> observers;

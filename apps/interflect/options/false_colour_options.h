@@ -11,8 +11,8 @@
 namespace interflect::command {
 
 enum class Measured {
-    illuminance,  ///< On visible surfaces [lx].
-    luminance,    ///< In the picture [cd/m^2].
+    illuminance,  ///< Illuminance of visible surfaces [lx].
+    luminance,    ///< Luminance of pixels [cd/m^2].
 };
 
 struct FalseColourOptions {

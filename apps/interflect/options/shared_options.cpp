@@ -28,7 +28,7 @@ bool is_patch_limit(const InputError& e) { return e.fault().setting == "max_patc
 /// sphere with 200 divisions and for glTF instances of one triangle.
 constexpr std::size_t bytes_per_patch = 300;
 
-/// Returns the limit of patches in memory. @param present  Number of patches that are already there.
+/// Returns the number of patches that fit into memory. @param present  Number of patches already in memory, included.
 std::uint64_t patches_in_memory(std::size_t present = 0) { return present + free_memory() / bytes_per_patch; }
 
 }  // namespace

@@ -15,15 +15,15 @@ using namespace detail;
 
 namespace {
 
-constexpr std::chrono::seconds silence{5};  // longer than most phases; shorter than a user's patience
+constexpr std::chrono::seconds report_pause{5};  // before a report; most phases of work are shorter
 
-/// A thread takes 136 MiB, for a stack and a heap of malloc. addressable_memory() counts half of the free address
-/// space.
+/// Minimum free memory for a reporting thread [bytes]. A thread takes 136 MiB, for a stack and a heap of malloc;
+/// addressable_memory() counts half of the free address space.
 constexpr std::size_t min_addresses = std::size_t{1} << 29;
 
 }  // namespace
 
-LongWork::LongWork(std::string what) : what_(std::move(what)), start_(Clock::now()), last_news_(start_) {
+LongWork::LongWork(std::string what) : what_(std::move(what)), start_(Clock::now()), pause_start_(start_) {
     if (addressable_memory() - memory_in_use() < min_addresses) return;
     try {
         thread_ = std::thread([this] { watch(); });
@@ -44,15 +44,15 @@ LongWork::~LongWork() {
 
 void LongWork::postpone() {
     const std::lock_guard lock(mutex_);
-    last_news_ = Clock::now();
+    pause_start_ = Clock::now();
 }
 
 void LongWork::watch() {
     std::unique_lock lock(mutex_);
-    while (!changed_.wait_until(lock, last_news_ + silence, [this] { return is_done_; })) {
+    while (!changed_.wait_until(lock, pause_start_ + report_pause, [this] { return is_done_; })) {
         const Clock::time_point now = Clock::now();
-        if (now < last_news_ + silence) continue;
-        last_news_ = now;
+        if (now < pause_start_ + report_pause) continue;
+        pause_start_ = now;
         is_shown_ = true;
         const std::string text =
             escaped(fmt::format("{}: {} so far, {} MiB of memory", what_,

@@ -29,7 +29,7 @@ class LongWork {
     const Clock::time_point start_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    Clock::time_point last_news_;  // guarded by mutex_, like the next two
+    Clock::time_point pause_start_;  // guarded by mutex_, like the next two
     bool is_done_ = false, is_shown_ = false;
     std::thread thread_;
 };

@@ -42,7 +42,7 @@ struct Order {
     /// Sizes of the name of the checkpoint and of the run or solution, which follow.
     std::size_t name_bytes = 0, bytes = 0;
     int threads = 0;
-    bool has_checkpoint = false;  ///< The run was saved under this name.
+    bool has_checkpoint = false;  ///< Whether the run was saved under this name.
 };
 
 template <class T>
@@ -50,7 +50,7 @@ std::span<std::byte> bytes_of(T& value) {
     return std::as_writable_bytes(std::span(&value, 1));
 }
 
-void give(Order order) {
+void send_order(Order order) {
     if (ranks) ranks->broadcast(bytes_of(order));
 }
 
@@ -60,7 +60,7 @@ Order receive_order() {
     return order;
 }
 
-void give_text(std::string& text) { ranks->broadcast(std::as_writable_bytes(std::span(text))); }
+void send_text(std::string& text) { ranks->broadcast(std::as_writable_bytes(std::span(text))); }
 
 std::string receive_text(std::size_t size) {
     std::string text(size, '\0');
@@ -138,15 +138,15 @@ void serve_first_rank() {
 }
 
 void dismiss_ranks() {
-    give({.kind = Order::Kind::dismiss});
+    send_order({.kind = Order::Kind::dismiss});
     ranks.reset();
 }
 
 Ranks* start_shared_light(const std::function<std::string()>& make_image) {
     if (!ranks || ranks->count() == 1) return nullptr;
     std::string image = make_image();
-    give({.kind = Order::Kind::light, .bytes = image.size(), .threads = limit_of_threads()});
-    give_text(image);
+    send_order({.kind = Order::Kind::light, .bytes = image.size(), .threads = limit_of_threads()});
+    send_text(image);
     return ranks.get();
 }
 
@@ -157,29 +157,30 @@ SharedRun::SharedRun(Solver& solver, std::filesystem::path checkpoint)
         spdlog::warn("{} does not divide its rays: each of the {} processes does all the work", method.name,
                      ranks->count());
     std::string run = solver.image(), name = checkpoint_.string();
-    give({.kind = Order::Kind::solve, .name_bytes = name.size(), .bytes = run.size(), .threads = limit_of_threads()});
-    give_text(name);
-    give_text(run);
+    send_order(
+        {.kind = Order::Kind::solve, .name_bytes = name.size(), .bytes = run.size(), .threads = limit_of_threads()});
+    send_text(name);
+    send_text(run);
 }
 
-SharedRun::~SharedRun() { give({.kind = Order::Kind::end_of_run}); }
+SharedRun::~SharedRun() { send_order({.kind = Order::Kind::end_of_run}); }
 
 AdvanceReport SharedRun::advance(const Limits& limits, Monitor monitor) try {
     std::error_code ignored;
     const bool has_checkpoint = has_advanced_ && std::filesystem::exists(checkpoint_, ignored);
     has_advanced_ = true;
     set_last_checkpoint(has_checkpoint ? checkpoint_ : "");
-    give({.kind = Order::Kind::advance, .limits = limits, .has_checkpoint = has_checkpoint});
+    send_order({.kind = Order::Kind::advance, .limits = limits, .has_checkpoint = has_checkpoint});
     monitor.ranks = ranks.get();
     return solver_.advance(limits, monitor);
 } catch (const std::exception& e) {
-    end_ranks_after_fault(e, failed);  // the others wait for this process in the midst of their work
+    end_ranks_after_fault(e, failed);  // because the others wait for this process
     throw;
 }
 
 void SharedRun::set_plan(const Limits& limits) {
     solver_.set_plan(limits);  // comes first, because it may throw
-    give({.kind = Order::Kind::plan, .limits = limits});
+    send_order({.kind = Order::Kind::plan, .limits = limits});
 }
 
 }  // namespace interflect::command

@@ -30,7 +30,7 @@ void dismiss_ranks();
 /// Reports the error of this process in shared work and ends all processes. No effect without other processes.
 void end_ranks_after_fault(const std::exception& error, int exit_code);
 
-/// Makes the others call share_light() with a solution. Not while a SharedRun works.
+/// Makes the others call share_light() with a solution. Must not be called during SharedRun::advance().
 /// @param make_image  Returns the solution as solution_image().
 /// @return            Null without other processes.
 Ranks* start_shared_light(const std::function<std::string()>& make_image);

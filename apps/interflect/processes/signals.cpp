@@ -16,7 +16,8 @@ using namespace detail;
 namespace {
 
 constexpr std::array stop_signals = {SIGINT, SIGTERM, SIGHUP, SIGUSR1};
-std::atomic<bool> first_only_stops{false}, stop_requested{false};
+std::atomic<bool> first_only_stops{false};  // whether the first signal requests a stop instead of ending the process
+std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // signal handlers require this
 
 void say(const char* text) { [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text)); }

@@ -17,7 +17,7 @@ const std::atomic<bool>& stop_flag();
 /// Ignores these signals: another process decides when this one ends.
 void ignore_stop_signals();
 
-/// The first signal ends the process again.
+/// Reverts stop_on_signal(): the first signal ends the process.
 void end_on_signal();
 
 bool is_stop_requested();

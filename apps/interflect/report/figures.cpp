@@ -17,7 +17,7 @@ using namespace detail;
 namespace {
 
 // Lengths in a figure, whose longer side is figure_side.
-constexpr double figure_side = 1000, dimension_room = 46, legend_room = 92, font_size = 15;
+constexpr double figure_side = 1000, dimension_space = 46, legend_space = 92, font_size = 15;
 
 struct Frame {
     const ReportPlan& plan;
@@ -51,14 +51,14 @@ double bar_length(const ReportPlan& plan) {
     return power;
 }
 
-/// Draws the picture above its scale bar and dimensions.
-std::string begin(const Frame& frame, const Image& picture, double room_below) {
-    const double below = frame.height + dimension_room;
+/// Starts a figure: the picture, with a scale bar and dimensions below. @param free_height  Free height below these.
+std::string begin(const Frame& frame, const Image& picture, double free_height) {
+    const double below = frame.height + dimension_space;
     std::string svg = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.1f} {:.1f}\" font-family=\"Helvetica, Arial, "
         "'Liberation Sans', sans-serif\" fill=\"#1d2430\">\n<image x=\"0\" y=\"0\" width=\"{:.1f}\" height=\"{:.1f}\" "
         "href=\"{}\"/>\n",
-        frame.width, below + room_below, frame.width, frame.height, data_url(picture));
+        frame.width, below + free_height, frame.width, frame.height, data_url(picture));
     const double bar = bar_length(frame.plan), y = frame.height + 14;
     svg += fmt::format("<path d=\"M1 {0:.1f}v8h{1:.1f}v-8\" fill=\"none\" stroke=\"#1d2430\" stroke-width=\"1.5\"/>\n",
                        y, frame.unit * bar);
@@ -71,7 +71,7 @@ std::string begin(const Frame& frame, const Image& picture, double room_below) {
 
 std::string legend(const Frame& frame) {
     constexpr int stops = 17, max_values = 9;
-    const double top = frame.height + dimension_room + 22, right = frame.width - 2;
+    const double top = frame.height + dimension_space + 22, right = frame.width - 2;
     std::string svg = "<linearGradient id=\"colours\">\n";
     for (int i = 0; i < stops; ++i) {
         const float t = static_cast<float>(i) / (stops - 1);
@@ -92,12 +92,12 @@ std::string legend(const Frame& frame) {
 
 std::string illuminance_figure(const ReportPlan& plan) {
     const Frame frame(plan);
-    return begin(frame, plan.illuminance, legend_room) + legend(frame) + "</svg>\n";
+    return begin(frame, plan.illuminance, legend_space) + legend(frame) + "</svg>\n";
 }
 
 std::string values_figure(const ReportPlan& plan, std::span<const MeasuredGrid> areas) {
-    constexpr double widest_digits = 2.6;  // width of four digits and a gap, in font heights
-    constexpr double smallest = 7, largest = 19;
+    constexpr double widest_digits = 2.6;         // width of four digits and a gap, in font heights
+    constexpr double smallest = 7, largest = 19;  // font sizes
     const Frame frame(plan);
     Image pale = plan.outlines;
     for (Rgb& pixel : pale.pixels) pixel = Rgb(0.45f) + pixel * 0.55f;

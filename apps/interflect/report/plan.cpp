@@ -83,7 +83,8 @@ std::vector<bool> floor_mask(const Raster& raster, const std::vector<std::vector
     return mask;
 }
 
-/// Illuminance in cells of a floor. extend() fills neighbouring cells with means, for interpolation up to the walls.
+/// Illuminance in cells of a floor. extend() fills cells beside measured ones with means, for interpolation up to the
+/// walls.
 class CellValues {
   public:
     explicit CellValues(const MeasuringGrid& grid)
@@ -142,10 +143,12 @@ class CellValues {
     std::vector<bool> is_known_;
 };
 
-/// Computes the illuminance of pixels over the floor [lx]; 0 elsewhere. @param mask  Loses the pixels inside furniture.
+/// Computes the illuminance of pixels over the floor [lx]; 0 elsewhere. @param mask  Pixels over the floor; pixels
+/// inside furniture are removed.
 Image illuminance_over(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                        const PlanarArea& floor, double height, const MeasuringOptions& options, const Raster& raster,
                        std::vector<bool>& mask) {
+    // Measure a grid over the floor.
     const MeasuringGrid whole = area_grid(scene, floor, {.spacing = std::sqrt(floor.area / plan_points)}, height);
     const MeasuringGrid grid = without_enclosed_points(scene, ray_caster, whole);
     std::vector<std::uint32_t> enclosed;
@@ -157,6 +160,7 @@ Image illuminance_over(const Scene& scene, const Solution& solution, const RayCa
     with_path_progress([&](const Monitor& monitor) {
         measured = measure_irradiance(scene, &solution, ray_caster, points, options, monitor);
     });
+    // Interpolate it at the pixels.
     CellValues cells(grid);
     for (std::size_t i = 0; i < measured.size(); ++i) cells.set(i, measured[i].illuminance());
     cells.extend();
@@ -176,7 +180,7 @@ Image illuminance_over(const Scene& scene, const Solution& solution, const RayCa
     return values;
 }
 
-/// Draws lines between pixels of different height or normal, seen from above, below a height.
+/// Draws lines between pixels of different height or normal, as seen from above. Omits objects above `height`.
 Image outlines_below(const Scene& scene, const RayCaster& ray_caster, const Raster& raster, double height) {
     struct Seen {
         float z = -1e30f;
@@ -197,8 +201,8 @@ Image outlines_below(const Scene& scene, const RayCaster& ray_caster, const Rast
                 seen[static_cast<std::size_t>(row) * width + c] = {rays[c].origin.z - hits[c].distance,
                                                                    patch_normal(scene, scene.patches[hits[c].patch])};
     }
-    constexpr float step = 0.02f;  // visible difference in height [m]
-    constexpr float crease = 0.9f;
+    constexpr float step = 0.02f;   // visible difference in height [m]
+    constexpr float crease = 0.9f;  // cosine between normals
     const auto differ = [](const Seen& a, const Seen& b) {
         return std::abs(a.z - b.z) > step * (1 + 4 * (1 - std::min(a.normal.z, b.normal.z))) ||
                a.normal.dot(b.normal) < crease;

@@ -21,7 +21,7 @@ struct ReportPlan {
 };
 
 /// Draws a plan with a progress bar; stop_flag() ends it early. @param height  World z of the plane [m].
-/// @param options  Options per measuring point; width and height are ignored.
+/// @param options  Options of the measuring points.
 ReportPlan draw_plan(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const PlanarArea& floor,
                      double height, const MeasuringOptions& options);
 

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Adds a second name, so one complete checkpoint always exists.
+/// Keeps a checkpoint under a second name, so one complete checkpoint always exists.
 void keep(const fs::path& file, const fs::path& previous) {
     std::error_code error;
     if (!fs::is_regular_file(file, error)) return;
@@ -57,7 +57,7 @@ void Checkpoints::require_writable() const {
                          fmt::format("'{}' is not a regular file, which a checkpoint must be to be read "
                                      "again: expected another name",
                                      file.string()));
-    const PendingFile finds_out(file);
+    const PendingFile writable(file);  // throws otherwise
 }
 
 fs::path Checkpoints::previous() const {

@@ -18,7 +18,7 @@ struct Checkpoints {
     std::filesystem::path previous() const;
     /// Must precede long work. @throws InputError if the file cannot be written.
     void require_writable() const;
-    /// @throws UsageError if previous() exists and is no saved run of the scene, which saving would lose.
+    /// @throws UsageError if previous() exists and is no saved run of the scene, because saving would replace it.
     void require_own_previous(const Scene& scene);
     /// Saves the run and keeps the last checkpoint of this scene as previous(). Failures only log a warning.
     void save(Solver& solver);

@@ -39,7 +39,7 @@ void warn_of_leaks(const Scene& scene, const RayCaster& ray_caster, const Soluti
 
 /// Warns if one-sided faces stop light but not reversed paths, or the reverse.
 void warn_of_one_way_light(const Scene& scene, const RayCaster& ray_caster, const Solution& solution) {
-    constexpr double min_share = 0.02, min_reflected = 0.01;
+    constexpr double min_share = 0.02, min_reflected = 0.01;  // of all received light
     const OneWayLight found = find_one_way_light(scene, ray_caster, solution);
     if (std::abs(found.share) < min_share && std::abs(found.reflected_share) < min_reflected) return;
     const bool is_bright = found.share > 0;
@@ -90,8 +90,8 @@ SolveOptions within_limits(const Scene& scene, const RayCaster& ray_caster, Solv
     if (options.refinement.max_elements < scene.patches.size())
         throw InputError(fmt::format("--max-elements: {}, expected at least the {} patches of {}",
                                      options.refinement.max_elements, scene.patches.size(), scene.name));
-    const std::size_t there_is = usable_memory();
-    const std::size_t bytes = memory > 0 ? std::min(memory, there_is) : there_is;
+    const std::size_t usable = usable_memory();
+    const std::size_t bytes = memory > 0 ? std::min(memory, usable) : usable;
     const MemoryNeed need = memory_need(scene, ray_caster, options);
     require_memory(need.with(scene.patches.size()), scene.name);
     if (options.method.bytes_per_ray > 0) {

@@ -14,7 +14,7 @@ namespace interflect::command {
 /// Warns about emitters covered by coincident faces, with the missing power.
 void warn_of_covered_emission(const Scene& scene, const RayCaster& ray_caster);
 
-/// Use of the light of a run that takes longer.
+/// Use of the light so far, during a run.
 struct EarlyLight {
     double after = 0;      ///< Time of the run before the first use [s].
     bool repeats = false;  ///< Whether the light is used again, whenever the time of the run has doubled.
@@ -27,7 +27,7 @@ struct EarlyLight {
 Solution run_solve(const Scene& scene, const RayCaster& ray_caster, const SolveOptions& asked_for, std::size_t memory,
                    Checkpoints checkpoints = {}, const EarlyLight& early_light = {});
 
-/// Continues a run in the same way.
+/// Continues a run to its end, as run_solve() does.
 Solution run_to_end(Solver solver, Checkpoints checkpoints, const EarlyLight& early_light = {});
 
 }  // namespace interflect::command

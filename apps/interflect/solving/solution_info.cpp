@@ -20,7 +20,7 @@ namespace {
 const IterationReport& result_of(const SolvedScene& solved) { return solved.solution.iterations.back(); }
 
 /// Files before version 4 lack options, files and the version of Interflect.
-bool knows_provenance(const SolvedScene& solved) { return !solved.interflect_version.empty(); }
+bool has_provenance(const SolvedScene& solved) { return !solved.interflect_version.empty(); }
 
 Json to_json(const SolvedScene& solved) {
     const Scene& scene = solved.scene;
@@ -32,7 +32,7 @@ Json to_json(const SolvedScene& solved) {
               {"format_version", solved.format_version},
               {"method", solution.options.method.name},
               {"seed", solution.options.seed}};
-    if (knows_provenance(solved)) {
+    if (has_provenance(solved)) {
         json["version"] = solved.interflect_version;
         json["options"] = json_of(solution.options);
         json["files"] = scene.files;
@@ -69,9 +69,9 @@ void print_text(const SolvedScene& solved) {
     const IterationReport& result = result_of(solved);
     print_line("{}", scene.name);
     print_line("  format    version {}{}", solved.format_version,
-               knows_provenance(solved) ? ", written by Interflect " + solved.interflect_version : "");
+               has_provenance(solved) ? ", written by Interflect " + solved.interflect_version : "");
     print_line("  method    {}, seed {}{}", solution.options.method.name, solution.options.seed,
-               knows_provenance(solved) ? text_of_options(solution.options) : "");
+               has_provenance(solved) ? text_of_options(solution.options) : "");
     print_line("  rays      {}{}", result.rays, solution.interrupted ? " (interrupted)" : "");
     print_line("  elements  {} ({} leaves) of {} patches", result.elements, result.leaves, scene.patches.size());
     if (std::isfinite(result.error_estimate)) print_line("  error     {}", text_of_error(result));

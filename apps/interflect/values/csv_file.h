@@ -6,7 +6,7 @@
 
 namespace interflect::command {
 
-/// A table written line by line; commit() renames it.
+/// Table in memory, to which lines are added; commit() writes the file.
 class CsvFile {
   public:
     CsvFile(detail::PendingFile& file, const std::string& header);

@@ -20,7 +20,7 @@ void require_distinct_files(std::span<const NamedFile> inputs, std::span<const N
 /// @throws UsageError if an output is one of Scene::files.
 void require_no_scene_files(const Scene& scene, std::span<const NamedFile> outputs);
 
-/// Converts ASCII letters alone.
+/// Returns the extension with ASCII letters in lower case.
 std::string lower_case_extension(const std::filesystem::path& path);
 
 /// @param output  Receives a table or JSON.

@@ -41,7 +41,7 @@ bool take_vector(std::string_view& text, Imath::V3d& v) {
 }
 
 /// Reads a number from 1 to 10^18 that may end in k, M, G or T for powers of `thousand`.
-std::int64_t take_all(const std::string& text, double thousand, const char* expected) {
+std::int64_t parse_with_suffix(const std::string& text, double thousand, const char* expected) {
     std::string_view rest = text;
     double number = 0;
     if (!take_number(rest, number)) refuse(text, expected);
@@ -63,11 +63,11 @@ std::pair<std::string, std::string> name_and_value(const std::string& text, cons
 }  // namespace
 
 std::int64_t parse_count(const std::string& text) {
-    return take_all(text, 1000, "a number above 0, such as 500000, 20M or 1.5G");
+    return parse_with_suffix(text, 1000, "a number above 0, such as 500000, 20M or 1.5G");
 }
 
 std::size_t parse_memory(const std::string& text) {
-    return static_cast<std::size_t>(take_all(text, 1024, "a number of bytes above 0, such as 800M or 16G"));
+    return static_cast<std::size_t>(parse_with_suffix(text, 1024, "a number of bytes above 0, such as 800M or 16G"));
 }
 
 std::size_t parse_element_count(const std::string& text) {

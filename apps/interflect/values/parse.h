@@ -17,7 +17,7 @@
 
 namespace interflect::command {
 
-// Each parses a whole text or throws std::invalid_argument with expected and found text.
+// Each function parses a whole text, or throws std::invalid_argument with the expected and the found text.
 
 /// "20M" -> 20'000'000: a positive number, with k, M, G or T for powers of a thousand.
 std::int64_t parse_count(const std::string& text);

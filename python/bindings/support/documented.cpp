@@ -26,7 +26,7 @@ const char* find(std::span<const Argument> arguments, std::string_view name) {
     return nullptr;
 }
 
-/// Wraps a paragraph of a section to lines of 112 characters, the later ones further to the right.
+/// Wraps a paragraph of a section to lines of 112 characters, with a hanging indent.
 void append_wrapped(std::string& text, std::string_view paragraph) {
     constexpr std::size_t width = 112;  // 120, the columns of the code, less the 8 by which help() indents methods
     std::size_t column = 4;

@@ -55,7 +55,7 @@ class Documented {
 
     Comment comment_;
     std::vector<Argument> own_;
-    mutable std::string docstring_;  // pybind11 copies it before this object ends
+    mutable std::string docstring_;  // pybind11 copies it before this object is destroyed
 };
 
 }  // namespace interflect::python

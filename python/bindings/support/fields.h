@@ -34,7 +34,7 @@ class Fields {
         return *this;
     }
 
-    /// A field that Python shows in another form than C++.
+    /// Adds a field whose type in Python differs from that in C++.
     template <class Get, class Set>
     Fields& field(const char* name, const Get& get, const Set& set, const char* doc) {
         class_.def_property(name, get, set, doc);
@@ -44,6 +44,7 @@ class Fields {
         return *this;
     }
 
+    /// Adds the constructor and the other methods, after all fields.
     void finish() {
         namespace py = pybind11;
         const auto set_field = [type = class_name_](const py::object& object, const Field& field,
@@ -65,6 +66,7 @@ class Fields {
                 set_field(object, *field, value);
             }
         };
+        // The constructor takes fields in their order, then by name.
         class_.def(py::init([fields = fields_, type = class_name_, set_field, set_named](const py::args& args,
                                                                                          const py::kwargs& values) {
                        if (args.size() > fields.size()) throw py::type_error(type + ": too many arguments");
@@ -87,6 +89,7 @@ class Fields {
             },
             "replace(self, **fields)\n--\n\nCopies the object, with other values of these fields.\n\nArgs:\n"
             "    fields: Values by name.");
+        // Copies, pickle, text and comparison
         class_.def("__reduce__", [fields = fields_](const py::object& object) {  // pickle calls this
             py::tuple values(fields.size());
             for (std::size_t i = 0; i < fields.size(); ++i) values[i] = object.attr(fields[i].name.c_str());

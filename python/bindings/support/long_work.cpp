@@ -20,8 +20,8 @@ namespace py = pybind11;
 
 namespace {
 
-constexpr std::chrono::milliseconds between_checks{
-    20};  // a pause too short to be noticed, but long enough to cost little
+/// Pause between checks for signals and progress: too short to be noticed, but long enough to cost little.
+constexpr std::chrono::milliseconds between_checks{20};
 
 /// Progress of the working thread, for the thread of the interpreter.
 class LatestProgress {

@@ -30,7 +30,7 @@ class Arguments {
     Doubles numbers(const py::object& value, const char* name, py::ssize_t count, py::ssize_t columns) {
         return checked<Doubles>(value, name, "numbers", count, {columns});
     }
-    /// Array (count) or, with several `columns`, (count, one of columns).
+    /// Returns an array (count) if `columns` is empty, else (count, c) with c in `columns`.
     Integers integers(const py::object& value, const char* name, py::ssize_t count,
                       const std::vector<py::ssize_t>& columns) {
         const py::array array = py::array::ensure(value);
@@ -159,7 +159,7 @@ void add_faces(Scene& scene, const Integers& faces, const std::vector<std::uint3
     }
 }
 
-/// Copies an attribute of the vertices. @param columns  Numbers per vertex, 2 or 3.
+/// Copies an attribute of the vertices with two or three numbers each.
 template <class T>
 void set_attribute(std::vector<T>& attribute, const py::object& value, const char* name, std::size_t vertices,
                    Arguments& arguments) {
@@ -173,7 +173,7 @@ void set_attribute(std::vector<T>& attribute, const py::object& value, const cha
         for (int c = 0; c < columns; ++c) attribute[static_cast<std::size_t>(i)][c] = static_cast<float>(numbers(i, c));
 }
 
-/// A sequence of `T`, or one; None: nothing. @throws TypeError naming the argument.
+/// Converts a sequence of `T` or a single `T`. Returns nullopt for None. @throws TypeError naming the argument.
 template <class T>
 std::optional<std::vector<T>> sequence_of(const py::object& value, const char* name, const char* type) {
     if (value.is_none()) return std::nullopt;

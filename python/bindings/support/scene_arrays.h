@@ -1,4 +1,4 @@
-/// Scenes from arrays.
+/// Makes scenes from NumPy arrays.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ struct Parts {
     py::object materials, luminaires, views, light_groups, textures;
 };
 
-/// As scene_from_arrays_text() says.
+/// Makes a scene as scene_from_arrays_text() describes.
 std::shared_ptr<Scene> scene_from_arrays(const py::object& vertices, const py::object& faces,
                                          const py::object& face_materials, const py::object& two_sided,
                                          const py::object& objects, const py::object& face_objects,

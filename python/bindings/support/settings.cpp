@@ -20,7 +20,7 @@ py::object python_of(const Json& json) {
     return py::none();
 }
 
-/// @param usual  Default value, which has the type of the setting; null for a number.
+/// Converts the value of a setting. @param usual  Default, which has the type of the setting; null for a number.
 Json setting(const std::string& name, const py::handle& value, const Json& usual) {
     const auto refuse = [&](const char* expected) {
         throw py::type_error(name + ": expected " + expected + ", found " + found(value));

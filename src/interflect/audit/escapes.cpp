@@ -14,8 +14,8 @@ using namespace detail;
 
 namespace {
 
-/// A scene has a leak if the share of escaping rays is between these limits. Fewer rays change the light by less than
-/// its usual error; of a closed room of 100 m^2, a larger share would be an opening of 5 m^2, as in an open scene.
+/// A scene has a leak if the share of escaping rays is between these limits. A smaller share changes the light by less
+/// than its usual error. A larger share is an opening of more than 5 m^2 in a room of 100 m^2: the scene is open.
 constexpr double min_leak = 1e-3, max_leak = 0.05;
 /// Distance between an escaping ray and parallel test rays, relative to the scene's diagonal.
 constexpr float distance_beside = 0.02f;

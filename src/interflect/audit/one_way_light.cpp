@@ -20,17 +20,17 @@ using namespace detail;
 
 namespace {
 
-/// Sums of the light of faces.
+/// Extra or missing light, by the faces that cause it.
 struct LightByFace {
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> power;  // power by object and material
     double sum = 0, reflected = 0;
 
-    /// Adds light that arrives at a face. @param received  Number of times that surfaces receive it, including the
-    /// first.
-    void add(const Patch& face, double arriving, double received) {
-        power[{face.object, face.material}] += arriving * received;
-        sum += arriving * received;
-        if (received > 1) reflected += arriving * (received - 1);
+    /// Adds power that is extra or missing because of a face. @param count  Number of surfaces that receive it in turn,
+    /// including the first.
+    void add(const Patch& face, double first_received, double count) {
+        power[{face.object, face.material}] += first_received * count;
+        sum += first_received * count;
+        if (count > 1) reflected += first_received * (count - 1);
     }
     std::pair<std::uint32_t, std::uint32_t> object_and_material() const {
         return std::max_element(power.begin(), power.end(),
@@ -40,9 +40,9 @@ struct LightByFace {
 };
 
 /// Compares the hits of light rays with the hits of the reversed rays.
-class WaysBack {
+class OneWayTest {
   public:
-    WaysBack(const Scene& scene, const RayCaster& ray_caster)
+    OneWayTest(const Scene& scene, const RayCaster& ray_caster)
         : scene_(scene), ray_caster_(ray_caster), materials_(scene, ray_caster) {}
 
     /// Tests a ray. @param source  Patch at the start of the ray; `none` for luminaires.
@@ -55,15 +55,15 @@ class WaysBack {
             extra_.add(scene_.patches[face], power, spread(place, hit.patch));
             return;
         }
-        // From faces behind a one-sided face, the source may be visible through its back.
-        const std::uint32_t stops = hit.patch;
+        // Surfaces behind a one-sided face miss this light if they see the source through its back.
+        const std::uint32_t stopped_by = hit.patch;
         while (scene_.patches[hit.patch].other_side == none) {
             const Ray behind{place - ray_caster_.ray_offset(hit.patch) * normal(hit.patch), ray.direction};
             hit = trace(behind);
             if (hit.patch == none) return;
             place = behind.origin + hit.distance * ray.direction;
             if (face_between(ray.origin, source, place, hit.patch) != none) return;
-            missing_.add(scene_.patches[stops], power, spread(place, hit.patch));
+            missing_.add(scene_.patches[stopped_by], power, spread(place, hit.patch));
         }
     }
     OneWayLight result() const {
@@ -84,7 +84,7 @@ class WaysBack {
 
     /// Returns the patch that hides the start of a light ray from `place`, or `none`.
     std::uint32_t face_between(const V3f& start, std::uint32_t source, const V3f& place, PatchIndex patch) const {
-        constexpr float rounding = 1e-4f, offsets = 8;
+        constexpr float rounding = 1e-4f, offsets = 8;  // tolerances of the distance: relative, and in ray offsets
         const float offset = ray_caster_.ray_offset(patch), distance = (start - place).length();
         if (!(distance > 0)) return none;  // the ray starts in a corner
         const Hit back = trace({place + offset * normal(patch), (start - place) / distance});
@@ -121,17 +121,17 @@ class WaysBack {
     std::uint64_t walk_steps_ = 0;
 };
 
-void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solution& solution, WaysBack& ways) {
+void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solution& solution, OneWayTest& test) {
     PointBlock points;
     std::uint64_t sample = 0;
     const SampledSources from = sample_sources(scene, ray_caster, solution);
     for (const ElementIndex leaf : from.leaves)
-        ways.add(ray_from(leaf, *solution.forest, ray_caster, sample++, points), solution.forest->patch(leaf),
+        test.add(ray_from(leaf, *solution.forest, ray_caster, sample++, points), solution.forest->patch(leaf),
                  from.power_of_each());
 }
 
 /// Traces rays of each luminaire part. Their number is in proportion to its power, rounded up.
-void add_luminaires(const Scene& scene, WaysBack& ways) {
+void add_luminaires(const Scene& scene, OneWayTest& test) {
     const Emission emission(scene);
     const double total = channel_sum(emission.total_power());
     PointBlock points;
@@ -140,7 +140,7 @@ void add_luminaires(const Scene& scene, WaysBack& ways) {
         const double power = channel_sum(emission.power(part));
         rays.resize(static_cast<std::size_t>(std::ceil(audit_rays * (power / total))));
         emission.shoot(part, PointSet::random, audit_seed, 0, points, rays);
-        for (const Ray& ray : rays) ways.add(ray, no_patch, power / static_cast<double>(rays.size()));
+        for (const Ray& ray : rays) test.add(ray, no_patch, power / static_cast<double>(rays.size()));
     }
 }
 
@@ -152,10 +152,10 @@ OneWayLight find_one_way_light(const Scene& scene, const RayCaster& ray_caster, 
     const bool has_one_sided_faces = std::any_of(scene.patches.begin(), scene.patches.end(),
                                                  [](const Patch& patch) { return patch.other_side == none; });
     if (!has_one_sided_faces) return {};
-    WaysBack ways(scene, ray_caster);
-    add_surfaces(scene, ray_caster, solution, ways);
-    add_luminaires(scene, ways);
-    return ways.result();
+    OneWayTest test(scene, ray_caster);
+    add_surfaces(scene, ray_caster, solution, test);
+    add_luminaires(scene, test);
+    return test.result();
 }
 
 }  // namespace interflect

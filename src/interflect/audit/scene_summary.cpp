@@ -11,7 +11,7 @@ using namespace detail;
 
 namespace {
 
-/// Indices of the objects that have an emitting patch, for each material.
+/// Indices of the objects with an emitting patch of each material.
 using EmittingObjects = std::map<std::uint32_t, std::set<std::uint32_t>>;
 
 void add_shape(const Scene& scene, const Patch& patch, SceneSummary& summary) {

@@ -13,11 +13,11 @@ using namespace detail;
 
 namespace {
 
-// Three colours, and an index per four siblings [bytes].
+// Three colours per element, and an index per four siblings [bytes].
 constexpr std::size_t per_textured_element = 37;
 // Bytes: H, unshot light and pass result, 12 each; contributions 24 or received light 12.
 constexpr std::size_t per_element_and_group = 60;
-// With SolveOptions::keep_direct, per light group [bytes].
+// Direct light of one light group, with SolveOptions::keep_direct [bytes].
 constexpr std::size_t per_element_of_direct_light = 24;
 
 }  // namespace

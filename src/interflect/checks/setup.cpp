@@ -1,4 +1,3 @@
-
 #include <ImathBox.h>
 #include <fmt/format.h>
 
@@ -43,7 +42,7 @@ void add_shut_out_light(const Scene& scene, const RayCaster& ray_caster, const S
             shut_out.add({scene.objects[luminaire.object], luminaire.name});
     std::vector<Finding> found;
     shut_out.append_to(found);
-    if (found.empty() || lets_light_in(scene, ray_caster, lines)) return;
+    if (found.empty() || has_opening(scene, ray_caster, lines)) return;
     findings.push_back(std::move(found.front()));
 }
 
@@ -72,18 +71,18 @@ bool has_integer_coordinates(const Scene& scene) {
 void add_unit(const Scene& scene, const Shell& shell, std::vector<Finding>& findings) {
     for (const Warnings::Entry& warning : scene.warnings.entries())
         if (warning.kind == "implausible-size") return;  // the reader has already asked for the unit
-    constexpr float largest_path = 80;  // a hangar of 300 x 100 x 40 m has 52; a room in centimetres 230
-    constexpr float largest_mesh = 200;
+    constexpr float largest_path = 80;   // a hangar of 300 x 100 x 40 m has 52; a room in centimetres 230
+    constexpr float largest_mesh = 200;  // diagonal [m]
     const float size = core_bounds(scene).size().length();
-    std::string sign;
+    std::string evidence;
     if (shell.mean_free_path > largest_path)
-        sign = fmt::format("light goes {:.3g} m from wall to wall", shell.mean_free_path);
+        evidence = fmt::format("light goes {:.3g} m from wall to wall", shell.mean_free_path);
     else if (is_bare_mesh(scene) && size > largest_mesh && has_integer_coordinates(scene))
-        sign = fmt::format("it is {:.3g} m across, with integers as coordinates", size);
-    if (sign.empty()) return;
+        evidence = fmt::format("it is {:.3g} m across, with integers as coordinates", size);
+    if (evidence.empty()) return;
     findings.push_back({"probable-unit",
                         false,
-                        "the scene is probably in another unit than metres: " + sign,
+                        "the scene is probably in another unit than metres: " + evidence,
                         "read it in its unit, such as millimetres",
                         1,
                         {}});
@@ -102,7 +101,7 @@ void add_up_axis(const Scene& scene, std::vector<Finding>& findings) {
 
 void add_contradicting_normals(const Scene& scene, std::size_t places, std::vector<Finding>& findings) {
     if (scene.normals.empty()) return;
-    // Tilts the cosine law by up to 17% at an incidence of 45 degrees; rounding and nearly flat meshes stay below.
+    // Changes the irradiance by up to 17% at an incidence of 45 degrees; rounding and nearly flat meshes stay below.
     constexpr float least_degrees = 10;
     Finder contradicting(scene, places,
                          {"contradicting-normals",

@@ -68,7 +68,7 @@ class Validator {
     }
 
     void add_coincident_faces() {
-        constexpr float offset_over_tolerance = 4;  // of RayCaster
+        constexpr float offset_over_tolerance = 4;  // RayCaster::ray_offset()
         std::vector<float> tolerance(scene_.patches.size());
         for (PatchIndex i{0}; i < tolerance.size(); ++i)
             tolerance[i] = ray_caster_.ray_offset(i) / offset_over_tolerance;

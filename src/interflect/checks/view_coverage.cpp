@@ -44,7 +44,7 @@ ViewCoverage view_coverage(const Scene& scene, const RayCaster& ray_caster, cons
     const std::vector<Hit> hits = hits_of(ray_caster, rays);
     const float beyond = beyond_all(scene, rays.front().origin);
 
-    // Reversed rays hit the fronts of one-sided faces; their backs are open to rays.
+    // Reversed rays hit the fronts of the one-sided faces whose backs the rays pass.
     constexpr float almost = 0.9999f;  // excludes the face that was hit
     std::vector<Ray> backwards;
     for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -27,8 +27,8 @@ constexpr Interval half_side{.10f, .36f}, box_height{.10f, 1.4f};  // [m]
 void add_box(Scene& scene, const V3f& cell_centre, std::uint32_t object, const Palette& palette,
              RandomSequence& random) {
     const float x = random.between(half_side.low, half_side.high), y = random.between(half_side.low, half_side.high);
-    const float room = cell / 2 - gap - std::hypot(x, y);
-    const V3f place = cell_centre + V3f(random.between(-room, room), random.between(-room, room), 0);
+    const float slack = cell / 2 - gap - std::hypot(x, y);
+    const V3f place = cell_centre + V3f(random.between(-slack, slack), random.between(-slack, slack), 0);
     const float turn = random.between(0, std::numbers::pi_v<float>);
     Solids(scene, Placement::turned(place, turn), object)
         .box({-x, -y, gap}, {x, y, random.between(box_height.low, box_height.high)},

@@ -22,7 +22,7 @@ namespace {
 
 using namespace building;
 
-constexpr float one_luminaire = 100;  // wider than any room [m]
+constexpr float maze_luminaire_pitch = 100;  // wider than any room: one luminaire each [m]
 
 /// Large pieces first, because later ones may not fit.
 const std::array wall_furniture{&bookcase, &bookcase, &workstation, &workstation, &low_bookcase, &cabinet,
@@ -70,7 +70,7 @@ Scene make_maze(const MazeOptions& options) {
     for (std::uint32_t i = 0; i < options.rooms; ++i) {
         const Room& room = plan.rooms[i];
         Furnisher furnisher(scene, palette, i, random[i]);
-        furnisher.add_luminaires(room, plan.room_height, one_luminaire, random[i].chance(.5f));
+        furnisher.add_luminaires(room, plan.room_height, maze_luminaire_pitch, random[i].chance(.5f));
         const RoomView room_view = building::room_view(plan, i);
         if (options.furniture) furnish(plan, room, room_view, furnisher, random[i]);
         if (i < max_room_views) scene.views.push_back(room_view.view);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// Rays from it start outside the scene.
+/// Returns the scene's bounding box with a margin, which keeps origins of rays outside the scene.
 Imath::Box3f box_around(const Scene& scene) {
     constexpr float margin = 1e-3f;  // relative to the diagonal
     Imath::Box3f box;
@@ -37,7 +37,7 @@ float sample_cosine(float v, float inner, float outer, float inner_share) {
     return outer + (inner - outer) * std::cbrt((1 - v) / (1 - inner_share));
 }
 
-/// @param turn  Azimuth from s towards t, in full turns.
+/// Returns a direction at an angle to an axis. @param turn  Azimuth from s towards t, in full turns.
 V3f turned(const V3f& axis, const V3f& s, const V3f& t, float cosine, float sine, float turn) {
     const float angle = 2 * pi * turn;
     return s * (sine * std::cos(angle)) + t * (sine * std::sin(angle)) + axis * cosine;
@@ -70,6 +70,7 @@ constexpr std::array<SkyComponent, 4> map_components = {
      {Rgb(0, 1, 0), [](const Rgb& c) { return c.y - min_channel(c); }},
      {Rgb(0, 0, 1), [](const Rgb& c) { return c.z - min_channel(c); }}}};
 
+/// Returns a table that samples directions by a component's amount times the cosine to a side's normal.
 DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<const Rgb> integrals,
                          const SkyComponent& component, const V3f& normal) {
     std::vector<float> cosine_at_horizon(grid.columns);
@@ -88,7 +89,7 @@ DirectionTable table_for(const SkyGrid& grid, const SkyFrame& frame, std::span<c
     return {grid, weights};
 }
 
-/// Part of a ray's line in a box [m]; negative before its origin.
+/// Interval of a ray's line within a box, as distances from the ray's origin [m].
 struct Crossing {
     float begin, end;  // begin > end: missed
 };
@@ -151,7 +152,7 @@ void Emission::add_beam(const Beam& beam, const Rgb& intensity) {
     emitters_.push_back({beam, intensity, RgbD(intensity) * (solid_angle / double{parts_per_emitter})});
 }
 
-/// From the bounding rectangle of the box along the light, enlarged for the rays of a disc.
+/// The emitter of a box is its bounding rectangle across the light, enlarged for the rays of a disc.
 void Emission::add(const DirectionalLight& light) {
     const V3f direction = light.direction.normalized();
     const TangentFrame frame(direction);
@@ -213,14 +214,14 @@ void Emission::add_sky(const std::shared_ptr<const SkyRadiance>& sky, const SkyG
                 return side.edge_u.length() * side.edge_v.length() / float{parts_per_emitter};
             };
             const BoxSide outer = side_of(boxes_.front());
-            const auto places =
+            const auto directions =
                 std::make_shared<DirectionTable>(table_for(grid, sky->frame(), integrals, component, outer.normal));
-            if (!(places->sum() > 0)) continue;
+            if (!(directions->sum() > 0)) continue;
             for (std::size_t b = 0; b < boxes_.size(); ++b) {
                 const BoxSide side = side_of(boxes_[b]);
-                const RgbD power = RgbD(component.colour) * (places->sum() * double{part_area(side)});
-                emitters_.push_back({SkySide{side.corner, side.edge_u, side.edge_v, side.normal, sky, places, component,
-                                             part_area(outer)},
+                const RgbD power = RgbD(component.colour) * (directions->sum() * double{part_area(side)});
+                emitters_.push_back({SkySide{side.corner, side.edge_u, side.edge_v, side.normal, sky, directions,
+                                             component, part_area(outer)},
                                      component.colour, power, b});
             }
         }
@@ -256,7 +257,7 @@ Ray Emission::Rectangle::ray(float u, float v, float c, float d) const {
 
 /// Directions of cells that extend behind the side's plane are mirrored to the front.
 Ray Emission::SkySide::ray(float u, float v, float c, float d) const {
-    V3f direction = -sky->frame().direction(places->sample(c, d));
+    V3f direction = -sky->frame().direction(directions->sample(c, d));
     const float cosine = direction.dot(normal);
     if (cosine < 0) direction -= normal * (2 * cosine);
     return {corner + edge_u * u + edge_v * v, direction};
@@ -293,13 +294,13 @@ void Emission::shoot(std::size_t part, PointSet set, std::uint64_t key, std::uin
     }
 }
 
-/// The ray misses the scene if its line misses the target `box` or crosses a later one. Else its origin moves back to
-/// the scene's box.
+/// Returns a ray that misses the scene if the line misses the target `box` or crosses a later one. Else moves the
+/// origin back to the scene's box.
 Ray Emission::restrict_to_box(const Ray& ray, std::size_t box) const {
     const auto crosses = [&](const Imath::Box3f& other) { return line_crosses(other, ray); };
     const auto own = boxes_.begin() + static_cast<std::ptrdiff_t>(box);
-    const bool is_missing = (box > 0 && !crosses(*own)) || std::any_of(own + 1, boxes_.end(), crosses);
-    if (is_missing) return {boxes_.front().max + boxes_.front().size(), V3f(1, 1, 1).normalized()};
+    const bool is_rejected = (box > 0 && !crosses(*own)) || std::any_of(own + 1, boxes_.end(), crosses);
+    if (is_rejected) return {boxes_.front().max + boxes_.front().size(), V3f(1, 1, 1).normalized()};
     if (box == 0) return ray;
     return {ray.origin + std::min(0.0f, crossing(boxes_.front(), ray).begin) * ray.direction, ray.direction};
 }
@@ -316,6 +317,7 @@ V3f Emission::sun_direction(std::size_t sun, float c, float d) const {
 }
 
 std::vector<Emission::PartAlong> Emission::parts_along(const Ray& light, std::uint32_t sun) const {
+    // The last box that the line crosses samples it.
     std::size_t box = boxes_.size() - 1;
     while (box > 0 && !line_crosses(boxes_[box], light)) --box;
     std::vector<PartAlong> parts;
@@ -361,7 +363,7 @@ Emission::Proxy Emission::proxy(std::size_t part, const Ray& ray, float distance
                        emitter.rating * (pi * side->component.amount(side->sky->towards(-ray.direction))));
     const Rectangle& rectangle = std::get<Rectangle>(emitter.shape);
     if (rectangle.is_sky()) return of_side(rectangle.direction, rectangle.part_area, emitter.rating);
-    // Direction and irradiance are then nearly constant over the scene.
+    // From a distant proxy, direction and irradiance are nearly constant over the scene.
     const float far = 100 * boxes_.front().size().length();
     return {ray.origin - far * ray.direction, rectangle.direction, emitter.rating * (far * far)};
 }

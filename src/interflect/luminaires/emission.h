@@ -20,7 +20,7 @@
 
 namespace interflect::detail {
 
-/// Part of a sky's radiance: colour * amount(radiance). Rays of an emitter then carry equal power.
+/// Part of a sky's radiance: colour * amount(radiance). All rays of its emitter carry equal power.
 struct SkyComponent {
     Rgb colour;
     float (*amount)(const Rgb& radiance);
@@ -28,18 +28,19 @@ struct SkyComponent {
 
 bool line_crosses(const Imath::Box3f& box, const Ray& ray);
 
-/// A point, spot or measured light is one emitter. Outside light (directional lights and skies) has emitters per box:
-/// the scene's, and targets of high importance. A line of outside light is sampled from the last box that it crosses.
-/// Emitters have parts of equal power, by direction or, for outside light, by position. Immutable, thread-safe.
+/// Samples rays of luminaires. A point, spot or measured light is one emitter. Outside light (directional lights and
+/// skies) has emitters per box: the scene's, and targets of high importance. A line of outside light is sampled from
+/// the last box that it crosses. Emitters have parts of equal power, by direction or, for outside light, by position.
+/// Immutable, thread-safe.
 class Emission {
   public:
     Emission() = default;  ///< No luminaires.
     explicit Emission(const Scene& scene, std::span<const Imath::Box3f> targets = {});
 
     std::size_t part_count() const { return emitters_.size() * parts_per_emitter; }
-    /// Returns the power [lm or W]; of outside light, the power sent through the part's box.
+    /// Returns the power of a part [lm or W]; for outside light, the power through the part's box.
     RgbD power(std::size_t part) const { return emitters_[part / parts_per_emitter].part_power; }
-    /// Excludes targets.
+    /// Returns the power of all luminaires, without targets [lm or W].
     RgbD total_power() const { return power_of_boxes(0, 1); }
     /// Returns the power of the targets [lm or W], part of total_power().
     RgbD repeated_power() const { return power_of_boxes(1, boxes_.size()); }
@@ -61,13 +62,14 @@ class Emission {
         std::size_t part;
         double brightness;  ///< Sum of channels: sky radiance, or irradiance facing the sun.
     };
+    /// Returns the parts of skies or of a sun that emit along a line.
     /// @param light  Any point of the line, and the direction in which light travels.
     /// @param sun    Index; `none` for skies.
     std::vector<PartAlong> parts_along(const Ray& light, std::uint32_t sun) const;
 
-    /// Generates rays of equal power from the part's samples, beginning with `first_sample`. Those of outside light
+    /// Generates rays of equal power from the part's samples, beginning with `first_sample`. Rays of outside light
     /// start on or outside the scene's box, and miss it if another box samples their line.
-    /// @param key     Of the part's point sequence (fill_points).
+    /// @param key     Key of the part's point sequence (fill_points).
     /// @param points  Working memory.
     void shoot(std::size_t part, PointSet set, std::uint64_t key, std::uint64_t first_sample, PointBlock& points,
                std::span<Ray> rays) const;
@@ -98,10 +100,11 @@ class Emission {
         bool is_sky() const { return sine == 1; }
         Ray ray(float u, float v, float c, float d) const;
     };
+    /// Side of a box, which emits one component of a sky inwards.
     struct SkySide {
         V3f corner, edge_u, edge_v, normal;
         std::shared_ptr<const SkyRadiance> sky;
-        std::shared_ptr<const DirectionTable> places;
+        std::shared_ptr<const DirectionTable> directions;
         SkyComponent component;
         float part_area;  // as in Rectangle
         Ray ray(float u, float v, float c, float d) const;
@@ -138,7 +141,7 @@ class Emission {
     Ray restrict_to_box(const Ray& ray, std::size_t box) const;
 
     std::vector<Imath::Box3f> boxes_;  // the scene's, then targets
-    std::vector<std::size_t> suns_;    // emitters for box 0
+    std::vector<std::size_t> suns_;    // emitters of directional lights, for box 0
     std::vector<std::vector<std::size_t>> emitters_of_boxes_;
     std::vector<Emitter> emitters_;
     std::map<const PhotometricWeb*, std::shared_ptr<const WebSampler>> samplers_;

@@ -5,10 +5,11 @@
 
 namespace interflect::detail {
 
+/// Light of a luminaire at a point, without occlusion.
 struct Illumination {
     V3f towards{0, 0, 1};     ///< Unit direction.
     float distance = 0;       ///< Length of the shadow ray [m]; infinite for directional light.
-    Rgb irradiance{0, 0, 0};  ///< On a surface facing it [lm/m^2 or W/m^2]; 0 for skies.
+    Rgb irradiance{0, 0, 0};  ///< On a surface perpendicular to `towards` [lm/m^2 or W/m^2]; 0 for skies.
 };
 /// Samples a point of a disc or opening; the mean over u and v is the total.
 /// @param x     Relative to the scene's origin [m].

@@ -29,7 +29,7 @@ struct CylinderAreas {
     float end, side;
 };
 
-/// The side's projection is height times width of the ellipse seen along d.
+/// Returns projected areas. The side's is its height times the width of the ellipse seen along d.
 CylinderAreas cylinder_areas(const LuminousOpening& opening, const V3f& d) {
     const int k = opening.axis, i = (k + 1) % 3, j = (k + 2) % 3;
     const V3f& size = opening.size;

@@ -14,10 +14,10 @@ struct OpeningPoint {
 /// @param u, v  In (0, 1).
 OpeningPoint sample_opening(const LuminousOpening& opening, const V3f& d, float u, float v);
 
-/// [m^2]
+/// Returns the area of the opening, projected along a unit direction [m^2].
 float projected_area(const LuminousOpening& opening, const V3f& d);
 
-/// Unit axes in the scene.
+/// Axes of the luminaire's frame, as unit vectors in the scene.
 struct LuminaireFrame {
     V3f x, y, z;
     /// @param light  Without luminaire_fault().

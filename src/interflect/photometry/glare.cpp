@@ -24,17 +24,18 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A small part of a glare source, as seen from the observer.
-struct Place {
+/// Small part of a glare source, as seen from the observer.
+struct SourceCell {
     V3f towards;
     float distance = 0;      // [m]
-    PatchIndex patch;        // patch that the ray must hit; none: it must be free up to `distance`
+    PatchIndex patch;        // patch that the ray must hit; none: no hit up to `distance`
     Rgb radiance{0, 0, 0};   // [cd/m^2]
     double solid_angle = 0;  // [sr]
     double position_index = 1;
     std::size_t source = 0;
 };
 
+/// Sums over the visible cells of a glare source.
 struct Sums {
     std::string name;
     bool is_rated = true;
@@ -52,9 +53,9 @@ struct Sums {
     }
 };
 
-class SourcePlaces {
+class SourceCells {
   public:
-    SourcePlaces(const Scene& scene, const Observer& observer)
+    SourceCells(const Scene& scene, const Observer& observer)
         : scene_(scene), eye_(observer.eye - scene.origin), line_of_sight_(observer.line_of_sight.normalized()) {
         for (PatchIndex i{0}; i < scene.patches.size(); ++i)
             if (largest_channel(scene.materials[scene.patches[i].material].exitance) > 0) add_patch(i);
@@ -63,7 +64,7 @@ class SourcePlaces {
     }
 
     const V3f& eye() const { return eye_; }
-    const std::vector<Place>& places() const { return places_; }
+    const std::vector<SourceCell>& cells() const { return cells_; }
     std::vector<Sums>& sums() { return sums_; }
 
   private:
@@ -123,8 +124,8 @@ class SourcePlaces {
         }
     }
 
-    void add(const Place& place) {
-        if (std::isfinite(place.position_index) && place.solid_angle > 0) places_.push_back(place);
+    void add(const SourceCell& cell) {
+        if (std::isfinite(cell.position_index) && cell.solid_angle > 0) cells_.push_back(cell);
     }
 
     std::size_t source_of(const Patch& patch, bool is_rated) {
@@ -138,7 +139,7 @@ class SourcePlaces {
     const Scene& scene_;
     const std::string no_name_;
     V3f eye_, line_of_sight_;
-    std::vector<Place> places_;
+    std::vector<SourceCell> cells_;
     std::vector<Sums> sums_;
     std::map<std::pair<std::string, bool>, std::size_t> by_name_;  // keys: name, and whether the source is rated
 };
@@ -194,15 +195,15 @@ double unified_glare_rating(double background_luminance, std::span<const GlareSo
 std::vector<GlareSource> glare_sources(const Scene& scene, const RayCaster& ray_caster, const Observer& observer) {
     require_direction(observer);
     ray_caster.require_made_for(scene);
-    SourcePlaces seen(scene, observer);
-    const std::vector<Place>& places = seen.places();
+    SourceCells seen(scene, observer);
+    const std::vector<SourceCell>& cells = seen.cells();
     ShadowRays rays;
-    for (const Place& place : places) rays.add({seen.eye(), place.towards}, place.patch, place.distance);
+    for (const SourceCell& cell : cells) rays.add({seen.eye(), cell.towards}, cell.patch, cell.distance);
     RayCounts counts;
     const std::span<const Rgb> transmittance = rays.trace(ray_caster, Panes(scene, ray_caster), counts);
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const double l = luminance(RgbD(places[i].radiance * transmittance[i]));
-        if (l > 0) seen.sums()[places[i].source].add(l, places[i].solid_angle, places[i].position_index);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const double l = luminance(RgbD(cells[i].radiance * transmittance[i]));
+        if (l > 0) seen.sums()[cells[i].source].add(l, cells[i].solid_angle, cells[i].position_index);
     }
     std::vector<GlareSource> sources;
     for (const Sums& sums : seen.sums())

@@ -46,6 +46,7 @@ double grid_spacing(double length, double width) {
 MeasuringGrid area_grid(const Scene& scene, const PlanarArea& area, const GridOptions& options,
                         const std::optional<double>& height) {
     require_valid(options);
+    // Divide the rectangle around the area, less the boundary strip, into cells.
     const PlanarOutline outline = outline_of(scene, area);
     const V2d low = outline.box.min + V2d(options.boundary), sides = outline.box.max - V2d(options.boundary) - low;
     if (!(sides.x > 0 && sides.y > 0))
@@ -65,6 +66,7 @@ MeasuringGrid area_grid(const Scene& scene, const PlanarArea& area, const GridOp
     const auto raised = [&](const Imath::V3d& p) { return height ? Imath::V3d(p.x, p.y, *height) : p; };
     grid.corner = raised(outline.point(low));
 
+    // Keep the cell centres within the faces.
     const std::vector<PlanarSegment> border = options.boundary > 0 ? outline.border() : std::vector<PlanarSegment>();
     const auto is_within = [&](const V2d& p) {
         return outline.holds(p) && std::all_of(border.begin(), border.end(), [&](const PlanarSegment& s) {

@@ -69,6 +69,7 @@ std::vector<PatchIndex> patches_of(const Scene& scene, const std::string& object
     return patches;
 }
 
+/// Groups patches by plane, in order of decreasing area.
 std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<PatchIndex> patches, const std::string& name) {
     std::vector<PatchGeometry> geometry;
     geometry.reserve(patches.size());
@@ -81,8 +82,9 @@ std::vector<PlanarArea> planes_of(const Scene& scene, std::vector<PatchIndex> pa
     for (const PatchGeometry& g : geometry) box.extendBy(g.centre());
     const double tolerance = same_plane_distance * (static_cast<double>(box.size().length()) +
                                                     std::sqrt(static_cast<double>(geometry[order[0]].area())));
+    // Add each patch, from the largest on, to the first plane that contains it.
     std::vector<PlanarArea> planes;
-    std::vector<V3f> on_plane;
+    std::vector<V3f> on_plane;  // a point of each plane
     for (const std::size_t k : order) {
         const V3f normal = geometry[k].normal(), centre = geometry[k].centre();
         std::size_t p = 0;

@@ -14,7 +14,7 @@ struct PlanarOutline {
     Imath::V3d origin{0, 0, 0};                  ///< Point of the plane in world coordinates [m].
     Imath::V3d u{1, 0, 0}, v{0, 1, 0};           ///< Unit vectors in the plane; u x v is the normal.
     std::vector<std::vector<Imath::V2d>> faces;  ///< Convex and counter-clockwise.
-    Imath::Box2d box;
+    Imath::Box2d box;                            ///< Bounds of all faces.
 
     Imath::V3d point(const Imath::V2d& p) const { return origin + u * p.x + v * p.y; }
     /// Returns whether a point is on a face or its border.

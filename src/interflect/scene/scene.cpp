@@ -22,10 +22,10 @@ constexpr std::size_t listed_faults = 20;
 bool is_share(const Rgb& c) { return is_finite(c) && std::min({c.x, c.y, c.z}) >= 0; }
 bool is_reflectance(const Rgb& c) { return is_share(c) && largest_channel(c) < 1; }
 
-/// Object of a fault. The text is made only for faults: scenes have millions of patches.
+/// Part of a scene that is checked. Its text is composed only for faults, since scenes have millions of patches.
 struct Subject {
     const std::string* name = nullptr;
-    std::string_view kind = {};  // of numbered ones
+    std::string_view kind = {};  // of parts without a name: "patch"
     std::size_t index = 0;
 
     std::string text() const {
@@ -85,7 +85,7 @@ void check_material(const Scene& scene, const Material& m, Faults& faults) {
         return fmt::format("material '{}': reflectance ({}, {}, {}) is not in [0, 1)", m.name, r.x, r.y, r.z);
     });
     const Rgb &t = m.transmittance, &s = m.specular_reflectance;
-    // Otherwise check_products() checks the texels, or the reflectance is at fault.
+    // check_products() checks textured sums; an invalid reflectance is reported above.
     const bool are_added = m.transmittance_texture == none && is_reflectance(r);
     faults.check(
         is_share(t) && is_share(s) && (!are_added || largest_channel(Rgb(r + t + s)) <= 1), named(m.name), [&] {

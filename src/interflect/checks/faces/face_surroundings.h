@@ -16,14 +16,15 @@ struct Surroundings {
     float one_way = 0;  ///< Hit an object that returns no light (is_one_way()).
 };
 
+/// Samples the space around a face with rays.
 class FaceSurroundings {
   public:
     FaceSurroundings(const Scene& scene, const RayCaster& ray_caster);
 
     /// Traces 64 rays and their reversed rays.
     Surroundings measure(PatchIndex patch, Side side) const;
-    /// Whether light stays within a tenth of the scene and the larger of five lamp sizes and 0.5 m for eight
-    /// reflections. Traces 64 paths through glass, regardless of reflectance.
+    /// Whether paths from a lamp stay in a small box for eight reflections. Its diagonal is the larger of five lamp
+    /// sizes and 0.5 m, but at most a tenth of the scene's. Traces 64 paths through glass, regardless of reflectance.
     bool is_enclosed(PatchIndex patch) const;
 
   private:

@@ -8,6 +8,7 @@ namespace interflect::detail {
 
 namespace {
 
+/// Returns, for each vertex, the first vertex at the same position.
 std::vector<std::uint32_t> first_at_position(const Scene& scene) {
     const auto position = [&](std::uint32_t i) {
         const V3f& x = scene.vertices[i];

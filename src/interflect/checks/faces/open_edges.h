@@ -13,7 +13,7 @@ struct OpenEdge {
     PatchIndex patch;
 };
 
-/// Sorted by patch. Merges vertices at equal positions.
+/// Returns the open edges, sorted by patch. Vertices at equal positions count as one.
 std::vector<OpenEdge> open_edges(const Scene& scene);
 
 }  // namespace interflect::detail

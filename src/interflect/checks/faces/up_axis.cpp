@@ -19,11 +19,13 @@ using namespace detail;
 
 namespace {
 
+/// Minimum cosine between a sum of vectors and an axis, and minimum length of the sum relative to parallel vectors.
 constexpr double min_cosine = 0.9, min_agreement = 0.5;
 
 constexpr const char* axis_names[3][2] = {{"x", "-x"}, {"y", "-y"}, {"z", "-z"}};
 
-/// @param total  Length of `sum` for parallel terms.
+/// Returns the axis nearest to a sum of vectors; null if they disagree. @param total  Length of `sum` for parallel
+/// vectors.
 const char* axis_of(const Imath::V3d& sum, double total) {
     const double length = sum.length();
     if (!(length > min_agreement * total)) return nullptr;
@@ -61,7 +63,7 @@ std::vector<Imath::Box3f> boxes_of_parts(const Scene& scene, std::size_t parts, 
 
 constexpr std::size_t min_objects = 4;
 
-/// Divides fewer than four objects into connected faces.
+/// Returns the bounding boxes of the objects. Fewer than four objects are divided into connected faces.
 std::vector<Imath::Box3f> boxes_of_objects(const Scene& scene) {
     std::vector<Imath::Box3f> boxes =
         boxes_of_parts(scene, scene.objects.size(), [](const Patch& patch) { return patch.object; });
@@ -79,14 +81,14 @@ bool is_thin(const Imath::Box3f& box, int axis) {
     return size[axis] < thin * std::min(size[(axis + 1) % 3], size[(axis + 2) % 3]);
 }
 
-/// Returns, per axis and direction, the share of objects on the lower end that are not thin.
+/// Returns, for each axis and sign, the share of objects that stand on the lower end of the scene; thin ones do not.
 std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     const std::vector<Imath::Box3f> boxes = boxes_of_objects(scene);
     std::array<std::array<double, 2>, 3> shares{};
     if (boxes.size() < min_objects) return shares;
     Imath::Box3f all;
     for (const Imath::Box3f& box : boxes) all.extendBy(box);
-    constexpr float min_distance = 0.01f;
+    constexpr float min_distance = 0.01f;  // of the scene's diagonal
     const float distance = min_distance * all.size().length();
     for (const Imath::Box3f& box : boxes)
         for (int axis = 0; axis < 3; ++axis) {
@@ -99,7 +101,7 @@ std::array<std::array<double, 2>, 3> standing_objects(const Scene& scene) {
     return shares;
 }
 
-/// Corridors may be narrower than high, so elongated scenes must be flatter.
+/// Whether a scene is low along an axis. Corridors may be narrower than high, so elongated scenes must be flatter.
 bool is_flat(const V3f& extent, int axis) {
     constexpr float flat = 0.8f, elongated_flat = 0.5f;  // rooms of 4 x 5 x 3 m; corridors of 30 x 2.2 x 3 m
     constexpr float elongated = 4;
@@ -111,7 +113,7 @@ bool is_flat(const V3f& extent, int axis) {
 }  // namespace
 
 const char* detail::find_other_up_axis(const Scene& scene) {
-    constexpr double min_standing = 0.5, min_advantage = 0.25;
+    constexpr double min_standing = 0.5, min_advantage = 0.25;  // share of the objects, and its advantage over z
     if (scene.patches.empty() || axis_of_views(scene)) return nullptr;
     const char* const of_light = axis_of_light(scene);
     const auto standing = standing_objects(scene);

@@ -26,7 +26,7 @@ struct Path {
     bool stays = true;
 };
 
-/// All surfaces reflect and panes transmit: paths connect points of one space.
+/// Random paths within one space: every surface reflects diffusely, and panes transmit.
 class Paths {
   public:
     Paths(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines)
@@ -49,6 +49,7 @@ class Paths {
         return path;
     }
 
+    /// Whether paths from `x` leave to the sky or see a lit point.
     bool is_lit(const V3f& x, std::span<const V3f> lit, bool has_sky) const {
         constexpr std::uint64_t paths = 16, segments = 8;
         for (std::uint64_t i = 0; i < paths; ++i) {
@@ -69,6 +70,7 @@ class Paths {
     const SightLines& lines_;
 };
 
+/// Space that the light of a luminaire reaches.
 struct LitSpace {
     std::vector<V3f> points;
     Imath::Box3f box;
@@ -112,11 +114,13 @@ std::vector<V3f> points_lit_by_surfaces(const Scene& scene, const RayCaster& ray
     return points;
 }
 
-bool is_narrow(const Imath::Box3f& space, const V3f& scene) {
+/// Whether a space is too narrow for a room.
+bool is_narrow(const Imath::Box3f& space, const V3f& scene_size) {
     constexpr float narrow = 0.5f, min_room = 2;  // [m]
     const V3f size = space.size();
-    if (size.length() <= std::min(narrow, scene.length() / 10)) return true;
-    return std::min({size.x, size.y, size.z}) < narrow && std::min({scene.x, scene.y, scene.z}) >= min_room;
+    if (size.length() <= std::min(narrow, scene_size.length() / 10)) return true;
+    return std::min({size.x, size.y, size.z}) < narrow &&
+           std::min({scene_size.x, scene_size.y, scene_size.z}) >= min_room;
 }
 
 std::vector<V3f> views_inside(const Scene& scene, const SightLines& lines) {
@@ -152,6 +156,7 @@ std::vector<Finding> find_enclosed_lights(const Scene& scene, const RayCaster& r
     const auto is_closed = [](const LitSpace& space) { return space.is_closed; };
     if (std::none_of(spaces.begin(), spaces.end(), is_closed)) return findings;
 
+    // Test whether the views, or without views most of the enclosed volume, are dark.
     std::vector<V3f> lit = points_lit_by_surfaces(scene, ray_caster, paths);
     for (const LitSpace& space : spaces) lit.insert(lit.end(), space.points.begin(), space.points.end());
     const bool has_sky = std::any_of(scene.luminaires.begin(), scene.luminaires.end(), [](const Luminaire& luminaire) {
@@ -163,6 +168,7 @@ std::vector<Finding> find_enclosed_lights(const Scene& scene, const RayCaster& r
         std::count_if(tested.begin(), tested.end(), [&](const V3f& x) { return paths.is_lit(x, lit, has_sky); });
     const bool is_dark = eyes.empty() ? 8 * lit_count < std::ssize(tested) : lit_count == 0;
 
+    // Report luminaires in closed spaces that are narrow or keep the light, unless a view sees their light.
     const V3f size = core_bounds(scene).size();
     Finder enclosed(scene, places,
                     {"enclosed-luminaire",

@@ -18,14 +18,14 @@ constexpr std::uint64_t points_behind = 32, rays_per_point_behind = 8;
 constexpr std::uint64_t seed_of_places = 61, seed_behind = 62, seed_of_lit_rays = 63;
 /// Minimum gap between a face and the surface behind it [m]: closer faces are flush.
 constexpr float min_back_gap = 0.002f;
-/// Minimum fraction of a point's hemisphere that the face fills: the light that path tracing adds there.
+/// Minimum fraction of a point's hemisphere that the back of the face covers. Path tracing sees light through it.
 constexpr float min_hidden_share = 0.1f;
-/// Minimum fraction of the points behind the face that are so close.
+/// Minimum fraction of the rays from the back that hit such points.
 constexpr float min_close_points = 0.1f;
-/// Minimum fraction of their rays that end where the face's light arrives: it fades out in narrow gaps.
+/// Minimum fraction of the rays from these points that end on surfaces lit by the face. Narrow gaps are nearly dark.
 constexpr float min_lit_share = 0.03f;
-/// Minimum area of a lamp [m^2], and distance of its faces [m]. Smaller lamps change a spot of their own size, such as
-/// the inside of a lamp shade.
+/// Minimum area of a lamp [m^2], and maximum distance of its faces [m]. Smaller lamps affect only a spot of their own
+/// size, such as the inside of a lamp shade.
 constexpr float min_area = 0.02f, lamp_radius = 0.15f;
 
 struct LitPoint {
@@ -57,7 +57,7 @@ class LampBacks {
         return {ray.origin + hit.distance * ray.direction + ray_caster_.ray_offset(hit.patch) * normal, normal};
     }
 
-    /// Returns hits of rays from the back, without another face in between.
+    /// Returns points on surfaces close behind a face, without another face in between.
     std::vector<LitPoint> points_close_behind(PatchIndex patch) const {
         const PatchGeometry face(scene_, scene_.patches[patch]);
         std::vector<LitPoint> points;
@@ -79,7 +79,7 @@ class LampBacks {
         return points;
     }
 
-    /// Whether a ray from a point ends where light of the face arrives and is reflected back.
+    /// Whether a ray from a point ends on a surface that is lit by the face.
     bool is_lit(const LitPoint& from, const V3f& direction, PatchIndex patch) const {
         const Ray ray{from.position, direction};
         const Hit hit = lines_.first_surface(ray);
@@ -113,7 +113,7 @@ std::vector<EmittingFace> emitting_faces(const Scene& scene) {
     return faces;
 }
 
-/// Returns the area of the emitting faces around a face, and its own [m^2].
+/// Returns the area of the emitting faces around a face, including its own [m^2].
 float area_around(const EmittingFace& face, std::span<const EmittingFace> faces) {
     float area = 0;
     for (const EmittingFace& other : faces)

@@ -20,9 +20,10 @@ namespace {
 /// Minimum gap to a surface [m], or relative to a small scene's diagonal.
 constexpr float min_gap = 0.02f, min_gap_relative = 0.01f;
 
-/// Multiple of the gap along a ray; excludes lamp shades.
+/// Maximum distance to a close surface along a ray, relative to the gap. Longer oblique rays hit lamp shades.
 constexpr float max_oblique = 5;
 
+/// Numbers of a luminaire's rays that escape or hit a close surface.
 struct Outcome {
     std::size_t escaped = 0, close = 0;
 };
@@ -43,8 +44,8 @@ Outcome outcome_of(const Scene& scene, std::span<const Ray> rays, const SightLin
 /// Whether more than a twentieth of a luminaire's light would start behind a wall after a shift.
 bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const SightLines& lines,
                            const V3f& shift = V3f(0)) {
-    constexpr std::size_t step = 4;
-    constexpr float flush = 0.99f;  // an opening may touch a ceiling
+    constexpr std::size_t step = 4;  // tests a quarter of the rays
+    constexpr float flush = 0.99f;   // an opening may touch a ceiling
     std::size_t outside = 0;
     for (std::size_t i = 0; i < rays.size(); i += step) {
         const V3f start = middle + flush * (rays[i].origin - middle) + shift;
@@ -53,6 +54,7 @@ bool reaches_through_walls(std::span<const Ray> rays, const V3f& middle, const S
     return 20 * step * outside > rays.size();
 }
 
+/// Whether planes C0 and C90 differ by more than a tenth of the peak intensity.
 bool depends_on_planes(const PhotometricWeb& web) {
     constexpr int steps = 36;  // of 5 degrees
     const float peak = web.peak();
@@ -107,22 +109,26 @@ std::vector<Finding> find_misplaced_lights(const Scene& scene, const LocalLights
         const auto add_to = [&](Finder& found) {
             found.add_at(lights.position(i), scene.objects[luminaire.object], luminaire.name);
         };
+        // Position: light that hits a close surface or leaves the scene
         if (2 * outcome.close > LocalLights::rays_per_light)
             add_to(close);
         else if (outcome.escaped == LocalLights::rays_per_light ||
                  (shell.is_room &&
-                  (2 * outcome.escaped > LocalLights::rays_per_light || lines.is_open(lights.before(i)))))
+                  (2 * outcome.escaped > LocalLights::rays_per_light || lines.is_open(lights.in_front_of(i)))))
             add_to(outside);
         const auto* measured = std::get_if<MeasuredLight>(&luminaire.kind);
         if (!measured) continue;
+        // Opening: larger than the scene, or partly outside
         const V3f& opening = measured->web->opening.size;
         const float width = std::max({opening.x, opening.y, opening.z});
         if (width > size) {
             add_to(wide);
-        } else if (width > 0 && shell.is_closed && reaches_through_walls(lights.rays(i), lights.before(i), lines)) {
+        } else if (width > 0 && shell.is_closed &&
+                   reaches_through_walls(lights.rays(i), lights.in_front_of(i), lines)) {
             const V3f shift = measured->web->opening.mounting_depth() * measured->direction.normalized();
-            add_to(reaches_through_walls(lights.rays(i), lights.before(i), lines, shift) ? wide : sunk);
+            add_to(reaches_through_walls(lights.rays(i), lights.in_front_of(i), lines, shift) ? wide : sunk);
         }
+        // Orientation of the C planes, which depends on the format
         if (!depends_on_planes(*measured->web)) continue;
         (is_eulumdat(*measured->web) ? has_eulumdat : has_lm63) = true;
         if (is_eulumdat(*measured->web)) add_to(mixed);

@@ -16,8 +16,8 @@ namespace {
 constexpr std::size_t max_lights = 1024;
 constexpr std::uint64_t seed_of_light = 31;
 
-/// Relative to the largest coordinate. Emission starts measured light outside its opening, perhaps beyond a close
-/// ceiling; checks start closer: 16 roundings.
+/// Distances of ray origins from a luminous opening, relative to the largest coordinate. Emission may start beyond a
+/// close ceiling; checks start closer, at 16 roundings.
 constexpr float start_offset = 0x1p-17f, checked_offset = 0x1p-20f;
 
 bool is_local(const Luminaire& luminaire) {
@@ -36,7 +36,7 @@ Pose pose_of(const Luminaire& luminaire) {
     return {measured.position, measured.direction.normalized()};
 }
 
-/// Includes a triangle with the scene's bounding box.
+/// Returns a scene with at most max_lights of the lights, and a triangle with the scene's bounding box.
 Scene sample_of_lights(const Scene& scene) {
     Imath::Box3f box;
     for (const Patch& patch : scene.patches)
@@ -81,7 +81,7 @@ LocalLights::LocalLights(const Scene& scene) {
 
 V3f LocalLights::position(std::size_t i) const { return pose_of(luminaires_[i]).position; }
 
-V3f LocalLights::before(std::size_t i) const {
+V3f LocalLights::in_front_of(std::size_t i) const {
     const Pose pose = pose_of(luminaires_[i]);
     return pose.position + start_offset * reach_ * pose.direction;
 }

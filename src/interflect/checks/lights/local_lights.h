@@ -19,8 +19,8 @@ class LocalLights {
     std::size_t size() const { return luminaires_.size(); }
     const Luminaire& luminaire(std::size_t i) const { return luminaires_[i]; }
     V3f position(std::size_t i) const;
-    /// Returns a point before the surface that contains the luminaire.
-    V3f before(std::size_t i) const;
+    /// Returns a point just in front of the surface that contains the luminaire.
+    V3f in_front_of(std::size_t i) const;
     /// Returns rays in groups of equal power; those of measured light start in its opening.
     std::span<const Ray> rays(std::size_t i) const { return {rays_.data() + i * rays_per_light, rays_per_light}; }
 

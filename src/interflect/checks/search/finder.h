@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-/// Counts all findings; keeps the first places.
+/// Collects the occurrences of a finding: counts all, keeps the first places.
 class Finder {
   public:
     Finder(const Scene& scene, std::size_t places, Finding finding)

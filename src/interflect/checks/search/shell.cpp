@@ -11,11 +11,12 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr int max_escaped_inside = 2;                                // of SightLines::rays_per_point
+/// Limits of escaping rays, of SightLines::rays_per_point, on inner sides and on outer sides.
+constexpr int max_escaped_inside = 2;
 constexpr int min_escaped_outside = SightLines::rays_per_point / 4;  // walls on a ground have half
 constexpr std::uint64_t seed_of_origins = 11, seed_of_directions = 12, seed_of_sides = 13;
 
-/// Uniform and isotropic in the sphere around the scene.
+/// Random lines through the sphere around the scene, uniform and isotropic.
 class OuterLines {
   public:
     explicit OuterLines(const Scene& scene) {
@@ -34,8 +35,9 @@ class OuterLines {
     float radius_;
 };
 
+/// First face that a line meets.
 struct MetFace {
-    V3f front, back;  ///< Just off the face [m].
+    V3f front, back;  ///< Points just off both sides [m].
     V3f normal;       ///< Towards the start of the line.
 };
 
@@ -46,7 +48,7 @@ MetFace met_face(const Scene& scene, const RayCaster& ray_caster, const Ray& lin
 }
 
 bool is_seen_inside(const Scene& scene, const SightLines& lines) {
-    constexpr float min_extent = 2;
+    constexpr float min_extent = 2;  // of a room [m]
     if (scene.views.empty()) {
         const V3f extent = core_bounds(scene).size();
         return std::min({extent.x, extent.y, extent.z}) >= min_extent;
@@ -61,6 +63,7 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
     constexpr std::uint64_t count = 128;
     constexpr int min_met = 32;
     const OuterLines line(scene);
+    // Lines that meet a face, pass a solid or find an inner side; number and sum of free paths from inner sides.
     int met = 0, solid = 0, enclosing = 0, paths = 0;
     float length = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -68,12 +71,13 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
         if (hit.patch == none) continue;
         ++met;
         const MetFace face = met_face(scene, ray_caster, line(i), hit);
+        // Few rays leave the inner side, which is the back of the face or, for lines through an opening, its front.
         SightLines::RayOutcomes inner =
             lines.trace_from_surface(face.back, -face.normal, seed_of_sides, max_escaped_inside);
         if (inner.escaped > max_escaped_inside)
             inner = lines.trace_from_surface(face.front, face.normal, seed_of_sides, min_escaped_outside);
         if (inner.escaped > min_escaped_outside && scene.patches[hit.patch].other_side == none) {
-            // Thick wall: the inner side lies behind.
+            // In a thick wall, the inner side is on the next face of the line.
             const Ray behind{face.back, line(i).direction};
             const Hit inner_hit = lines.first_surface(behind);
             if (inner_hit.patch == none) {
@@ -92,7 +96,7 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
     return {true, is_seen_inside(scene, lines), length / static_cast<float>(paths)};
 }
 
-bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines) {
+bool has_opening(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines) {
     constexpr std::uint64_t count = 1 << 14;
     const OuterLines line(scene);
     for (std::uint64_t i = 0; i < count; ++i) {

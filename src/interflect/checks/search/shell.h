@@ -18,6 +18,6 @@ Shell find_shell(const Scene& scene, const RayCaster& ray_caster, const SightLin
 
 /// Whether any of 2^14 lines from outside reaches an inner side. Finds 1 m^2 of windows in 1000 m^2 of hull with
 /// probability above 0.998.
-bool lets_light_in(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines);
+bool has_opening(const Scene& scene, const RayCaster& ray_caster, const SightLines& lines);
 
 }  // namespace interflect::detail

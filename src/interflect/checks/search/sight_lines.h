@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Rays that pass panes. Random directions depend on key and index alone.
+/// Traces lines of sight through panes. Random directions depend on key and index alone.
 class SightLines {
   public:
     SightLines(const Scene& scene, const RayCaster& ray_caster);

@@ -21,7 +21,7 @@ struct SkyGrid {
     std::size_t column_of(float s) const;
 };
 
-/// Samples cells by weight, uniform in solid angle within a cell. Immutable.
+/// Samples directions: cells by weight, uniform in solid angle within a cell. Immutable.
 class DirectionTable {
   public:
     /// @param weights  Per cell, >= 0.
@@ -30,7 +30,7 @@ class DirectionTable {
     double sum() const { return sum_; }  ///< Must be > 0 to sample.
     /// @param u, v  For column and row, in (0, 1).
     SkyPlace sample(float u, float v) const;
-    /// [1/sr]
+    /// Returns the probability density of sample() [1/sr].
     float density(const SkyPlace& place) const;
 
   private:

@@ -14,7 +14,7 @@ class Skies {
 
     /// Returns the radiance without suns [cd/m^2 or W/(m^2 sr)]. @param direction  Unit length.
     Rgb radiance(const V3f& direction) const;
-    /// Includes the discs of suns.
+    /// Returns the radiance with the discs of suns.
     Rgb seen(const V3f& direction) const;
 
     bool can_sample() const { return !sampled_.empty(); }

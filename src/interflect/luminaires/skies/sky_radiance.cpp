@@ -10,7 +10,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Overlap of a cell with a texel, in [0, 1].
+/// Interval of an image's side, in [0, 1], where a cell overlaps a texel.
 struct Overlap {
     std::size_t cell;
     double from, to;

@@ -21,7 +21,7 @@ class SkyRadiance {
     Rgb towards(const V3f& direction) const;
     const SkyFrame& frame() const { return frame_; }
 
-    /// Integrates exactly for a map, by four points per cell for a dome.
+    /// Returns the integral of radiance over each cell: exact for a map, from four points per cell for a dome.
     std::vector<Rgb> cell_integrals(const SkyGrid& grid) const;
     /// Returns the map's texel grid, or cells of 1.4 degrees.
     SkyGrid grid() const;

@@ -10,8 +10,8 @@ namespace {
 
 using Imath::V3d;
 
-constexpr double near_in_reaches = 8;
-constexpr double stray_in_reaches = 64;
+/// Maximum distances from the middle, in reaches: for an origin of 0, and for faces of the core.
+constexpr double near_in_reaches = 8, core_in_reaches = 64;
 
 double weighted_median(std::span<const double> values, std::span<const double> weights) {
     std::vector<std::size_t> order(values.size());
@@ -81,7 +81,7 @@ Imath::Box3f core_bounds(const Scene& scene) {
     Imath::Box3f bounds;
     for (const Patch& patch : scene.patches) {
         const Imath::Box3f box = box_of(scene, patch);
-        if ((centre_of(box) - core.middle).length() <= stray_in_reaches * core.reach) bounds.extendBy(box);
+        if ((centre_of(box) - core.middle).length() <= core_in_reaches * core.reach) bounds.extendBy(box);
     }
     return bounds;
 }

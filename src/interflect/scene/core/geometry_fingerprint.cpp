@@ -30,9 +30,9 @@ std::uint64_t hash_of(const Scene& scene, std::size_t patch) {
 }  // namespace
 
 std::uint64_t geometry_fingerprint(const Scene& scene) {
-    constexpr std::size_t at_once = 4096;
+    constexpr std::size_t patches_per_task = 4096;
     const std::uint64_t patches =
-        parallel_sum(scene.patches.size(), at_once, std::uint64_t{0}, [&](std::size_t begin, std::size_t end) {
+        parallel_sum(scene.patches.size(), patches_per_task, std::uint64_t{0}, [&](std::size_t begin, std::size_t end) {
             std::uint64_t sum = 0;
             for (std::size_t i = begin; i < end; ++i) sum += hash_of(scene, i);
             return sum;

@@ -8,14 +8,14 @@ namespace interflect::detail {
 
 // Limits for single precision: variances scale with the square of irradiance and the inverse square of element area.
 
-/// Diagonal of the bounding box [m]: about the Earth.
+/// Maximum diagonal of a face's bounding box [m]: about the diameter of the Earth.
 inline constexpr double widest_face = 1e7;
 
-/// Diagonal of the scene's bounding box [m]: two wavelengths of light. Area of a face [m^2].
+/// Minimum diagonal of the scene's bounding box [m], two wavelengths of light; minimum area of a face [m^2].
 inline constexpr double narrowest_scene = 1e-6;
 inline constexpr float smallest_face_area = 1e-18f;
 
-/// Range of the brightest source unless 0, per channel [lm/m^2 or W/m^2]; the Sun has 6 * 10^9 lm/m^2.
+/// Range of the exitance of the brightest source [lm/m^2 or W/m^2]; the Sun has 6 * 10^9 lm/m^2. Dark scenes are valid.
 inline constexpr float weakest_exitance = 1e-9f, strongest_exitance = 1e10f;
 
 /// Returns the diagonal of all patches' bounding box [m]; 0 without patches. Ignores invalid vertices.
@@ -32,7 +32,7 @@ std::string brightness_fault(float strongest);
 
 std::vector<Rgb> largest_texels(const Scene& scene);
 
-/// @param largest  largest_texels().
+/// Returns the maximum of `factor` times its texture. @param largest  Result of largest_texels().
 inline Rgb textured(const Rgb& factor, std::uint32_t texture, const std::vector<Rgb>& largest) {
     return texture == none ? factor : factor * largest[texture];
 }

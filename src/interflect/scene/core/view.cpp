@@ -17,9 +17,11 @@ namespace {
 
 using V3d = Imath::V3d;
 
+/// Minimum sine of the angle between `up` and the direction of view.
 constexpr double smallest_up_sine = 1e-5;
 
-/// Relative to the largest coordinate: rounding may turn the view by 1e-4 rad.
+/// Minimum distance of look-at from the eye, relative to the eye's largest coordinate: rounding turns the view by at
+/// most 1e-4 rad.
 constexpr double smallest_relative_distance = 1e-12;
 
 template <class T>
@@ -67,7 +69,7 @@ const View& find_view(const Scene& scene, const std::string& name) {
 }
 
 View overview(const Scene& scene) {
-    constexpr float margin = 0.06f;  // of the box; clear of walls
+    constexpr float margin = 0.06f;  // fraction of the box, clear of walls
     constexpr float wide = 60;       // [degrees]
     const Imath::Box3f box = core_bounds(scene);
     View view;

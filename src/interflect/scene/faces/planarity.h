@@ -11,8 +11,8 @@ namespace interflect::detail {
 /// of transforms; a quarter of RayCaster::ray_offset().
 inline constexpr double relative_planarity = 0x1p-19;
 
-/// Returns the distance of a convex quadrilateral's corners from their mean plane [m], the largest between its bilinear
-/// surface (ray origins) and two triangles (hits).
+/// Returns the distance of a convex quadrilateral's corners from their mean plane [m]. It is the maximum distance
+/// between the bilinear surface (ray origins) and the two triangles (hits).
 double warp(const Scene& scene, const std::array<std::uint32_t, 4>& vertices);
 
 /// Whether a convex quadrilateral may be one patch.

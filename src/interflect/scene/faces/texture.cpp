@@ -9,15 +9,15 @@ namespace interflect {
 
 namespace {
 
-/// Nearest texels of a coordinate, and the weight of the second.
-struct Between {
+/// Neighbouring texels of a coordinate, and the weight of the second for linear interpolation.
+struct TexelPair {
     std::uint32_t first, second;
-    float share;
+    float weight;
 
-    Between(float coordinate, std::uint32_t count) {
+    TexelPair(float coordinate, std::uint32_t count) {
         const double within = static_cast<double>(coordinate) - std::floor(static_cast<double>(coordinate));
         const double centre = within * count - 0.5, below = std::floor(centre);
-        share = static_cast<float>(centre - below);
+        weight = static_cast<float>(centre - below);
         first = below < 0 ? count - 1 : std::min(static_cast<std::uint32_t>(below), count - 1);
         second = first + 1 == count ? 0 : first + 1;
     }
@@ -26,12 +26,12 @@ struct Between {
 }  // namespace
 
 Rgb texel_at(const Texture& texture, const V2f& coordinate) {
-    const Between x(coordinate.x, texture.width), y(1 - coordinate.y, texture.height);
+    const TexelPair x(coordinate.x, texture.width), y(1 - coordinate.y, texture.height);
     const auto in_row = [&](std::uint32_t row) {
         const Rgb* texels = &texture.texels[std::size_t{row} * texture.width];
-        return Rgb(texels[x.first] * (1 - x.share) + texels[x.second] * x.share);
+        return Rgb(texels[x.first] * (1 - x.weight) + texels[x.second] * x.weight);
     };
-    return in_row(y.first) * (1 - y.share) + in_row(y.second) * y.share;
+    return in_row(y.first) * (1 - y.weight) + in_row(y.second) * y.weight;
 }
 
 Rgb largest_texel(const Texture& texture) {

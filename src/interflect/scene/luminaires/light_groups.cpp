@@ -164,15 +164,16 @@ Scene dimmed(const Scene& scene, const SourceGroups& groups, const std::vector<f
         const bool emits = channel_sum(scene.materials[scene.patches[patch].material].exitance) > 0;
         return emits ? factors[groups.of_patch[patch]] : 1;
     };
-    std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // by material and factor
+    std::map<std::pair<std::uint32_t, float>, std::uint32_t> scaled;  // new material by old material and factor
     for (std::size_t i = 0; i < scene.patches.size(); ++i)
         scaled.try_emplace({scene.patches[i].material, factor_of(i)});
+    // Keep unused materials.
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         const auto used = scaled.lower_bound({m, 0.0f});
         if (used == scaled.end() || used->first.first != m) scaled.try_emplace({m, 1.0f});
     }
     Scene result = scene;
-    // Keeps the order, so exports have the same meshes for all factors.
+    // Materials keep their order, so exports have the same meshes for all factors.
     result.materials.clear();
     for (auto& [key, index] : scaled) {
         index = static_cast<std::uint32_t>(result.materials.size());

@@ -51,7 +51,7 @@ std::string placement_fault(const SkyDome& sky) {
 std::string placement_fault(const EnvironmentMap& map) {
     for (const std::string& fault : {direction_fault(map.zenith), direction_fault(map.north)})
         if (!fault.empty()) return fault;
-    constexpr float min_sine = 1e-4f;
+    constexpr float min_sine = 1e-4f;  // of the angle between zenith and north
     const bool is_frame = map.zenith.normalized().cross(map.north.normalized()).length() > min_sine;
     return is_frame ? std::string() : std::string("has its north at the zenith");
 }

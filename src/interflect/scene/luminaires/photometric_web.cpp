@@ -14,13 +14,13 @@ using namespace detail;
 
 namespace {
 
-/// Position in a table: `index` + `share`.
-struct Place {
+/// Position between the entries of a table: `index` + `share`.
+struct TablePosition {
     std::size_t index;
     float share;
 };
 
-Place place_in(const std::vector<float>& table, double x) {
+TablePosition position_in(const std::vector<float>& table, double x) {
     const auto above = std::upper_bound(table.begin() + 1, table.end() - 1, x);
     const auto index = static_cast<std::size_t>(above - table.begin()) - 1;
     return {index, static_cast<float>((x - table[index]) / (double{table[index + 1]} - table[index]))};
@@ -60,7 +60,7 @@ float PhotometricWeb::intensity(const V3f& direction) const {
     if (turn < 0) turn += full_turn;
     const double phi = azimuth.front() + turn;
     if (theta < polar.front() || theta > polar.back() || phi > azimuth.back()) return 0;
-    const Place t = place_in(polar, theta), p = place_in(azimuth, phi);
+    const TablePosition t = position_in(polar, theta), p = position_in(azimuth, phi);
     const float *left = at_azimuth(p.index) + t.index, *right = left + polar.size();
     const auto between = [](float x, float y, float share) { return x + (y - x) * share; };
     return between(between(left[0], left[1], t.share), between(right[0], right[1], t.share), p.share);

@@ -25,7 +25,8 @@ constexpr std::size_t bins = 8;
 constexpr std::array<double, bins - 1> bin_ends = {1.065, 1.230, 1.500, 1.950, 2.800, 4.500, 6.200};
 
 using FourNumbers = std::array<double, 4>;
-/// Table 1 of 1993: a to e are x1 + x2 Z + Delta (x3 + x4 Z), except c and d of the first bin.
+/// Table 1 of 1993: a to e are x1 + x2 Z + Delta (x3 + x4 Z), except c and d of the first bin. Z is the zenith angle of
+/// the sun [rad], Delta the brightness of the sky.
 struct LuminanceBin {
     FourNumbers a, b, c, d, e;
 };
@@ -72,7 +73,8 @@ constexpr std::array<LuminanceBin, bins> luminance_bins = {{
      {1.5000, -0.6426, 1.8564, 0.5636}},
 }};
 
-/// Table 4 of 1990 [lm/W]: a + b W + c cos Z + d ln Delta; for direct light a + b W + c exp(5.73 Z - 5) + d Delta.
+/// Table 4 of 1990 [lm/W]: a + b W + c cos Z + d ln Delta; for direct light a + b W + c exp(5.73 Z - 5) + d Delta. W is
+/// the precipitable water.
 constexpr std::array<FourNumbers, bins> diffuse_efficacies = {{{97.24, -0.46, 12.00, -8.91},
                                                                {107.22, 1.15, 0.59, -3.95},
                                                                {104.97, 2.96, -5.53, -8.77},
@@ -105,7 +107,7 @@ SkyModel luminance_model(std::size_t bin, double zenith_angle, double brightness
         c = std::exp(std::pow(brightness * (x.c[0] + x.c[1] * zenith_angle), x.c[2])) - x.c[3];
         d = -std::exp(brightness * (x.d[0] + x.d[1] * zenith_angle)) + x.d[2] + brightness * x.d[3];
     }
-    const double all = 1 + c * std::exp(d * std::numbers::pi / 2);
+    const double all = 1 + c * std::exp(d * std::numbers::pi / 2);  // Perez et al. have this f(pi / 2), SkyModel 1
     const auto number = [](double value) { return static_cast<float>(value); };
     return {number(linear(x.a)), number(std::min(0.0, linear(x.b))), number(c / all), number(d),
             number(linear(x.e) / all)};
@@ -129,6 +131,7 @@ ModelledDaylight perez_daylight(double direct_normal, double diffuse_horizontal,
     const double brightness = diffuse_horizontal * air_mass(sun_altitude) / solar_constant;
     const auto bin =
         static_cast<std::size_t>(std::upper_bound(bin_ends.begin(), bin_ends.end(), clearness) - bin_ends.begin());
+    // Intermediate skies have a minimum brightness, as in Radiance's gendaylit.
     constexpr double clearer = 1.065, clear = 2.8, min_brightness = 0.2;
     const bool is_between = clearness > clearer && clearness < clear;
     ModelledDaylight result{

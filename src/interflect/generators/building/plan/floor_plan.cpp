@@ -19,11 +19,12 @@ struct SharedWall {
     Side side;  // of the first room
 };
 
+/// Sets of connected rooms.
 class Connected {
   public:
     explicit Connected(std::size_t rooms) : parent_(rooms) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
-    /// Returns false if already connected.
+    /// Connects two rooms. Returns false if they were connected before.
     bool join(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);
@@ -62,7 +63,7 @@ std::vector<SharedWall> shared_walls(std::uint32_t rooms, std::uint32_t columns)
     return walls;
 }
 
-/// Uses Kruskal's algorithm.
+/// Chooses walls for doorways: a random spanning tree by Kruskal's algorithm, and extra doors.
 std::vector<bool> choose_walls(const std::vector<SharedWall>& walls, const PlanOptions& options,
                                RandomSequence& random) {
     std::vector<std::uint32_t> order(walls.size());

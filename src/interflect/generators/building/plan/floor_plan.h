@@ -22,9 +22,11 @@ constexpr bool along_x(Side side) { return side % 2 == 1; }
 
 struct Room {
     Interval x, y;
-    std::array<std::uint32_t, side_count> doorway{none, none, none, none};  ///< In FloorPlan::doorways.
+    std::array<std::uint32_t, side_count> doorway{none, none, none, none};  ///< Indices into FloorPlan::doorways.
 
+    /// Returns the extent of a wall along its axis.
     const Interval& along(Side side) const { return along_x(side) ? x : y; }
+    /// Returns the position of a wall on the other axis [m].
     float wall(Side side) const {
         const Interval& across = along_x(side) ? y : x;
         return side == west || side == south ? across.low : across.high;
@@ -37,7 +39,7 @@ struct Doorway {
     Interval opening;                                ///< Along the wall.
 };
 
-/// Centred at the origin, with floors at z = 0.
+/// Rooms and doorways of one storey, centred at the origin, with floors at z = 0.
 struct FloorPlan {
     float room_height = 2.8f, door_height = 2.1f;  ///< [m]
     std::vector<Room> rooms;                       ///< By rows from the south, each from the west.

@@ -28,6 +28,7 @@ int quarter_turns_from(Side wall) {
     }
 }
 
+/// Returns the floor along a wall, between two distances from it.
 Box2f beside_wall(const Room& room, Side wall, const Interval& along, float from, float to) {
     const float inwards = wall == west || wall == south ? 1.f : -1.f;
     const float a = room.wall(wall) + inwards * from, b = room.wall(wall) + inwards * to;
@@ -50,7 +51,7 @@ FloorSpace::FloorSpace(const FloorPlan& plan, const Room& room) : room_(room) {
         }
 }
 
-std::optional<Placement> FloorSpace::take_if_free(const Furniture& piece, Side back, const V2f& origin) {
+std::optional<Placement> FloorSpace::reserve_if_free(const Furniture& piece, Side back, const V2f& origin) {
     const Interval width = along_x(back) ? Interval{origin.x - piece.width / 2, origin.x + piece.width / 2}
                                          : Interval{origin.y - piece.width / 2, origin.y + piece.width / 2};
     const float distance = std::abs((along_x(back) ? origin.y : origin.x) - room_.wall(back));
@@ -66,7 +67,8 @@ std::optional<Placement> FloorSpace::against_wall(const Furniture& piece, Random
     const auto try_at = [&](Side wall, float share) {
         const Interval& extent = room_.along(wall);
         const float along = extent.low + piece.width / 2 + (extent.length() - piece.width) * share;
-        return take_if_free(piece, wall, along_x(wall) ? V2f(along, room_.wall(wall)) : V2f(room_.wall(wall), along));
+        return reserve_if_free(piece, wall,
+                               along_x(wall) ? V2f(along, room_.wall(wall)) : V2f(room_.wall(wall), along));
     };
     for (int i = 0; i < random_tries; ++i) {
         const auto wall = static_cast<Side>(random.below(side_count));
@@ -85,7 +87,7 @@ std::optional<Placement> FloorSpace::in_the_open(const Furniture& piece, RandomS
         const float along =
             room_.along(back).low + random.between(aisle + piece.width / 2, room_width - aisle - piece.width / 2);
         const float across = room_.wall(back) + random.between(aisle, room_depth - aisle - piece.depth);
-        if (auto place = take_if_free(piece, back, along_x(back) ? V2f(along, across) : V2f(across, along)))
+        if (auto place = reserve_if_free(piece, back, along_x(back) ? V2f(along, across) : V2f(across, along)))
             return place;
     }
     return std::nullopt;

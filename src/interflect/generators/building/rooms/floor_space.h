@@ -12,6 +12,7 @@
 
 namespace interflect::detail::building {
 
+/// Finds free floor for the furniture of a room.
 class FloorSpace {
   public:
     /// Reserves the floor before the doorways.
@@ -24,7 +25,7 @@ class FloorSpace {
     std::optional<Placement> in_the_open(const Furniture& piece, RandomSequence& random);
 
   private:
-    std::optional<Placement> take_if_free(const Furniture& piece, Side back, const Imath::V2f& origin);
+    std::optional<Placement> reserve_if_free(const Furniture& piece, Side back, const Imath::V2f& origin);
 
     Room room_;
     std::vector<Imath::Box2f> taken_;

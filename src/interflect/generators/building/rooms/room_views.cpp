@@ -26,8 +26,8 @@ struct Corner {
 };
 constexpr std::array<Corner, 4> room_corners{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
 
-/// Keeps the decimals in files short.
-Imath::V3d to_micrometres(const V3f& x) {
+/// Rounds coordinates to shorten the decimals in files.
+Imath::V3d rounded_to_micrometres(const V3f& x) {
     const auto rounded = [](float coordinate) { return std::round(static_cast<double>(coordinate) * 1e6) / 1e6; };
     return {rounded(x.x), rounded(x.y), rounded(x.z)};
 }
@@ -66,8 +66,8 @@ RoomView room_view(const FloorPlan& plan, std::uint32_t index) {
         });
     const V2f eye = eye_in(room, corner), aim = opposite_corner(room, corner);
     RoomView result;
-    result.view = {fmt::format("room-{}", index), to_micrometres({eye.x, eye.y, eye_height}),
-                   to_micrometres({aim.x, aim.y, aim_height}), V3f(0, 0, 1), wide};
+    result.view = {fmt::format("room-{}", index), rounded_to_micrometres({eye.x, eye.y, eye_height}),
+                   rounded_to_micrometres({aim.x, aim.y, aim_height}), V3f(0, 0, 1), wide};
     result.standing_room = Box2f(eye - V2f(eye_to_wall), eye + V2f(eye_to_wall));
     return result;
 }
@@ -81,7 +81,8 @@ View bird_view(const FloorPlan& plan) {
     const V2f middle = extent.center();
     const V3f look_at(middle.x, middle.y, 0);
     const V3f from = V3f(0, -0.45f, 1).normalized() * extent.size().length() * bird_distance;
-    return {"overview", to_micrometres(look_at + from), to_micrometres(look_at), V3f(0, 0, 1), bird_fov};
+    return {"overview", rounded_to_micrometres(look_at + from), rounded_to_micrometres(look_at), V3f(0, 0, 1),
+            bird_fov};
 }
 
 }  // namespace interflect::detail::building

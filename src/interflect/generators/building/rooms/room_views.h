@@ -9,7 +9,7 @@ namespace interflect::detail::building {
 
 struct RoomView {
     View view;
-    Imath::Box2f standing_room;  ///< Around the camera, to keep free.
+    Imath::Box2f standing_room;  ///< Floor around the camera, without furniture.
 };
 
 /// Returns the view from the corner that shows a doorway closest to the centre, 0.45 m from walls and from objects

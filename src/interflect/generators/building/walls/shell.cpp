@@ -10,7 +10,7 @@ namespace interflect::detail::building {
 
 namespace {
 
-/// Low and high end at the floor, then high and low end at the top.
+/// Vertices around a doorway: low and high end at the floor, then high and low end at the top.
 using DoorFrame = std::array<std::uint32_t, 4>;
 
 std::vector<float> dividing_lines(const FloorPlan& plan, const Room& room, Side side) {

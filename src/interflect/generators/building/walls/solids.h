@@ -41,7 +41,7 @@ class Solids {
     void box(const V3f& low, const V3f& high, std::uint32_t material,
              std::optional<std::uint32_t> underside = std::nullopt) const;
 
-    /// @param top_scale  Of the top about the vertical axis, > 0.
+    /// @param top_scale  Scale of the top about the vertical axis, > 0.
     void tapered_box(const V3f& low, const V3f& high, float top_scale, std::uint32_t material) const;
 
   private:
