@@ -19,7 +19,7 @@ using namespace detail;
 
 namespace {
 
-/// Numbers of pieces along the first and the last edge, which are equal for a triangle.
+/// Numbers of pieces along the first and the last edge of a patch; equal for a triangle.
 struct Pieces {
     std::uint64_t u = 1, v = 1;
 };
