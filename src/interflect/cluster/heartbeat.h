@@ -45,7 +45,7 @@ class Heartbeat {
     int next_ = 0, previous_ = 0;
     ProcessIdentity own_, watched_;
     std::function<void(const std::string&)> on_loss_;
-    std::jthread thread_;  // last: uses all others
+    std::jthread thread_;  // the last member, because it uses all others
 };
 
 }  // namespace interflect::detail
