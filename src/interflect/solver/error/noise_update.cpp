@@ -35,6 +35,7 @@ double measured_signal(const LightState& light, const Estimate& fresh, ElementIn
     return product / area;
 }
 
+/// Compares the predicted errors after shrinkage with errors measured by the new estimate.
 RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
     const ElementForest& forest = *state.light.forest;
     const std::uint32_t roots = forest.patch_count();

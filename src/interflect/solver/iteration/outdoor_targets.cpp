@@ -19,8 +19,9 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t rays_per_task = 1024;
-constexpr std::uint64_t aiming_stream = 0x61696d;
+constexpr std::uint64_t aiming_stream = 0x61696d;  // "aim" in ASCII
 
+/// Finds lines from important surfaces to skies and suns.
 struct LineFinder {
     const SolverState& state;
     const RayPlan& plan;
@@ -177,14 +178,19 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     constexpr double share_of_rest = 0.05;      // minimum weight of the remaining lines for another chain
     constexpr double worthwhile_share = 0.4;    // minimum weight in a half; evenly spread lines have 0.25
     constexpr float widest_target = 1.0f / 16;  // relative to the diagonal; the scene's box suffices for wider targets
+
+    // Select lines at regular intervals
     std::vector<WeightedLine> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / max_lines);
     for (std::size_t i = 0; i < lines.size(); i += stride)
         if (weights[i] > 0) rest.push_back({lines[i].light, weights[i]});
     const double all = weight_of(rest);
+
+    // Find chains of nested boxes; each chain serves lines that miss the smallest boxes of earlier chains
     std::vector<Imath::Box3f> targets;
     for (int chain = 0; chain < max_chains && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
          ++chain) {
+        // Start at the last target that most of these lines cross, else at the scene's box
         Imath::Box3f box = scene_box;
         std::vector<WeightedLine> inside = rest;
         for (const Imath::Box3f& target : targets) {
@@ -194,6 +200,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
                 inside = std::move(in_target);
             }
         }
+        // Halve the box repeatedly, up to the last half with a large share of the lines
         std::vector<Imath::Box3f> halves;
         std::size_t worthwhile = 0;
         for (int level = 0; level < max_targets / max_chains && inside.size() >= fewest_lines; ++level) {
