@@ -33,7 +33,7 @@ class WellDistributedRays : public IterationMethod {
     }
 
   private:
-    void keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const;
+    void plan_missing_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const;
 
     Passes passes_;
     std::vector<double> shot_;           // number of rays from each leaf

@@ -131,7 +131,7 @@ void LinkedElements::prepare(SolverState&) {
     link_candidates();
 }
 
-/// Links all pairs of patches if most of the rays then remain for refinement. Else links clusters.
+/// Chooses all pairs of patches as candidates if most of the rays then remain for refinement, else pairs of clusters.
 void LinkedElements::find_first_links() {
     const double pairs = 0.5 * forest_.patch_count() * (forest_.patch_count() - 1.0);
     const auto rays = static_cast<double>(std::min(state_.light.options().limits.rays, SolveOptions().limits.rays));
@@ -314,7 +314,7 @@ void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidate
     candidates.resize(affordable);
 }
 
-void LinkedElements::describe_new_elements(std::uint32_t first) {
+void LinkedElements::initialise_new_elements(std::uint32_t first) {
     Solution& solution = state_.light.solution;
     inherit(forest_, first, solution.irradiance);
     state_.inputs.materials.grow(forest_);
@@ -351,7 +351,7 @@ void LinkedElements::subdivide_links() {
         }
         link.exchange.area = 0;  // link_candidates() removes it
     }
-    describe_new_elements(before);
+    initialise_new_elements(before);
 }
 
 bool LinkedElements::is_fulfilled(const SolverState& state) const {
