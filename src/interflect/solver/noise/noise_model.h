@@ -69,6 +69,8 @@ class NoiseModel {
 
   private:
     static constexpr std::size_t hit_rate_classes = 48;
+
+    /// Squared differences between iterations by class: observed, and expected for independent rays.
     struct Spread {
         std::array<double, hit_rate_classes> observed{}, independent{};
         Spread& operator+=(const Spread& other);

@@ -143,6 +143,8 @@ void ClusterShrinkage::measure_parts() {
         const double variance = all > 0 ? of_all * std::clamp(h / all, 0.0, 1.0) : 0;
         return Sums(area, area * h, area * area * variance);
     });
+
+    // Estimate the signal of each cluster, and the share of its own mean that each part keeps
     parts_[0].variance = static_cast<float>(sums[0].variance / (sums[0].area * sums[0].area));
     parallel_for_ranges(sums.size(), clusters_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<Sample> samples;
@@ -211,6 +213,8 @@ ClusterShrinkage::Means ClusterShrinkage::reduce_parts(std::span<const Part> par
 std::vector<Rgb> ClusterShrinkage::reduce() const {
     std::vector<Rgb> means(irradiance_.begin(), irradiance_.begin() + clusters_->patch_count());
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
+
+    // Compute the unshrunk means from the patches up
     std::vector<Rgb> before(nodes.size(), Rgb(0));
     for (std::size_t i = nodes.size(); i-- > 0;) {
         const auto [first, count, patch] = nodes[i];
@@ -219,6 +223,8 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
         else
             for (std::uint32_t k = first; k < first + count; ++k) before[i] += parts_[k].share * before[k];
     }
+
+    // Shrink the parts of each cluster from the root down
     std::vector<Rgb> after(nodes.size());
     after[0] = before[0];
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -249,6 +255,8 @@ void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vec
     if (seen.empty()) return;
     const std::vector<double> shares = clusters_->sums<double>([&](PatchIndex p) { return seen[p] * forest.area(p); });
     const double fewest = fewest_camera_rays / static_cast<double>(camera_rays);
+
+    // Assign each patch to the smallest cluster that enough camera rays hit
     std::vector<Region> regions(nodes.size());
     std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
     std::vector<float> uncertainty(means.size());
@@ -263,6 +271,8 @@ void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vec
         uncertainty[patch] = 1 - parts_[i].kept;
         regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(patch);
     }
+
+    // Sum the light of the regions before and after shrinkage, then scale the patches
     for (PatchIndex p{0}; p < means.size(); ++p)
         regions[region_of_patch[p]].add(seen[p], forest.area(p), uncertainty[p], RgbD(irradiance_[p]), RgbD(means[p]));
     for (PatchIndex p{0}; p < means.size(); ++p) {
