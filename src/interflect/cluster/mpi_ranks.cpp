@@ -210,7 +210,7 @@ class MpiRanks : public Ranks {
 std::shared_ptr<Ranks> join_ranks(const FaultReport& report) {
     const std::optional<int> launched = launched_processes();
     if (!launched) return nullptr;
-    const int rank = launched_rank().value_or(0);  // before MPI_Init_thread(), which sets such variables itself
+    const int rank = launched_rank().value_or(0);  // read before MPI_Init_thread(), which sets such variables itself
     // Before the heartbeat, only this limit detects a stopped process.
     const TimeLimit limit =
         common_limit(rank, start_limit, report, "not all processes have started within a minute: one is stopped");

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path target_of(fs::path path) {
-    constexpr int max_links = 40;  // as in Linux
+    constexpr int max_links = 40;  // the limit of Linux
     for (int link = 0; fs::is_symlink(fs::symlink_status(path)); ++link) {
         if (link == max_links) throw InputError("too many symbolic links, or a loop of them");
         path = path.parent_path() / fs::read_symlink(path);

@@ -33,7 +33,7 @@ void add_over_ranks(Ranks& ranks, std::size_t elements, Sums& sums) {
             parts[r] = PackedSums(begin_of(r), begin_of(r + 1), sums.terms(), [&](std::size_t e, Row row) {
                            sums.take(e, row);
                        }).bytes();
-    // Add the received sums to those of this rank's part
+    // Add the received sums to the own part
     std::vector<std::span<const std::byte>> of_others;
     const std::vector<Ranks::Bytes> received = ranks.exchange(parts);
     for (std::size_t r = 0; r < count; ++r)

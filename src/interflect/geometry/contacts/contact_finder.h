@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 struct FoundSegment {
     PlanarSegment segment;  ///< `a` is the lexicographically lower end.
-    /// For a segment of an outline, side on which the coplanar face lies: 1 is left, -1 right. 0 for sections.
+    /// Side of an outline on which its coplanar face lies: 1 is left, -1 right. It is 0 for sections.
     int outline = 0;
 };
 

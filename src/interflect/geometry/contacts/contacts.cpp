@@ -147,7 +147,7 @@ struct FacetRange {
     std::uint64_t patches = 0;  ///< Number of patches on both sides; 0 if the face stays whole.
 };
 
-/// Groups the facets by face, and cuts faces as long as the number of patches allows.
+/// Groups the facets by face, and chooses the faces to cut within ContactOptions::max_patches.
 std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<Facet>& facets,
                                          const std::vector<CutFacet>& cut, const ContactOptions& options,
                                          Warnings& warnings) {

@@ -115,7 +115,7 @@ class PairFinder {
 
     const Scene& scene_;
     std::span<const std::uint32_t> triangles_;
-    std::vector<FaceVertices> faces_;  // by triangle; the first vertex is `none` after a merge into another triangle
+    std::vector<FaceVertices> faces_;  // one per triangle; vertex 0 is `none` after a merge into another triangle
 };
 
 }  // namespace

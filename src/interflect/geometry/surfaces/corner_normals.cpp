@@ -109,7 +109,7 @@ CornerNormals::CornerNormals(const Scene& scene, const SmoothSurfaces& surfaces)
                 body(corner, surfaces.corners.group[corner]);
             }
     };
-    // Average the normals of the faces, weighted by angle, and those of the file over each group of joined corners
+    // Average both kinds of normals over each group of joined corners
     std::vector<V3f> mean(surfaces.corners.count, V3f(0)), authored = mean;
     for_each_corner([&](CornerIndex corner, std::uint32_t group) {
         const Patch& patch = scene.patches[corner.patch()];

@@ -48,6 +48,8 @@ struct LineFinder {
     std::vector<OutdoorLine> find(std::size_t begin, std::size_t end) const {
         RayBatch batch;
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
+
+        // Look up the importance and the normal at the origin of each ray
         std::vector<double> importance(batch.rays.size());
         std::vector<V3f> normals(batch.rays.size());
         for (const SourceRays& source : batch.sources)
@@ -64,6 +66,7 @@ struct LineFinder {
             for (const double i : importance) importance_per_radiance.push_back(i * std::numbers::pi);
             keep_escaping(batch.rays, importance_per_radiance, none, lines);
         }
+        // Rays towards the suns start at the same points
         for (std::uint32_t sun = 0; sun < state.inputs.emission.sun_count(); ++sun) {
             std::vector<Ray> rays;
             std::vector<double> importance_per_irradiance;

@@ -88,7 +88,7 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     });
     for (std::size_t i = 0; i < sampled.part_count(); ++i) {
         double by_power = for_power;
-        if (sampled.part_importance.empty())  // if the importance is unknown, use the mean
+        if (sampled.part_importance.empty())  // unknown importance is replaced by its mean
             by_power = factor(shares.power + shares.weighted_power + shares.power_nearby, sums.power);
         else
             by_power += for_weighted * sampled.part_importance[i] + for_nearby * sampled.part_nearby[i];

@@ -92,7 +92,9 @@ struct Region {
     /// Returns 1 for patches that are at least as visible as the region on average, and less for other patches.
     double visibility(double seen) const { return std::min(1.0, seen * area / share); }
 
-    /// Adds a patch. @param uncertainty  Share of the cluster's mean in the shrunk light.
+    /// Adds a patch.
+    /// @param seen         View importance of the patch [1/m^2].
+    /// @param uncertainty  Share of the cluster's mean in the shrunk light.
     void add(double seen, double patch_area, double uncertainty, const RgbD& unreduced, const RgbD& reduced) {
         if (!(share > 0)) return;
         before += seen * patch_area * unreduced;

@@ -79,7 +79,7 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
 }
 
 /// Makes sums of the importance at the hits of each source's rays. Returns nullopt if they are not needed: without
-/// importance, or if it is deposited at patches and there are no parts of luminaires to rate.
+/// importance, or if it is deposited at patches and no luminaire part shoots.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};

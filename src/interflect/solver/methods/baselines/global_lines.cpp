@@ -144,14 +144,14 @@ class LineSums {
     /// Lines of both directions sample a mutual exchange, lines of one direction any other. The latter counts twice.
     void add(const LineSegment& segment) {
         add_concurrently(started_[segment.from], 1);
-        carry(segment.from, segment.to, Rgb(segment.is_mutual ? 1.0f : 2.0f));
+        add_power(segment.from, segment.to, Rgb(segment.is_mutual ? 1.0f : 2.0f));
         if (!segment.is_mutual) return;
         add_concurrently(started_[segment.to], 1);
-        carry(segment.to, segment.from, Rgb(1));
+        add_power(segment.to, segment.from, Rgb(1));
     }
     /// Adds the light behind a pane in one direction, as the pane may be one-sided; so it counts twice.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
-        carry(segment.from, behind.hit.patch, 2.0f * behind.transmittance);
+        add_power(segment.from, behind.hit.patch, 2.0f * behind.transmittance);
     }
 
     Received received(const ElementForest& forest) const {
@@ -174,7 +174,7 @@ class LineSums {
     /// Adds the power from one patch to another.
     /// @param to      May be `none`.
     /// @param factor  Transmittance, times 1 for a mutual exchange or 2 for an exchange in one direction.
-    void carry(PatchIndex from, PatchIndex to, const Rgb& factor) {
+    void add_power(PatchIndex from, PatchIndex to, const Rgb& factor) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(factor) * power_per_radiosity_;
         if (to == no_patch) {
             add_concurrently(escaped_[from], power_.from(power));

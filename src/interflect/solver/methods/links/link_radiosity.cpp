@@ -303,6 +303,7 @@ bool LinkedElements::may_divide(ElementIndex end) const {
     return is_cluster(end) || forest_.area(end) >= 4.0 * static_cast<double>(state_.inputs.floor.default_min_area());
 }
 
+/// Keeps the candidates with the largest errors, so that the remaining rays suffice for their links.
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
     const std::int64_t rays = std::max<std::int64_t>(0, state_.light.options().limits.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);
