@@ -95,13 +95,13 @@ ProcessIdentity ProcessIdentity::own() {
     ::gethostname(own.host.data(), own.host.size() - 1);
     std::ifstream("/proc/sys/kernel/random/boot_id").read(own.kernel.data(), own.kernel.size());
     struct stat status {};
-    if (::stat("/proc/self/ns/pid", &status) == 0) own.process_numbers = status.st_ino;
+    if (::stat("/proc/self/ns/pid", &status) == 0) own.pid_namespace = status.st_ino;
     own.process = ::getpid();
     return own;
 }
 
 bool ProcessIdentity::sees_end_of(const ProcessIdentity& other) const {
-    return process_numbers != 0 && process_numbers == other.process_numbers && kernel == other.kernel &&
+    return pid_namespace != 0 && pid_namespace == other.pid_namespace && kernel == other.kernel &&
            ::kill(other.process, 0) != 0 && errno == ESRCH;
 }
 

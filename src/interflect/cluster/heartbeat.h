@@ -13,9 +13,9 @@ namespace interflect::detail {
 
 /// Host and number of a process, for other processes.
 struct ProcessIdentity {
-    std::array<char, 64> host{};        ///< Name, ends with 0.
-    std::array<char, 36> kernel{};      ///< Boot ID: equal for processes under the same kernel.
-    std::uint64_t process_numbers = 0;  ///< Inode of the namespace of process IDs.
+    std::array<char, 64> host{};      ///< Name, ends with 0.
+    std::array<char, 36> kernel{};    ///< Boot ID: equal for processes under the same kernel.
+    std::uint64_t pid_namespace = 0;  ///< Inode of the namespace of process IDs.
     pid_t process = 0;
 
     static ProcessIdentity own();

@@ -248,7 +248,7 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
 /// Returns the importance of each part, which is light per power. A mean line in each box is added, so that the
 /// importance of every part is positive.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
-    constexpr double rays_of_lines = 8;  // number of rays that this prior knowledge is worth
+    constexpr double rays_of_lines = 8;  // number of rays per part that the lines count as
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);
     double all = 0;
     for (const OutdoorLine& line : lines)

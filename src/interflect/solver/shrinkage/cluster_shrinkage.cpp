@@ -17,8 +17,8 @@ namespace {
 /// without contributions would seem to be exactly black.
 constexpr double contributions_of_half_trust = 8;
 /// Number of contributions at which a part keeps at least half of its own mean, for any difference from its cluster.
-/// With ten times as many, it keeps 99%. Bright faces beside a lamp need this, because they differ from most parts of
-/// their cluster.
+/// With ten times this number, it keeps 99%. Bright faces beside a lamp need this, because they differ from most parts
+/// of their cluster.
 constexpr double contributions_of_own_mean = 80;
 /// Minimum number of camera rays in a region of the pictures that keeps its mean. Smaller regions would restore the
 /// noise of the unshrunk light.

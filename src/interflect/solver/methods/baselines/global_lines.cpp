@@ -60,7 +60,7 @@ struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, reversed_lines;
     std::vector<PatchIndex> crossed;  ///< The patch that each line crossed last.
-    std::vector<float> slack;         ///< Error of the distance to it [m]; infinite before the first crossing.
+    std::vector<float> slack;         ///< Error of the distance to `crossed` [m]; infinite before the first crossing.
     std::vector<Hit> hits, reversed_hits;
     std::vector<float> mutual_limit;  ///< A reversed hit beyond this distance has passed a one-sided face [m].
     std::vector<LineSegment> segments;
@@ -141,7 +141,8 @@ class LineSums {
         escaped_rays_.resize(radiosity_.size(), 0);
     }
 
-    /// Lines of both directions sample a mutual exchange, lines of one direction any other. The latter counts twice.
+    /// Lines of both directions sample a mutual exchange. Lines of one direction sample other exchanges, which count
+    /// twice.
     void add(const LineSegment& segment) {
         add_concurrently(started_[segment.from], 1);
         add_power(segment.from, segment.to, Rgb(segment.is_mutual ? 1.0f : 2.0f));

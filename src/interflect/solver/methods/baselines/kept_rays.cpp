@@ -114,7 +114,7 @@ class KeptRays : public IterationMethod {
     bool is_consistent(const SolverState& state) const override;
 
   private:
-    /// Number of rays of each element, of which only leaves count, then of each luminaire part.
+    /// Number of rays of each element (unused for inner elements), then of each luminaire part.
     using Quotas = std::vector<double>;
 
     void drop_rays_of_parts(const SolverState& state);

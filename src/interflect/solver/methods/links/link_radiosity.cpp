@@ -25,7 +25,7 @@ struct RefinementCandidate {
 
 namespace {
 
-/// Links are refined if the relative change of light in a sweep is below `settled`. If none can be refined, the run
+/// Links are refined if the relative change of light in a sweep is below `settled`. If no link can be refined, the run
 /// ends when the change is below `negligible_change`.
 constexpr double settled = 1e-2, negligible_change = 1e-6;
 /// Relative error bound of a link whose 16 sampled lines of sight are all blocked, because one more line may be free.

@@ -125,7 +125,7 @@ Estimate RandomWalks::trace(SolverState& state, TracedIteration& iteration) {
         iteration.rays += batch.rays;
         estimate = independent_contributions(state.light, batch);
     }
-    if (iteration.rays == 0) iteration.rays = iteration.plan.rays;  // no rays were traced: no visible surface reflects
+    if (iteration.rays == 0) iteration.rays = iteration.plan.rays;  // no visible surface reflects
     return estimate;
 }
 
