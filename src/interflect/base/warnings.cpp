@@ -6,8 +6,8 @@ namespace interflect {
 
 namespace {
 
-/// Different messages of a kind. One more entry counts all others, so a file of 300,000 faults gives a short list,
-/// which is also fast to search.
+/// Limit of different messages per kind. One more entry counts all others, so a file of 300,000 faults gives a short
+/// list, which is also fast to search.
 constexpr std::size_t max_messages_of_kind = 100;
 
 std::string message_of_others(const std::string& kind) {

@@ -18,17 +18,19 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// mpirun kills the other processes one to two seconds after a death; a report needs a few beats before.
+/// Interval between beats. mpirun ends the other processes one to two seconds after a death; a few beats must fit in,
+/// so that the loss is reported first.
 constexpr std::chrono::milliseconds beat = 250ms;
-/// mpirun needs two more seconds to end all processes; the sum must stay below 10 s.
+/// Silence after which a process counts as lost. mpirun needs two more seconds to end all processes; the sum must stay
+/// below 10 s.
 constexpr std::chrono::milliseconds max_silence = 7s;
 /// Interval at the end of the job, when all processes wait for the last beats.
 constexpr std::chrono::milliseconds last_beat = 5ms;
 
-/// One byte: MPI sends short messages without waiting for the receiver.
+/// Message of one byte, because MPI sends short messages without waiting for the receiver.
 enum class Beat : unsigned char { alive, last };
 
-/// Beats of the previous process.
+/// Receives the beats of the previous process.
 class Listener {
   public:
     Listener(MPI_Comm ring, int previous) : ring_(ring), previous_(previous) { listen(); }
@@ -58,7 +60,7 @@ class Listener {
     bool has_ended_ = false;
 };
 
-/// Beats for the next process, which need not receive them in time.
+/// Sends beats to the next process, and skips beats while an earlier one is on its way.
 class Sender {
   public:
     Sender(MPI_Comm ring, int next) : ring_(ring), next_(next) {}
@@ -93,20 +95,20 @@ ProcessIdentity ProcessIdentity::own() {
     ::gethostname(own.host.data(), own.host.size() - 1);
     std::ifstream("/proc/sys/kernel/random/boot_id").read(own.kernel.data(), own.kernel.size());
     struct stat status {};
-    if (::stat("/proc/self/ns/pid", &status) == 0) own.process_numbers = status.st_ino;
+    if (::stat("/proc/self/ns/pid", &status) == 0) own.pid_namespace = status.st_ino;
     own.process = ::getpid();
     return own;
 }
 
 bool ProcessIdentity::sees_end_of(const ProcessIdentity& other) const {
-    return process_numbers != 0 && process_numbers == other.process_numbers && kernel == other.kernel &&
+    return pid_namespace != 0 && pid_namespace == other.pid_namespace && kernel == other.kernel &&
            ::kill(other.process, 0) != 0 && errno == ESRCH;
 }
 
 Heartbeat::Heartbeat(std::function<void(const std::string&)> on_loss)
     : own_(ProcessIdentity::own()), on_loss_(std::move(on_loss)) {
     MPI_Comm_dup(MPI_COMM_WORLD, &ring_);
-    MPI_Comm_set_errhandler(ring_, MPI_ERRORS_RETURN);  // an error is silence
+    MPI_Comm_set_errhandler(ring_, MPI_ERRORS_RETURN);  // a failed beat counts as silence
     int rank = 0, count = 1;
     MPI_Comm_rank(ring_, &rank);
     MPI_Comm_size(ring_, &count);

@@ -13,9 +13,9 @@ namespace interflect::detail {
 
 /// Host and number of a process, for other processes.
 struct ProcessIdentity {
-    std::array<char, 64> host{};        ///< Name, ends with 0.
-    std::array<char, 36> kernel{};      ///< Boot ID: equal for processes under the same kernel.
-    std::uint64_t process_numbers = 0;  ///< Inode of the namespace of process IDs.
+    std::array<char, 64> host{};      ///< Name, ends with 0.
+    std::array<char, 36> kernel{};    ///< Boot ID: equal for processes under the same kernel.
+    std::uint64_t pid_namespace = 0;  ///< Inode of the namespace of process IDs.
     pid_t process = 0;
 
     static ProcessIdentity own();
@@ -45,7 +45,7 @@ class Heartbeat {
     int next_ = 0, previous_ = 0;
     ProcessIdentity own_, watched_;
     std::function<void(const std::string&)> on_loss_;
-    std::jthread thread_;  // last: uses all others
+    std::jthread thread_;  // the last member, because it uses all others
 };
 
 }  // namespace interflect::detail

@@ -23,16 +23,17 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// Clusters load the program from one server for all machines, so starts differ by tens of seconds.
+/// Time for all processes to start. Clusters load the program from one server for all machines, so starts differ by
+/// tens of seconds.
 constexpr std::chrono::seconds start_limit = 60s;
-/// All processes have just exchanged their last beats. If process 0 is stopped, all end after 9.5 s: see
-/// common_limit().
+/// Time for MPI_Finalize(), before which all processes have exchanged their last beats. If process 0 is stopped, all
+/// end after 9.5 s: see common_limit().
 constexpr std::chrono::seconds finish_limit = 5s;
 /// Time for MPI_Abort() to reach mpirun, which may be stopped.
 constexpr std::chrono::seconds abort_limit = 2s;
 
-/// The lowest rank that is not stopped reports first. mpirun then ends the others within two seconds, before they
-/// report.
+/// Limits the time that all processes wait for each other. The lowest rank that is not stopped reports first. mpirun
+/// then ends the others within two seconds, before they report.
 TimeLimit common_limit(int rank, std::chrono::milliseconds limit, const FaultReport& report, const char* fault) {
     constexpr std::chrono::milliseconds head_start = 2500ms;
     return {limit + rank * head_start, [=] { report(fault); }};
@@ -57,22 +58,22 @@ int blocks_of(std::size_t bytes) {
     return static_cast<int>(blocks);
 }
 
-/// Parts that follow each other, each in whole blocks.
+/// Consecutive parts of a buffer, each in whole blocks.
 struct Layout {
-    std::vector<std::int64_t> sizes;  ///< [bytes]
-    std::vector<int> blocks, places;  ///< [blocks]
+    std::vector<std::int64_t> sizes;   ///< [bytes]
+    std::vector<int> blocks, offsets;  ///< Size and offset of each part [blocks].
     std::size_t bytes = 0;
 
     explicit Layout(std::vector<std::int64_t> s) : sizes(std::move(s)) {
         for (const std::int64_t size : sizes) {
-            places.push_back(blocks_of(bytes));
+            offsets.push_back(blocks_of(bytes));
             blocks.push_back(blocks_of(static_cast<std::size_t>(size)));
             bytes += static_cast<std::size_t>(blocks.back()) * block_bytes;
         }
         blocks_of(bytes);
     }
     std::byte* part_in(Ranks::Bytes& all, std::size_t part) const {
-        return all.data() + static_cast<std::size_t>(places[part]) * block_bytes;
+        return all.data() + static_cast<std::size_t>(offsets[part]) * block_bytes;
     }
     std::vector<Ranks::Bytes> parts_of(Ranks::Bytes& all) const {
         std::vector<Ranks::Bytes> parts;
@@ -121,8 +122,8 @@ class MpiRanks : public Ranks {
         const Layout out(sizes), in(sizes_here);
         Bytes sent(out.bytes), received(in.bytes);
         for (std::size_t r = 0; r < parts.size(); ++r) std::ranges::copy(parts[r], out.part_in(sent, r));
-        require(MPI_Alltoallv(sent.data(), out.blocks.data(), out.places.data(), block_, received.data(),
-                              in.blocks.data(), in.places.data(), block_, MPI_COMM_WORLD));
+        require(MPI_Alltoallv(sent.data(), out.blocks.data(), out.offsets.data(), block_, received.data(),
+                              in.blocks.data(), in.offsets.data(), block_, MPI_COMM_WORLD));
         for (int r = 0; r < count_; ++r)
             if (r != rank_) traffic_.bytes += sizes[static_cast<std::size_t>(r)];
         return in.parts_of(received);
@@ -137,7 +138,7 @@ class MpiRanks : public Ranks {
         const Layout in(sizes);
         Bytes received(in.bytes);
         std::ranges::copy(bytes, in.part_in(received, static_cast<std::size_t>(rank_)));
-        require(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, received.data(), in.blocks.data(), in.places.data(),
+        require(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, received.data(), in.blocks.data(), in.offsets.data(),
                                block_, MPI_COMM_WORLD));
         traffic_.bytes += size * (count_ - 1);
         return in.parts_of(received);
@@ -175,9 +176,9 @@ class MpiRanks : public Ranks {
         Clock::time_point start_ = Clock::now();
     };
 
-    /// Leaves the processor to others while it waits; blocking functions of MPI would use it fully. A pause is 1/32 of
-    /// the time waited, so it delays by at most 3% of that. Measured: 1 us for two processes on idle cores; a wait of
-    /// 5 s uses 15 ms of processor time.
+    /// Waits for all processes with the processor free for others; blocking functions of MPI would use it fully. A
+    /// pause is 1/32 of the time waited, so the delay is at most 3% of that time. Measured: 1 us for two processes on
+    /// idle cores; a wait of 5 s uses 15 ms of processor time.
     void wait_for_all() const {
         // On busy machines yield() costs milliseconds, so short waits keep the processor.
         constexpr std::chrono::nanoseconds short_wait = 100us;
@@ -209,7 +210,7 @@ class MpiRanks : public Ranks {
 std::shared_ptr<Ranks> join_ranks(const FaultReport& report) {
     const std::optional<int> launched = launched_processes();
     if (!launched) return nullptr;
-    const int rank = launched_rank().value_or(0);  // before MPI_Init_thread(), which sets such variables itself
+    const int rank = launched_rank().value_or(0);  // read before MPI_Init_thread(), which sets such variables itself
     // Before the heartbeat, only this limit detects a stopped process.
     const TimeLimit limit =
         common_limit(rank, start_limit, report, "not all processes have started within a minute: one is stopped");

@@ -120,6 +120,7 @@ std::vector<ElementIndex> ElementForest::put_in_order(std::uint32_t first) {
         std::array<Node, 4> nodes;
         std::uint32_t first;
     };
+    // Sort copies of the new blocks
     std::vector<Siblings> made;
     made.reserve((last - first) / 4);
     for (std::uint32_t e = first; e < last; e += 4)
@@ -131,6 +132,7 @@ std::vector<ElementIndex> ElementForest::put_in_order(std::uint32_t first) {
         return key(a) < key(b);
     });
 
+    // Write them back with new indices of parents and children
     std::vector<ElementIndex> renumbered(last - first);
     for (std::uint32_t i = 0; i < renumbered.size(); ++i)
         renumbered[made[i / 4].first + i % 4 - first] = ElementIndex(first + i);

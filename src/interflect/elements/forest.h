@@ -117,7 +117,8 @@ class ElementForest {
     std::uint64_t scene_fingerprint_;
     PerPatch<PatchGeometry> geometry_;
     std::uint32_t patch_count_;
-    /// First element of each generation, followed by the end of the last generation.
+    /// First element of each generation, followed by the end of the last one. A generation contains no parent of its
+    /// own elements, so its blocks can be processed in parallel.
     std::vector<std::uint32_t> generations_;
     std::atomic<std::uint32_t> size_{0};
     mutable StableArray<Node> nodes_;
@@ -144,6 +145,7 @@ void ElementForest::for_siblings_from_leaves(const Body& body) const {
     for (std::size_t g = generations_.size() - 1; g > 0; --g) for_siblings(generations_[g - 1], generations_[g], body);
 }
 
+/// Initialises elements from `first` on with the values of their parents.
 template <class T>
 void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {
     values.resize(forest.size());

@@ -19,7 +19,7 @@ Run::Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster
 void Run::dim_sources() {
     const bool is_dimmed = std::any_of(state.light.solution.dimming.begin(), state.light.solution.dimming.end(),
                                        [](float factor) { return factor != 1; });
-    const std::shared_ptr<const Scene> before = scene;
+    const std::shared_ptr<const Scene> before = scene;  // must outlive set_sources()
     scene =
         is_dimmed
             ? std::make_shared<const Scene>(dimmed(*undimmed_scene, state.inputs.groups, state.light.solution.dimming))

@@ -15,6 +15,7 @@
 
 namespace interflect::detail {
 
+/// The data of a Solver.
 struct Run {
     /// @param caster  Ray caster of this scene. @throws InputError as Solver does.
     Run(std::shared_ptr<const Scene> s, std::shared_ptr<const RayCaster> caster, const SolveOptions& options);

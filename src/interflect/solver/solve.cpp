@@ -53,7 +53,7 @@ void prepare(Run& run) {
 
 /// Plans the next iteration; it has 0 rays if the run is over. Extends a completed run if more rays are requested.
 /// @param requested_rays  Total number of rays since the run began.
-IterationPlan plan_or_extend(Run& run, std::int64_t requested_rays) {
+IterationPlan plan_iteration(Run& run, std::int64_t requested_rays) {
     SolverState& state = run.state;
     IterationPlan next = run.method->plan(state);
     if (next.rays > 0 || requested_rays == unlimited) return next;
@@ -77,7 +77,7 @@ void iterate_until(Run& run, const Limits& call_limits) {
     run.is_finished = false;
     while (!(run.error <= target_error) && state.rays.schedule.rays() < requested_rays) {
         if (has_advanced && state.work.seconds_of_this_call() >= call_limits.time) return;
-        const IterationPlan plan = plan_or_extend(run, requested_rays);
+        const IterationPlan plan = plan_iteration(run, requested_rays);
         run.is_finished = plan.rays == 0;
         if (run.is_finished) return;
         if (state.work.stop.is_due()) throw Interrupted();
@@ -86,7 +86,7 @@ void iterate_until(Run& run, const Limits& call_limits) {
             method.update_importance(state, iteration);                // Eq. 7, 8
             const Estimate estimate = method.trace(state, iteration);  // Eq. 1; rays by Eq. 3, 9-11, mesh by Eq. 14, 15
             method.merge(state, estimate, iteration);                  // Eq. 6
-            method.refine(state);                                      // by variance
+            method.refine(state);                                      // mesh by variance
         });
         state.rays.schedule.done(iteration);
         append_report(state, ++run.iteration);

@@ -49,7 +49,7 @@ AdvanceReport Solver::advance(const Limits& limits, const Monitor& monitor) {
     run.finished.reset();
     state.work.begin(monitor);
     state.light.solution.interrupted = false;
-    const bool is_lit = channel_sum(state.light.solution.emitted_power) > 0;  // else the exact solution is 0
+    const bool is_lit = channel_sum(state.light.solution.emitted_power) > 0;  // without light, the exact solution is 0
     try {
         if (is_lit) iterate_until(run, limits);
     } catch (const Interrupted&) {

@@ -10,10 +10,11 @@ namespace {
 constexpr std::string_view hex_digits = "0123456789abcdef";
 constexpr std::size_t escape_length = 4;  // \xNN
 
+/// UTF-8 sequences of one length [bytes]: (first byte & mask) == lead, code points from least_code_point.
 struct SequenceKind {
     std::uint8_t mask, lead;
     std::size_t length;
-    std::uint32_t least;
+    std::uint32_t least_code_point;
 };
 constexpr SequenceKind sequence_kinds[] = {
     {0x80, 0x00, 1, 0}, {0xe0, 0xc0, 2, 0x80}, {0xf0, 0xe0, 3, 0x800}, {0xf8, 0xf0, 4, 0x10000}};
@@ -34,11 +35,11 @@ Character first_character(std::string_view text) {
         code_point = code_point << 6 | (byte(i) & 0x3f);
     }
     const bool is_surrogate = code_point >= 0xd800 && code_point < 0xe000;
-    if (code_point < kind->least || code_point > 0x10ffff || is_surrogate) return {};
+    if (code_point < kind->least_code_point || code_point > 0x10ffff || is_surrogate) return {};
     return {kind->length, code_point};
 }
 
-/// Bidi_Control of Unicode: it would show a name in another order than its bytes.
+/// Unicode's Bidi_Control characters, which display a name in another order than its bytes.
 bool is_bidirectional_control(std::uint32_t code_point) {
     return code_point == 0x61c || code_point == 0x200e || code_point == 0x200f ||
            (code_point >= 0x202a && code_point <= 0x202e) || (code_point >= 0x2066 && code_point <= 0x2069);

@@ -12,7 +12,7 @@ namespace interflect::detail {
 
 namespace fs = std::filesystem;
 
-/// Needs no test of the memory, which itself reads files [bytes].
+/// Smaller files are read without a memory check, which itself reads files [bytes].
 constexpr std::uintmax_t small_file = std::uintmax_t{1} << 24;
 
 void require_regular_file(const fs::path& path) {

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path target_of(fs::path path) {
-    constexpr int max_links = 40;  // as in Linux
+    constexpr int max_links = 40;  // the limit of Linux
     for (int link = 0; fs::is_symlink(fs::symlink_status(path)); ++link) {
         if (link == max_links) throw InputError("too many symbolic links, or a loop of them");
         path = path.parent_path() / fs::read_symlink(path);
@@ -83,6 +83,7 @@ std::string temporary_name(const fs::path& final_path) {
            std::string(temporary_mark) + (extension.size() <= longest_extension ? extension : "");
 }
 
+/// Returns whether `name` is a temporary file of an ended process of this host.
 bool is_stale(std::string_view name, std::string_view prefix) {
     if (!name.starts_with(prefix) || name.find(temporary_mark) == std::string_view::npos) return false;
     pid_t process = 0;
@@ -92,7 +93,6 @@ bool is_stale(std::string_view name, std::string_view prefix) {
            ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-/// Considers only this host.
 void remove_stale_files(const fs::path& folder) {
     const std::string prefix = temporary_prefix();
     std::error_code ignored;
@@ -100,15 +100,16 @@ void remove_stale_files(const fs::path& folder) {
         if (is_stale(entry->path().filename().string(), prefix)) ::unlink(entry->path().c_str());
 }
 
-/// Paths of live files, for a signal handler; null: free.
+/// Temporary paths of live PendingFiles, for a signal handler. Null marks a free slot.
 constexpr std::size_t slot_count = 16;
 std::array<std::atomic<const char*>, slot_count> listed_paths{};
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
+/// Returns the slot of the path, or slot_count if no slot is free.
 std::size_t list(const char* path) {
     for (std::size_t slot = 0; slot < slot_count; ++slot) {
-        const char* is_free = nullptr;
-        if (listed_paths[slot].compare_exchange_strong(is_free, path)) return slot;
+        const char* expected = nullptr;
+        if (listed_paths[slot].compare_exchange_strong(expected, path)) return slot;
     }
     return slot_count;
 }
@@ -158,7 +159,7 @@ PendingFile::PendingFile(fs::path final_path) : final_path_(std::move(final_path
         unlist(slot_);
         throw_cannot_write(final_path_, reason);
     }
-    ::unlink(temporary_path_.c_str());  // a process that is killed in long work leaves no file
+    ::unlink(temporary_path_.c_str());  // it was only a test; a process killed before write_by() leaves no file
 }
 
 bool PendingFile::create() {
@@ -196,7 +197,7 @@ void PendingFile::write(std::string_view bytes) {
 void PendingFile::write_by(const std::function<void(const fs::path&)>& writer) {
     const std::string fault = "cannot write '" + final_path_.string() + "': ";
     std::error_code ignored;
-    fs::remove(temporary_path_, ignored);  // of an earlier call
+    fs::remove(temporary_path_, ignored);  // the file of an earlier call
     if (!create()) throw std::runtime_error(fault + std::strerror(errno));
     try {
         writer(temporary_path_);

@@ -38,8 +38,8 @@ class PendingFile {
 
     std::filesystem::path final_path_, temporary_path_;
     std::filesystem::path replaced_path_;  // empty for devices, pipes and standard output
-    std::filesystem::path folder_;         // of the temporary file
-    std::size_t slot_;                     // in the list of live files
+    std::filesystem::path folder_;         // folder of the temporary file
+    std::size_t slot_;                     // index in the list of live files
 };
 
 /// Removes the files of up to 16 live PendingFiles. Async-signal-safe if the process then ends.

@@ -20,7 +20,7 @@ namespace interflect::detail {
 /// It refuses invalid numbers, with which a run would crash or never end.
 class StateArchive {
   public:
-    /// Makes an archive for writing, which changes no value. Values must not change until written.
+    /// Makes an archive for writing. Writing refers to the caller's values, which must not change until written.
     StateArchive() = default;
     /// Makes an archive for reading.
     explicit StateArchive(std::map<std::string, std::vector<std::byte>> arrays)
@@ -50,7 +50,7 @@ class StateArchive {
     }
     void unchecked(const std::string& name, bool& value) {
         const std::uint8_t byte = by_value(name, std::vector{static_cast<std::uint8_t>(value)}).at(0);
-        if (!reads_) return;  // several threads may write one state
+        if (!reads_) return;  // without an assignment, because several threads may write one state
         require_range(byte <= 1, name);
         value = byte == 1;
     }
@@ -123,7 +123,7 @@ class StateArchive {
 
     bool reads_ = false;
     std::vector<std::pair<std::string, std::span<const std::byte>>> spans_;
-    std::list<std::vector<std::byte>> copies_;
+    std::list<std::vector<std::byte>> copies_;  // bytes written by by_value()
     std::map<std::string, std::vector<std::byte>> arrays_;
 };
 

@@ -30,7 +30,7 @@ std::size_t control_group_memory() {
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (std::filesystem::path group = root / control_group();; group = group.parent_path()) {
         std::size_t bytes = 0;
-        if (std::ifstream(group / "memory.max") >> bytes) least = std::min(least, bytes);  // otherwise "max"
+        if (std::ifstream(group / "memory.max") >> bytes) least = std::min(least, bytes);  // not a number: "max"
         if (group == root || !group.has_relative_path()) return least;
     }
 }

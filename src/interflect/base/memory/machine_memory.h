@@ -8,8 +8,8 @@ namespace interflect::detail {
 /// Returns the memory of the machine or its control groups, whichever is smaller [bytes].
 std::size_t machine_memory();
 
-/// Returns the memory in use and half of the free address space (ulimit -v) [bytes]: arrays and stacks reserve their
-/// largest size. Without a limit, returns the largest number.
+/// Returns the memory in use plus half of the free address space (ulimit -v) [bytes], because arrays and stacks reserve
+/// their largest size. Without a limit, returns the largest number.
 std::size_t addressable_memory();
 
 /// Returns the resident memory of this process [bytes].

@@ -11,7 +11,8 @@
 
 namespace interflect::detail {
 
-/// Zeros that never move: threads can fill new entries while others read old ones. Pages are allocated on first access.
+/// Zero-initialised array that never moves: threads can fill new entries while others read old ones. Pages are
+/// allocated on first access.
 template <class T>
 class StableArray {
     static_assert(std::is_trivially_copyable_v<T>);

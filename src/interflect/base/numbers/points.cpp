@@ -15,7 +15,7 @@ using Directions = std::array<std::uint32_t, word_bits>;
 
 /// Returns the direction numbers of one dimension, bit-reversed.
 /// @param inner  Inner coefficients of the primitive polynomial.
-/// @param m  First odd numbers.
+/// @param m      Initial odd numbers of the recurrence.
 constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::array<std::uint32_t, 3> m) {
     std::array<std::uint32_t, word_bits> v{};  // v[i] = m[i] * 2^(31 - i)
     for (int i = 0; i < word_bits; ++i) {
@@ -39,7 +39,7 @@ constexpr Directions sobol_directions(int degree, std::uint32_t inner, std::arra
 constexpr std::array<Directions, 4> directions = {sobol_directions(0, 0, {}), sobol_directions(1, 0, {1}),
                                                   sobol_directions(2, 1, {1, 3}), sobol_directions(3, 1, {1, 3, 1})};
 
-/// Sobol' words of the numbers 0 to 255 and of 256 times them, by number and dimension.
+/// Sobol' words of the 256 values of one byte of an index, by value and dimension.
 using WordsOfByte = std::array<std::array<std::uint32_t, 4>, 256>;
 
 constexpr WordsOfByte words_of_byte(std::size_t shift) {
@@ -73,8 +73,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
     return x >> 16 | x << 16;
 }
 
-/// Writes points first ... to block[begin ...] in Gray-code order, with the same sets of aligned 2^k points as in
-/// natural order.
+/// Writes `count` points from index `first` to the block from `begin`, in Gray-code order: aligned runs of 2^k points
+/// are the same sets as in natural order.
 void fill_sobol(std::uint64_t key, std::uint32_t first, std::size_t begin, std::size_t count, PointBlock& block) {
     std::array<std::uint32_t, PointBlock::capacity> word;
     for (std::size_t d = 0; d < 4; ++d) {
@@ -113,14 +113,15 @@ void fill_points(PointSet set, std::uint64_t key, std::uint64_t first, std::size
 
 std::array<float, 4> shuffled_point(std::uint64_t key, std::uint32_t index) {
     constexpr std::uint32_t shuffled_bits = 0xffffu;
-    constexpr std::uint64_t order = 4;  // after the keys 0 to 3 of the dimensions
-    const auto order_seed = static_cast<std::uint32_t>(mix(key, order) >> 32);
-    const std::uint32_t place =
-        (reverse_bits(nested_permutation(reverse_bits(index), order_seed)) & shuffled_bits) | (index & ~shuffled_bits);
+    constexpr std::uint64_t shuffle_key = 4;  // the dimensions have keys 0 to 3
+    const auto shuffle_seed = static_cast<std::uint32_t>(mix(key, shuffle_key) >> 32);
+    const std::uint32_t shuffled =
+        (reverse_bits(nested_permutation(reverse_bits(index), shuffle_seed)) & shuffled_bits) |
+        (index & ~shuffled_bits);
     std::array<std::uint32_t, 4> words{};
     for (std::size_t d = 0; d < 4; ++d)
-        words[d] = words_of_bytes[0][place & 0xff][d] ^ words_of_bytes[1][place >> 8 & 0xff][d];
-    for (std::uint32_t bits = place & ~shuffled_bits; bits != 0; bits &= bits - 1)
+        words[d] = words_of_bytes[0][shuffled & 0xff][d] ^ words_of_bytes[1][shuffled >> 8 & 0xff][d];
+    for (std::uint32_t bits = shuffled & ~shuffled_bits; bits != 0; bits &= bits - 1)
         for (std::size_t d = 0; d < 4; ++d) words[d] ^= directions[d][static_cast<std::size_t>(std::countr_zero(bits))];
     std::array<float, 4> point;
     for (std::size_t d = 0; d < 4; ++d) {

@@ -14,7 +14,7 @@ struct PointBlock {
     std::array<std::array<float, capacity>, 4> coordinate;
 };
 
-/// Computes points first ... of the sequence `key`: random, or Sobol' (Joe and Kuo 2008) with hash-based Owen
+/// Computes points from index `first` of the sequence `key`: random, or Sobol' (Joe and Kuo 2008) with hash-based Owen
 /// scrambling (Laine and Karras 2011). Each point is uniform over random keys; 2^k Sobol' points from a multiple of 2^k
 /// are stratified in 4D.
 /// @param count  At most PointBlock::capacity.

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Set of integers with rank in O(1), to index compact tables. Two bits per integer below `bound`.
+/// Set of integers in two bits per integer below `bound`. The rank of a member, found in O(1), indexes compact tables.
 class RankedBits {
   public:
     RankedBits() = default;
@@ -25,6 +25,7 @@ class RankedBits {
     bool operator[](std::uint32_t number) const {
         return number / 64 < words_.size() && (words_[number / 64].bits >> number % 64 & 1u);
     }
+    /// Returns the number of smaller members.
     std::uint32_t rank(std::uint32_t number) const {
         const Word& word = words_[number / 64];
         const std::uint64_t lower = (std::uint64_t{1} << number % 64) - 1;

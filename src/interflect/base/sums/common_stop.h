@@ -8,14 +8,14 @@
 
 namespace interflect::detail {
 
-/// The stop of rank 0, for all ranks. Loops within one process cannot know it and run to their end.
+/// Stop request of rank 0, which all ranks obey. With several ranks, loops within a process run to their end.
 class CommonStop {
   public:
     CommonStop() = default;
     CommonStop(const std::atomic<bool>* flag, Ranks* ranks) : requested_(flag), ranks_(ranks) {}
 
     void limit_time(StopRequest::Clock::time_point start, double seconds) { requested_.limit_time(start, seconds); }
-    /// Returns a stop for loops within this process. It is never due with several ranks.
+    /// Returns the stop request for loops within this process. It is never due with several ranks.
     const StopRequest& within_process() const { return ranks_ ? never_ : requested_; }
     /// The following are collective.
     bool is_due() const { return of_first_rank(ranks_, requested_.is_due()); }

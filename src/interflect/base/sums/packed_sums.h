@@ -17,7 +17,7 @@ namespace interflect::detail {
 /// each term in bytes, and the terms of the nonzero elements.
 class PackedSums {
   public:
-    /// Elements of a task; the bytes begin with an index of tasks.
+    /// Elements per task. The bytes begin with the offset of each task.
     static constexpr std::size_t task_elements = std::size_t{1} << 14;
 
     /// @param row  row(element, terms) fills the terms of an element in [begin, end). Called by several threads.
@@ -27,22 +27,22 @@ class PackedSums {
         parallel_for_ranges(end - begin, task_elements, [&](std::size_t first, std::size_t last) {
             of_tasks[first / task_elements] = packed(begin + first, begin + last, terms, row);
         });
-        std::uint64_t place = of_tasks.size() * sizeof(place);
-        for (const Ranks::Bytes& task : of_tasks) append(&place, sizeof(place)), place += task.size();
+        std::uint64_t offset = of_tasks.size() * sizeof(offset);
+        for (const Ranks::Bytes& task : of_tasks) append(&offset, sizeof(offset)), offset += task.size();
         for (const Ranks::Bytes& task : of_tasks) append(task.data(), task.size());
     }
     const Ranks::Bytes& bytes() const { return bytes_; }
 
-    /// Calls add(element, terms) for the elements of [begin, end) with a sum other than 0, on several threads.
-    /// @param parts  Of the same elements; each element gets them in this order, on one thread.
+    /// Calls add(element, terms) for the elements of [begin, end) with a nonzero sum, on several threads.
+    /// @param parts  Packed sums of these elements. Calls for one element follow this order, on one thread.
     template <class Add>
     static void unpack(std::span<const std::span<const std::byte>> parts, std::size_t begin, std::size_t end,
                        std::size_t terms, const Add& add) {
         parallel_for_ranges(end - begin, task_elements, [&](std::size_t first, std::size_t last) {
             for (const std::span<const std::byte> part : parts) {
-                std::uint64_t place = 0;
-                std::memcpy(&place, part.data() + first / task_elements * sizeof(place), sizeof(place));
-                unpack(part.data() + place, begin + first, begin + last, terms, add);
+                std::uint64_t offset = 0;
+                std::memcpy(&offset, part.data() + first / task_elements * sizeof(offset), sizeof(offset));
+                unpack(part.data() + offset, begin + first, begin + last, terms, add);
             }
         });
     }
@@ -65,7 +65,7 @@ class PackedSums {
     static Ranks::Bytes packed(std::size_t begin, std::size_t end, std::size_t terms, const Row& row) {
         Ranks::Bytes bytes;
         std::vector<std::int64_t> rows(block * terms);
-        std::vector<std::uint64_t> used(terms);  // bits of each term
+        std::vector<std::uint64_t> used(terms);  // bits that occur in each term of the block
         std::size_t size = 0;
         for (std::size_t first = begin; first < end; first += block) {
             const std::size_t count = std::min(block, end - first);

@@ -26,18 +26,21 @@ void add_over_ranks(Ranks& ranks, std::size_t elements, Sums& sums) {
     const auto begin_of = [&](std::size_t r) { return elements * r / count; };
     const auto add = [&](std::size_t e, ConstRow row) { sums.add(e, row); };
 
+    // Send each other rank the sums of its part of the elements
     std::vector<Ranks::Bytes> parts(count);
     for (std::size_t r = 0; r < count; ++r)
         if (r != own)
             parts[r] = PackedSums(begin_of(r), begin_of(r + 1), sums.terms(), [&](std::size_t e, Row row) {
                            sums.take(e, row);
                        }).bytes();
+    // Add the received sums to the own part
     std::vector<std::span<const std::byte>> of_others;
     const std::vector<Ranks::Bytes> received = ranks.exchange(parts);
     for (std::size_t r = 0; r < count; ++r)
         if (r != own) of_others.emplace_back(received[r]);
     PackedSums::unpack(of_others, begin_of(own), begin_of(own + 1), sums.terms(), add);
 
+    // Exchange the results of all parts
     const PackedSums result(begin_of(own), begin_of(own + 1), sums.terms(),
                             [&](std::size_t e, Row row) { sums.read(e, row); });
     const std::vector<Ranks::Bytes> results = ranks.gather(result.bytes());
@@ -62,8 +65,8 @@ std::vector<T> gather_over_ranks(Ranks& ranks, std::span<const T> values) {
     return all;
 }
 
-/// Returns results of `items` independent pieces of work, each of `size` values: each rank does some pieces.
-/// @param work    work(item, values) sets the values. Called by several threads.
+/// Computes `size` values for each of `items` independent items, which the ranks share.
+/// @param work   work(item, values) sets the values. Called by several threads.
 /// @param ranks  Null: this process is alone.
 template <class T, class Work>
 std::vector<T> divide_over_ranks(Ranks* ranks, std::size_t items, std::size_t size, const Work& work) {
@@ -75,7 +78,7 @@ std::vector<T> divide_over_ranks(Ranks* ranks, std::size_t items, std::size_t si
     return all;
 }
 
-/// parallel_sum() in which each rank adds some of the ranges. Equal bits for any number of them.
+/// Computes parallel_sum() with the ranges shared by the ranks. Equal bits for any number of ranks.
 template <class T, class Body>
 T parallel_sum(Ranks* ranks, std::size_t count, std::size_t grain, const T& zero, const Body& body) {
     const std::vector<T> parts =

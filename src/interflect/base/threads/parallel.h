@@ -71,7 +71,8 @@ void parallel_for_indices(std::size_t count, const Body& body) {
     });
 }
 
-/// Sums over these ranges in order: equal bits for any number of threads.
+/// Adds the results of body(begin, end) for the ranges of parallel_for_ranges() in their order: equal bits for any
+/// number of threads.
 template <class T, class Body>
 T parallel_sum(std::size_t count, std::size_t grain, const T& zero, const Body& body) {
     std::vector<T> parts((count + grain - 1) / grain, zero);

@@ -30,7 +30,7 @@ void parallel_for_own_ranges(const Ranks* ranks, std::size_t count, std::size_t 
 enum class Destination { first_rank, all_ranks };
 
 /// Copies the values of each range from its rank to the destination. Collective.
-/// @param ranks  Null: no effect. @param values  Of equal number in all ranks.
+/// @param ranks  Null: no effect. @param values  All values; the same number in all ranks.
 template <class T>
 void collect_ranges(Ranks* ranks, std::span<T> values, std::size_t grain, Destination destination) {
     static_assert(std::is_standard_layout_v<T> && !std::is_pointer_v<T>);

@@ -12,6 +12,7 @@ namespace interflect::detail {
 /// Thrown when a run must stop; the current step is lost.
 struct Interrupted {};
 
+/// Request to stop a run, by a flag or a time limit.
 class StopRequest {
   public:
     using Clock = std::chrono::steady_clock;

@@ -44,7 +44,7 @@ bool ContactFinder::plane_meets(const Imath::Box3f& box) const {
 
 void ContactFinder::add_contacts_with(const Facet& other) {
     if (other.face == facet_.face) return;
-    double touching =
+    double touching =  // maximum distance that counts as touching [m]
         std::max({touch_distance_ * std::min(facet_.diameter, other.diameter), facet_.rounding, other.rounding});
     std::array<double, 4> height{};
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
@@ -68,15 +68,15 @@ void ContactFinder::add_contacts_with(const Facet& other) {
 std::vector<PlanarSegment> ContactFinder::segments(double min_extent) {
     std::vector<PlanarSegment> all = distinct_segments();
     if (min_extent <= 0) return all;
-    std::vector<std::uint32_t> chain = connected(all);
+    std::vector<std::uint32_t> component = components(all);
     std::vector<Imath::Box2d> extent(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
-        extent[chain[i]].extendBy(all[i].a);
-        extent[chain[i]].extendBy(all[i].b);
+        extent[component[i]].extendBy(all[i].a);
+        extent[component[i]].extendBy(all[i].b);
     }
     std::vector<PlanarSegment> large;
     for (std::size_t i = 0; i < all.size(); ++i)
-        if (extent[chain[i]].size().length() >= min_extent) large.push_back(all[i]);
+        if (extent[component[i]].size().length() >= min_extent) large.push_back(all[i]);
     return large;
 }
 
@@ -89,20 +89,20 @@ std::vector<PlanarSegment> ContactFinder::distinct_segments() {
     std::vector<bool> done(found_.size(), false);
     for (std::size_t i = 0; i < found_.size(); ++i) {
         if (done[i]) continue;
-        bool left = found_[i].outline > 0, right = found_[i].outline < 0, stands = found_[i].outline == 0;
+        bool left = found_[i].outline > 0, right = found_[i].outline < 0, is_section = found_[i].outline == 0;
         for (std::size_t j = i + 1; j < found_.size() && starts_alike(i, j); ++j) {
             if (!is_same(found_[i].segment, found_[j].segment)) continue;
             done[j] = true;
             left |= found_[j].outline > 0;
             right |= found_[j].outline < 0;
-            stands |= found_[j].outline == 0;
+            is_section |= found_[j].outline == 0;
         }
-        if (stands || left != right) result.push_back(found_[i].segment);
+        if (is_section || left != right) result.push_back(found_[i].segment);
     }
     return result;
 }
 
-std::vector<std::uint32_t> ContactFinder::connected(const std::vector<PlanarSegment>& segments) const {
+std::vector<std::uint32_t> ContactFinder::components(const std::vector<PlanarSegment>& segments) const {
     struct End {
         V2d x;
         std::uint32_t segment;
@@ -119,9 +119,9 @@ std::vector<std::uint32_t> ContactFinder::connected(const std::vector<PlanarSegm
     for (std::size_t i = 0; i < ends.size(); ++i)
         for (std::size_t j = i + 1; j < ends.size() && ends[j].x.x - ends[i].x.x <= facet_.detail(); ++j)
             if (std::abs(ends[j].x.y - ends[i].x.y) <= facet_.detail()) sets.unite(ends[i].segment, ends[j].segment);
-    std::vector<std::uint32_t> chain(segments.size());
-    for (std::uint32_t i = 0; i < segments.size(); ++i) chain[i] = sets.find(i);
-    return chain;
+    std::vector<std::uint32_t> component(segments.size());
+    for (std::uint32_t i = 0; i < segments.size(); ++i) component[i] = sets.find(i);
+    return component;
 }
 
 void ContactFinder::add(const V3d& a, const V3d& b, int outline) {

@@ -16,14 +16,16 @@ namespace interflect::detail {
 
 struct FoundSegment {
     PlanarSegment segment;  ///< `a` is the lexicographically lower end.
-    int outline =
-        0;  ///< Side on which the coplanar face of an outline lies: 1 is left, -1 right. It is 0 for other segments.
+    /// Side of an outline on which its coplanar face lies: 1 is left, -1 right. It is 0 for sections.
+    int outline = 0;
 };
 
+/// Finds the contacts of one facet: sections with facets at an angle to it, and outlines of coplanar facets.
 class ContactFinder {
   public:
-    /// @param rank  Result of rank_by_flat_surface().
-    /// @param gap   Maximum distance at which separate large facets count as touching [m].
+    /// @param rank            Result of rank_by_flat_surface().
+    /// @param touch_distance  Distance that counts as touching, relative to the smaller facet's diameter.
+    /// @param gap             Maximum distance at which separate large facets count as touching [m].
     ContactFinder(const Scene& scene, const Facet& facet, std::span<const std::uint32_t> rank, double touch_distance,
                   double gap);
 
@@ -42,7 +44,7 @@ class ContactFinder {
     std::vector<PlanarSegment> distinct_segments();
     /// Returns, for each segment, the lowest index in its connected component. Segments with a common end are
     /// connected.
-    std::vector<std::uint32_t> connected(const std::vector<PlanarSegment>& segments) const;
+    std::vector<std::uint32_t> components(const std::vector<PlanarSegment>& segments) const;
 
     bool is_two_sided(const Facet& f) const { return scene_.patches[f.face].other_side != none; }
 

@@ -37,6 +37,7 @@ constexpr std::size_t facets_per_task = 256;
 /// in `slivers` (experiments/run audit) from 8.8% to 1.3%.
 constexpr double longest_sliver_share = 1.0 / 16;
 
+/// Parts of a facet. `patches` is empty if the facet stays whole.
 struct CutFacet {
     std::vector<PlanarPolygon> patches;
     std::vector<PlanarSegment> contacts;
@@ -146,6 +147,7 @@ struct FacetRange {
     std::uint64_t patches = 0;  ///< Number of patches on both sides; 0 if the face stays whole.
 };
 
+/// Groups the facets by face, and chooses the faces to cut within ContactOptions::max_patches.
 std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<Facet>& facets,
                                          const std::vector<CutFacet>& cut, const ContactOptions& options,
                                          Warnings& warnings) {

@@ -13,6 +13,7 @@ namespace {
 
 using Imath::V2d;
 
+/// Number of segments, the longest ones, that are compared as the next cut.
 constexpr std::size_t candidates_per_cut = 24;
 
 /// Directed line; height() is positive on its left.
@@ -61,8 +62,9 @@ double chord_length(const PlanarPolygon& polygon, const Line& line) {
     return std::max(0.0, to - from);
 }
 
+/// Returns the cost of a cut: divided segments, length without contact, and unequal numbers of segments on both sides.
 double cost_of(const Piece& piece, const Line& line, double tolerance) {
-    constexpr double of_division = 2, of_free_length = 1, of_imbalance = 0.5;
+    constexpr double division_weight = 2, free_length_weight = 1, imbalance_weight = 0.5;
     std::size_t divided = 0;
     double covered = 0, left = 0, right = 0;
     for (const PlanarSegment& s : piece.segments) {
@@ -73,8 +75,8 @@ double cost_of(const Piece& piece, const Line& line, double tolerance) {
         right += a + b < 0;
     }
     const double free_share = 1 - std::min(1.0, covered / std::max(chord_length(piece.polygon, line), tolerance));
-    return of_division * static_cast<double>(divided) + of_free_length * free_share +
-           of_imbalance * std::abs(left - right) / static_cast<double>(piece.segments.size());
+    return division_weight * static_cast<double>(divided) + free_length_weight * free_share +
+           imbalance_weight * std::abs(left - right) / static_cast<double>(piece.segments.size());
 }
 
 Line best_cut(const Piece& piece, double tolerance) {
@@ -89,6 +91,7 @@ Line best_cut(const Piece& piece, double tolerance) {
     return Line(choice[best]);
 }
 
+/// Parts of a polygon on the two sides of a line, and their common edge.
 struct Halves {
     PlanarPolygon left, right;
     PlanarSegment chord;
@@ -120,6 +123,7 @@ Halves halves_of(const PlanarPolygon& polygon, const Line& line, double toleranc
     return halves;
 }
 
+/// Projects `s` onto `edge`.
 PlanarSegment moved_onto(const PlanarSegment& edge, const PlanarSegment& s) {
     const Line line(edge);
     const auto moved = [&](const V2d& x) {
@@ -128,6 +132,7 @@ PlanarSegment moved_onto(const PlanarSegment& edge, const PlanarSegment& s) {
     return {moved(s.a), moved(s.b)};
 }
 
+/// Assigns segments to the pieces on both sides of a cut. Segments along the cut become contacts.
 void distribute(const std::vector<PlanarSegment>& segments, const Line& line, const PlanarSegment& chord,
                 double tolerance, Piece& left, Piece& right, std::vector<PlanarSegment>& contacts) {
     const auto add_to = [&](Piece& piece, PlanarSegment s) {
@@ -153,6 +158,7 @@ double compactness(const PlanarPolygon& polygon) {
     return doubled_area(polygon) / (border * border);
 }
 
+/// Returns the part with the corners from `first` to `last`, inclusive.
 PlanarPolygon part_of(const PlanarPolygon& polygon, std::size_t first, std::size_t last) {
     PlanarPolygon part;
     for (std::size_t i = first;; i = (i + 1) % polygon.size()) {
@@ -166,7 +172,7 @@ void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::ve
     const auto edge = [&](std::size_t i) {
         return (quadrilateral[(i + 1) % 4].position - quadrilateral[i].position).length();
     };
-    if (edge(0) + edge(2) < edge(1) + edge(3))
+    if (edge(0) + edge(2) < edge(1) + edge(3))  // makes edges 0 and 2 the longer pair
         std::rotate(quadrilateral.begin(), quadrilateral.begin() + 1, quadrilateral.end());
     const double length = (edge(0) + edge(2)) / 2, width = doubled_area(quadrilateral) / 2 / length;
     const bool is_long = length > shape.largest_aspect * width && width >= shape.min_width;
@@ -180,6 +186,7 @@ void divide_across(PlanarPolygon quadrilateral, const PieceShape& shape, std::ve
                            between(3, 2, i / parts)});
 }
 
+/// Cuts a sliver across its longest edge into slices of at most `longest` [m]. Returns other polygons whole.
 std::vector<PlanarPolygon> slices_of(const PlanarPolygon& polygon, double longest) {
     constexpr double max_parts = 64, sliver_aspect = 16;
     PlanarSegment edge{polygon[0].position, polygon[0].position};
@@ -273,6 +280,7 @@ void divide_into_patches(const PlanarPolygon& polygon, const PieceShape& shape, 
     if (n == 3) patches.push_back(polygon);
     if (n == 4) divide_across(polygon, shape, patches);
     if (n <= 4) return;
+    // Cut off the triangle or quadrilateral for which the less compact part is the most compact
     std::array<PlanarPolygon, 2> best;
     double most = -1;
     for (std::size_t first = 0; first < n; ++first)

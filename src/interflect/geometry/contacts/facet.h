@@ -14,7 +14,7 @@ namespace interflect::detail {
 
 /// Plane face, or one of the two triangles of a warped quadrilateral.
 struct Facet {
-    std::uint32_t face = none;  ///< Front patch.
+    std::uint32_t face = none;  ///< Index of the face's front patch.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
     std::size_t count = 0;
     std::array<Imath::V3d, 4> corners;  ///< [m]

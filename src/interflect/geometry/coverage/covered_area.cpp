@@ -59,8 +59,8 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
                     int halvings, std::size_t& intersections) {
     const double area = area_of(polygon);
     if (area <= negligible) return 0;
-    const bool is_last = intersections < others.size();
-    intersections -= is_last ? intersections : others.size();
+    const bool is_exhausted = intersections < others.size();
+    intersections -= is_exhausted ? intersections : others.size();
     double largest_share = 0;
     std::erase_if(others, [&](const PlanarPolygon* other) {
         const double shared = area_of(intersection(polygon, *other));
@@ -69,8 +69,9 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
     });
     if (area - largest_share <= negligible) return 0;
     if (others.empty()) return area;
-    if (is_last) return area - largest_share;
+    if (is_exhausted) return area - largest_share;
     double outside = 0;
+    // Halve the polygon across the longer side of its bounds
     if (others.size() > cut_at_once && halvings < max_halvings) {
         V2d low = polygon[0].position, high = low;
         for (const auto& [p, vertex] : polygon) {
@@ -84,6 +85,7 @@ double area_outside(const PlanarPolygon& polygon, std::vector<const PlanarPolygo
                 area_outside(half_of(polygon, middle, beyond, left), others, negligible, halvings + 1, intersections);
         return outside;
     }
+    // Cut off the parts outside the edges of one face; the rest is covered
     const PlanarPolygon& first = *others.back();
     others.pop_back();
     PlanarPolygon rest = polygon;

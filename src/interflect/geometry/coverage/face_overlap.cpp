@@ -69,9 +69,9 @@ class LargerFace {
   public:
     LargerFace(const Scene& scene, std::uint32_t face, std::span<const float> tolerance)
         : scene_(scene), face_(face), tolerance_(tolerance), polygon_(polygon_of(scene, scene.patches[face])) {
-        const V3d area = doubled_area_vector<double>(polygon_.face_corners());
-        area_ = area.length();
-        plane_.normal = area / area_;
+        const V3d doubled = doubled_area_vector<double>(polygon_.face_corners());
+        doubled_area_ = doubled.length();
+        plane_.normal = doubled / doubled_area_;
         for (std::size_t i = 0; i < polygon_.count; ++i)
             plane_.offset += plane_.normal.dot(polygon_.corners[i]) / static_cast<double>(polygon_.count);
         for (std::size_t i = 0; i < polygon_.count; ++i) {
@@ -96,9 +96,9 @@ class LargerFace {
         };
         for (std::size_t i = 0; i < polygon_.count; ++i)
             if (lies_outside(shared, narrowed(inside_[i]))) return false;  // true for most neighbours
-        const V3d area = doubled_area_vector<double>(shared.face_corners());
-        const double facing = area.dot(plane_.normal);
-        if (!is_smaller(face, area.length()) || std::abs(facing) < min_facing * area.length()) return false;
+        const V3d doubled = doubled_area_vector<double>(shared.face_corners());
+        const double facing = doubled.dot(plane_.normal);
+        if (!is_smaller(face, doubled.length()) || std::abs(facing) < min_facing * doubled.length()) return false;
         if (facing < 0 && is_one_sided(face_) && is_one_sided(face)) return false;
         for (std::size_t i = 0; i < polygon_.count && shared.count > 0; ++i)
             shared = clipped(shared, narrowed(inside_[i]));
@@ -109,13 +109,15 @@ class LargerFace {
 
   private:
     bool is_one_sided(std::uint32_t face) const { return scene_.patches[face].other_side == none; }
-    bool is_smaller(std::uint32_t face, double area) const { return area < area_ || (area == area_ && face < face_); }
+    bool is_smaller(std::uint32_t face, double doubled_area) const {
+        return doubled_area < doubled_area_ || (doubled_area == doubled_area_ && face < face_);
+    }
 
     const Scene& scene_;
     std::uint32_t face_;
     std::span<const float> tolerance_;
     ClippedFace polygon_;
-    double area_;  // twice the area
+    double doubled_area_;  // [m^2]
     HalfSpace plane_;
     std::array<HalfSpace, 4> inside_;
 };

@@ -11,7 +11,7 @@
 namespace interflect::detail {
 
 struct PlanarCorner {
-    Imath::V2d position;          ///< In the plane's frame [m].
+    Imath::V2d position;          ///< Coordinates in the plane's frame [m].
     std::uint32_t vertex = none;  ///< Index in the scene; `none` for a new corner.
 };
 

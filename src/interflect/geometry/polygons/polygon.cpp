@@ -69,6 +69,7 @@ struct OutlinePlane {
     }
 
   private:
+    /// Returns the width of the loop across its longest chord from the first vertex [m].
     static double width(const Scene& scene, const Loop& outline) {
         const V3d start = position(scene, outline[0]);
         V3d chord(0);

@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Limit of the crossings of an outline, each of which becomes a vertex: a star of 1,023 corners can have 520,000.
+/// Limit of the crossings of an outline. Each crossing becomes a vertex, and a star of 1,023 corners can have 520,000.
 inline constexpr std::size_t max_crossings_per_corner = 4;
 
 enum class PolygonResult {

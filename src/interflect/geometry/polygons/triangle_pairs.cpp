@@ -17,6 +17,8 @@ using Imath::V3d;
 
 /// Minimum sine of the angle by which a quadrilateral's outline turns at a corner.
 constexpr double min_turn = 0.1;
+
+/// Maximum distance of a texture or lightmap coordinate from a linear map of the quadrilateral.
 constexpr double coordinate_tolerance = 1e-4;
 
 class PairFinder {
@@ -76,6 +78,7 @@ class PairFinder {
         });
     }
 
+    /// Merges triangles t and u if edge i of t is edge j of u and the result is a valid face.
     void pair(std::uint32_t t, std::uint32_t i, std::uint32_t u, std::uint32_t j, bool longest_only) {
         if (!is_single(t) || !is_single(u)) return;
         if (corner(t, i) != corner(u, j + 1) || corner(t, i + 1) != corner(u, j)) return;
@@ -112,7 +115,7 @@ class PairFinder {
 
     const Scene& scene_;
     std::span<const std::uint32_t> triangles_;
-    std::vector<FaceVertices> faces_;  // by triangle; the first vertex is `none` after a merge into another triangle
+    std::vector<FaceVertices> faces_;  // one per triangle; vertex 0 is `none` after a merge into another triangle
 };
 
 }  // namespace

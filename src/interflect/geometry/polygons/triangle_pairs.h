@@ -21,11 +21,11 @@ struct TriangleEdge {
     std::uint32_t corner = 0;
 };
 
-/// Number of triangles considered at one edge. More meet only in meshes that are not surfaces.
+/// Number of triangles considered at one edge. More triangles meet only in meshes that are not surfaces.
 inline constexpr std::size_t max_triangles_at_edge = 8;
 
-/// Calls use(a, b), in order, for each pair of edges between the same vertices, of which b follows a within
-/// max_triangles_at_edge - 1 places.
+/// Calls use(a, b), in order, for each pair of edges between the same vertices. Pairs more than
+/// max_triangles_at_edge - 1 places apart are omitted.
 /// @param edges  The edges, sorted by `vertices`.
 template <class Use>
 void for_pairs_at_edges(std::span<const TriangleEdge> edges, const Use& use) {

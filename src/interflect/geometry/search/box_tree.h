@@ -19,12 +19,12 @@ struct Boxed {
 /// Arranges a bounding volume hierarchy in place: the root is in the middle, between its subtrees.
 inline void arrange_box_tree(std::span<Boxed> elements) {
     if (elements.empty()) return;
-    Imath::Box3f all, centres;  // doubled centres
+    Imath::Box3f all, doubled_centres;
     for (const Boxed& e : elements) {
         all.extendBy(e.box);
-        centres.extendBy(e.box.min + e.box.max);
+        doubled_centres.extendBy(e.box.min + e.box.max);
     }
-    const auto axis = static_cast<int>(centres.majorAxis());
+    const auto axis = static_cast<int>(doubled_centres.majorAxis());
     const std::size_t middle = elements.size() / 2;
     std::nth_element(elements.begin(), elements.begin() + static_cast<std::ptrdiff_t>(middle), elements.end(),
                      [axis](const Boxed& a, const Boxed& b) {

@@ -37,16 +37,17 @@ std::vector<std::array<PatchIndex, 2>> smooth_neighbours(const SmoothSurfaces& s
 /// Differences between the normal of each flat part of a surface and the normals of its smooth neighbours.
 class Bends {
   public:
-    Bends(const Scene& scene, std::span<const V3f> own, const SmoothSurfaces& surfaces) : parts_(own.size()) {
+    Bends(const Scene& scene, std::span<const V3f> face_normals, const SmoothSurfaces& surfaces)
+        : parts_(face_normals.size()) {
         const auto neighbours = smooth_neighbours(surfaces);
         for (const auto& [a, b] : neighbours)
-            if (own[a].dot(own[b]) >= cosine_of_flat) parts_.unite(a, b);
+            if (face_normals[a].dot(face_normals[b]) >= cosine_of_flat) parts_.unite(a, b);
         unite_pieces(scene);
         for (const auto& [a, b] : neighbours) {
             const std::uint32_t p = parts_.find(a), q = parts_.find(b);
             if (p == q) continue;
-            bends_.push_back({p, q, own[b] - own[a]});
-            bends_.push_back({q, p, own[a] - own[b]});
+            bends_.push_back({p, q, face_normals[b] - face_normals[a]});
+            bends_.push_back({q, p, face_normals[a] - face_normals[b]});
         }
         const auto key = [](const Bend& b) { return std::pair(b.part, b.neighbour); };
         std::stable_sort(bends_.begin(), bends_.end(), [&](const Bend& a, const Bend& b) { return key(a) < key(b); });
@@ -100,7 +101,7 @@ float corner_angle(const Scene& scene, const Patch& patch, int c) {
 CornerNormals::CornerNormals(const Scene& scene, const SmoothSurfaces& surfaces)
     : normals_(4 * scene.patches.size(), V3f(0)), is_replaced_(normals_.size(), false) {
     if (scene.normals.empty()) return;
-    const std::vector<V3f> own = patch_normals(scene);
+    const std::vector<V3f> face_normals = patch_normals(scene);
     const auto for_each_corner = [&](const auto& body) {
         for (PatchIndex p{0}; p < scene.patches.size(); ++p)
             for (int c = 0; c < scene.patches[p].vertex_count(); ++c) {
@@ -108,28 +109,29 @@ CornerNormals::CornerNormals(const Scene& scene, const SmoothSurfaces& surfaces)
                 body(corner, surfaces.corners.group[corner]);
             }
     };
+    // Average both kinds of normals over each group of joined corners
     std::vector<V3f> mean(surfaces.corners.count, V3f(0)), authored = mean;
     for_each_corner([&](CornerIndex corner, std::uint32_t group) {
         const Patch& patch = scene.patches[corner.patch()];
         const V3f n = scene.normals[patch.vertices[corner.corner()]];
-        normals_[corner] = n.dot(own[corner.patch()]) < 0 ? -n : n;
+        normals_[corner] = n.dot(face_normals[corner.patch()]) < 0 ? -n : n;
         authored[group] += normals_[corner];
-        mean[group] += own[corner.patch()] * corner_angle(scene, patch, static_cast<int>(corner.corner()));
+        mean[group] += face_normals[corner.patch()] * corner_angle(scene, patch, static_cast<int>(corner.corner()));
     });
     for (V3f& n : mean) n.normalize();
     for (V3f& n : authored) n.normalize();
 
-    Bends bends(scene, own, surfaces);
-    // Whether the normal in the file counts, by group.
-    std::vector<bool> counts(mean.size(), false);
+    // Accept the file's normals in groups where the deviation is small, and replace them in the others
+    Bends bends(scene, face_normals, surfaces);
+    std::vector<bool> is_accepted(mean.size(), false);
     for_each_corner([&](CornerIndex corner, std::uint32_t group) {
-        if (counts[group]) return;
+        if (is_accepted[group]) return;
         const V3f deviation = authored[group] - mean[group];
-        counts[group] = deviation.length() <= flat_deviation ||
-                        deviation.length2() <= bends.largest_along(corner.patch(), deviation);
+        is_accepted[group] = deviation.length() <= flat_deviation ||
+                             deviation.length2() <= bends.largest_along(corner.patch(), deviation);
     });
     for_each_corner([&](CornerIndex corner, std::uint32_t group) {
-        if (counts[group] || normals_[corner] == V3f(0)) return;
+        if (is_accepted[group] || normals_[corner] == V3f(0)) return;
         normals_[corner] = mean[group];
         is_replaced_[corner] = true;
     });
@@ -141,9 +143,10 @@ std::vector<PatchIndex> CornerNormals::contradicted_patches(const Scene& scene, 
     for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
         const Patch& patch = scene.patches[p];
         if (patch.other_side < p) continue;
-        const V3f own = PatchGeometry(scene, patch).normal();
+        const V3f face_normal = PatchGeometry(scene, patch).normal();
         for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(patch.vertex_count()); ++c)
-            if (is_replaced_[CornerIndex(p, c)] && std::abs(scene.normals[patch.vertices[c]].dot(own)) < cosine) {
+            if (is_replaced_[CornerIndex(p, c)] &&
+                std::abs(scene.normals[patch.vertices[c]].dot(face_normal)) < cosine) {
                 patches.push_back(p);
                 break;
             }

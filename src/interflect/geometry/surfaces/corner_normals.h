@@ -12,10 +12,10 @@ namespace interflect::detail {
 /// 0.2 degrees.
 inline constexpr float cosine_of_flat = 0.99996f;
 
-/// Normals with which the corners of patches are shaded. Scene::normals count where the surface bends as they do: they
-/// may deviate from the mean normal of the faces that join there by at most the bend of a face towards a smooth
-/// neighbour, in the direction of the deviation. Elsewhere, the mean counts. So a plane face without smooth neighbours
-/// has its own normal (docs/method/method.md, Curved surfaces).
+/// Normals with which the corners of patches are shaded. Normals of Scene::normals are used if their deviation from the
+/// mean normal of the faces that join there is at most the bend of a face towards a smooth neighbour, in the direction
+/// of the deviation. Otherwise, the mean is used. So a plane face without smooth neighbours has its own normal
+/// (docs/method/method.md, Curved surfaces).
 class CornerNormals {
   public:
     /// Costs O(n log n) for n patches. @param surfaces  Smooth surfaces of this scene.

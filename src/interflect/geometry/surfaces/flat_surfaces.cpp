@@ -105,13 +105,15 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
                std::abs(normal[a].dot(normal[b])) > same_plane_cosine;
     };
 
+    // Unite patches that continue across a common edge
     DisjointSets surfaces(count);
     const std::vector<Edge> edges = sorted_edges(scene);
     for (std::size_t i = 1; i < edges.size(); ++i)
         for (std::size_t j = i; j-- > 0 && i - j < max_faces_at_edge && edges[j].vertices == edges[i].vertices;)
             if (continues(edges[i].patch, edges[j].patch)) surfaces.unite(edges[i].patch, edges[j].patch);
 
-    std::unordered_map<std::uint32_t, std::uint32_t> first_patch;  // by Patch::surface
+    // Unite the pieces of cut surfaces, which have equal Patch::surface
+    std::unordered_map<std::uint32_t, std::uint32_t> first_patch;
     for (PatchIndex i{0}; i < count; ++i)
         if (!is_back(scene, i) && scene.patches[i].surface != none)
             surfaces.unite(first_patch.try_emplace(scene.patches[i].surface, i).first->second, i);
@@ -125,7 +127,7 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
 std::vector<std::uint32_t> rank_by_flat_surface(const Scene& scene) {
     const auto count = static_cast<std::uint32_t>(scene.patches.size());
     const std::vector<std::uint32_t> surface = flat_surfaces(scene);
-    std::vector<double> area(count, 0.0);  // by representative
+    std::vector<double> area(count, 0.0);  // area of each surface, indexed by representative [m^2]
     for (PatchIndex i{0}; i < count; ++i)
         if (!is_back(scene, i)) area[surface[i]] += static_cast<double>(patch_area(scene, scene.patches[i]));
 

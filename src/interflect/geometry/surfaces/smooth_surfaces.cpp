@@ -48,6 +48,7 @@ class VertexGrid {
         first_.reserve(positions_.size());
     }
 
+    /// Returns an earlier vertex at the position of vertex i; otherwise adds vertex i and returns it.
     std::uint32_t weld(std::uint32_t i) {
         const GridCell low = cell_of(positions_[i] - V3f(tolerance_)), high = cell_of(positions_[i] + V3f(tolerance_));
         for (std::int64_t x = low.x; x <= high.x; ++x)
@@ -97,7 +98,7 @@ std::vector<std::uint32_t> weld(const Scene& scene) {
 struct PatchEdge {
     std::uint32_t low, high;  // welded vertices, low < high
     CornerIndex start, end;
-    bool upwards;
+    bool upwards;  // whether the edge runs from `low` to `high`
 
     PatchIndex patch() const { return start.patch(); }
     friend bool operator<(const PatchEdge& a, const PatchEdge& b) {
@@ -185,6 +186,7 @@ struct LineInterval {
     double from, to;
 };
 
+/// Returns the parts of `whole` outside `covered` that are longer than `least` [m].
 std::vector<LineInterval> uncovered_parts(LineInterval whole, std::vector<LineInterval> covered, double least) {
     std::sort(covered.begin(), covered.end(),
               [](const LineInterval& a, const LineInterval& b) { return a.from < b.from; });
@@ -243,7 +245,7 @@ class SegmentTrees {
         for (std::vector<Boxed>& tree : trees_) arrange_box_tree(tree);
     }
     void visit(const V3f& a, const V3f& b, float margin, const auto& body) const {
-        constexpr float min_share = 0.25f;  // of the largest extent: rounding turns the shortest segments
+        constexpr float min_share = 0.25f;  // relative to the largest extent, because rounding turns short segments
         const V3f extent = box_around(a, b, 0).size();
         const float least = min_share * std::max({extent.x, extent.y, extent.z});
         const Imath::Box3f box = box_around(a, b, margin);
@@ -270,6 +272,7 @@ class ContactTree {
           trees_(scene.contacts.size(),
                  [&](std::uint32_t i) { return std::pair(scene.contacts[i].a, scene.contacts[i].b); }) {}
 
+    /// Returns the parts of the segment ab along which contacts run.
     std::vector<LineInterval> along(const V3f& a, const V3f& b) const {
         const StraightEdge edge(a, b);
         std::vector<LineInterval> found;
@@ -294,7 +297,7 @@ constexpr std::size_t edges_per_task = 256;
 
 class SeamFinder {
   public:
-    /// @param edges  Edges across which no whole patch continues.
+    /// @param edges  Edges that are not joined along their whole length.
     SeamFinder(const Scene& scene, std::vector<PatchEdge> edges, const ContactTree& contacts)
         : scene_(scene),
           edges_(std::move(edges)),
@@ -338,7 +341,7 @@ class SeamFinder {
                                             : !other.is_collinear(start(a), end(a), tolerance_))
             return;
         const double b_start = line.along(start(b)), b_end = line.along(end(b));
-        if (b_end >= b_start) return;
+        if (b_end >= b_start) return;  // edges of neighbours run in opposite directions
         const LineInterval shared{std::max(0.0, b_end), std::min(line.length(), b_start)};
         const double least = std::max(2.0 * tolerance_, min_seam_share * std::min(line.length(), other.length()));
         if (shared.to - shared.from <= least) return;
@@ -374,6 +377,8 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
     const CreaseTest creases(scene, options.crease_angle);
     const ContactTree contacts(scene);
     const std::vector<PatchEdge> edges = sorted_patch_edges(scene);
+
+    // Find edges of cut faces along which contacts run
     std::vector<std::uint8_t> has_contact(edges.size(), 0);
     parallel_for_ranges(edges.size(), edges_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -384,6 +389,8 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
             has_contact[i] = !contacts.along(from, to).empty();
         }
     });
+
+    // Join patches across common whole edges
     DisjointSets joined_corners(4 * scene.patches.size()), joined_edges(4 * scene.patches.size());
     std::vector<bool> is_joined(4 * scene.patches.size(), false);
     const auto join = [&](const PatchEdge& a, const PatchEdge& b) {
@@ -405,6 +412,7 @@ SmoothSurfaces find_smooth_surfaces(const Scene& scene, const SmoothingOptions& 
         first = last;
     }
 
+    // Join pieces of cut faces across common parts of the remaining edges
     std::vector<SmoothSurfaces::Seam> seams;
     if (std::any_of(scene.patches.begin(), scene.patches.end(), [](const Patch& p) { return p.surface != none; })) {
         std::vector<PatchEdge> open;

@@ -19,7 +19,7 @@ using namespace detail;
 
 namespace {
 
-/// Numbers of pieces along the first and the last edge, which are equal for a triangle.
+/// Numbers of pieces along the first and the last edge of a patch; equal for a triangle.
 struct Pieces {
     std::uint64_t u = 1, v = 1;
 };
@@ -61,6 +61,8 @@ void split_triangle(Pieces n, const Vertex& vertex, const AddPiece& add_piece) {
 Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_patches) {
     require_no_faults(scene_faults(scene), "cannot divide", scene);
     if (!(largest_edge > 0)) throw InputError(fmt::format("edges of {} m: expected more than 0", largest_edge));
+
+    // Count the pieces
     double count = 0;
     for (const Patch& patch : scene.patches) {
         const Pieces n = pieces_of(scene, patch, largest_edge);
@@ -72,6 +74,8 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
                                 largest_edge, count, max_patches),
             .setting = "max_patches",
             .file = scene.name});
+
+    // Split each face, and weld the vertices of adjacent pieces
     Scene split = scene;
     split.vertices.clear();
     split.texture_coordinates.clear();

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t texels_per_sum = 8;
 
-/// Limit of the texel lines that a border crosses; so many take 0.1 s.
+/// Limit of the texel lines that a border crosses; this number takes 0.1 s.
 constexpr double max_crossings = 1 << 20;
 
 /// Minimum height of a triangle [texels], which avoids a division by zero.
@@ -81,7 +81,7 @@ RgbD TextureIntegral::value_at(const V2d& x) const {
     return in_row(row) * (1 - t) + in_row(row + 1) * t;
 }
 
-/// Integrates F dy within a cell of texel centres.
+/// Integrates F dy within a cell between four texel centres.
 /// @param origin  Column where F is 0.
 RgbD TextureIntegral::integral_within_cell(const V2d& a, const V2d& b, std::int64_t origin) const {
     const V2d middle = (a + b) * 0.5;
@@ -102,11 +102,12 @@ RgbD TextureIntegral::integral_within_cell(const V2d& a, const V2d& b, std::int6
     return (antiderivative(a) + antiderivative(middle) * 4 + antiderivative(b)) * ((b.y - a.y) / 6);
 }
 
+/// Integrates F dy from a to b, cell by cell.
 RgbD TextureIntegral::integral_along(const V2d& a, const V2d& b, std::int64_t origin) const {
     RgbD sum(0, 0, 0);
     const V2d d = b - a;
     if (d.y == 0) return sum;
-    std::array<double, 2> line{}, at{};
+    std::array<double, 2> line{}, at{};  // per axis: the next texel line, and its parameter on ab from 0 to 1
     const auto position = [&](int axis) { return d[axis] == 0 ? 2 : (line[axis] - a[axis]) / d[axis]; };
     for (int axis = 0; axis < 2; ++axis) {
         line[axis] = d[axis] > 0 ? std::floor(a[axis]) + 1 : std::ceil(a[axis]) - 1;
@@ -125,6 +126,7 @@ RgbD TextureIntegral::integral_along(const V2d& a, const V2d& b, std::int64_t or
     return sum + integral_within_cell(from, b, origin);
 }
 
+/// Returns the mean over a triangle that extends over several cells.
 RgbD TextureIntegral::mean_of_wide(std::array<V2d, 3> x) const {
     double crossings = 0;
     for (std::size_t i = 0; i < 3; ++i) {

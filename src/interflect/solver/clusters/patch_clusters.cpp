@@ -15,14 +15,15 @@ namespace interflect::detail {
 
 namespace {
 
+/// Number of trees whose results are averaged.
 constexpr std::size_t trees = 4;
 
-using Place = std::array<float, 7>;  // position, normal, openness (0 in narrow gaps, 1 without an opposite surface)
-struct Placed {
-    Place place;
+using Features = std::array<float, 7>;  // position, normal, openness (0 in narrow gaps, 1 without an opposite surface)
+struct PatchFeatures {
+    Features features;
     PatchIndex patch;
 };
-using Range = std::span<Placed>;
+using Range = std::span<PatchFeatures>;
 
 V3f centre(const PatchGeometry& geometry) { return geometry.point(Cell().centre(geometry.is_triangle())); }
 
@@ -62,38 +63,40 @@ float distance_of_change(const ElementForest& forest, std::span<const float> dis
     return static_cast<float>(std::sqrt(area)) / 2;
 }
 
-std::vector<Placed> places(const ElementForest& forest, std::span<const PatchIndex> patches,
-                           std::span<const float> distances, float length, float turn) {
+/// Returns the features of the patches: positions relative to `length` [m], rotated with the normals by `turn` [rad].
+std::vector<PatchFeatures> features_of(const ElementForest& forest, std::span<const PatchIndex> patches,
+                                       std::span<const float> distances, float length, float turn) {
     constexpr float weight_of_openness = 2;  // equal to the distance between opposite unit normals
     Imath::M44f rotation;
     rotation.setAxisAngle(V3f(1, 1, 1).normalized(), turn);
-    std::vector<Placed> places;
-    places.reserve(patches.size());
+    std::vector<PatchFeatures> result;
+    result.reserve(patches.size());
     for (const PatchIndex p : patches) {
         V3f position, normal;
         rotation.multDirMatrix(centre(forest.geometry(p)) / length, position);
         rotation.multDirMatrix(forest.geometry(p).normal(), normal);
         const float openness = std::isfinite(distances[p]) ? distances[p] / (distances[p] + length) : 1;
-        places.push_back(
+        result.push_back(
             {{position.x, position.y, position.z, normal.x, normal.y, normal.z, weight_of_openness * openness}, p});
     }
-    return places;
+    return result;
 }
 
 /// Moves the patches that are below the median along the widest axis to the front.
 void halve(Range patches) {
-    Place low = patches.front().place, high = low;
-    for (const Placed& p : patches)
+    Features low = patches.front().features, high = low;
+    for (const PatchFeatures& p : patches)
         for (std::size_t i = 0; i < low.size(); ++i) {
-            low[i] = std::min(low[i], p.place[i]);
-            high[i] = std::max(high[i], p.place[i]);
+            low[i] = std::min(low[i], p.features[i]);
+            high[i] = std::max(high[i], p.features[i]);
         }
     std::size_t axis = 0;
     for (std::size_t i = 1; i < low.size(); ++i)
         if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
     std::nth_element(patches.begin(), patches.begin() + static_cast<std::ptrdiff_t>(patches.size() / 2), patches.end(),
-                     [&](const Placed& a, const Placed& b) {
-                         return a.place[axis] != b.place[axis] ? a.place[axis] < b.place[axis] : a.patch < b.patch;
+                     [&](const PatchFeatures& a, const PatchFeatures& b) {
+                         return a.features[axis] != b.features[axis] ? a.features[axis] < b.features[axis]
+                                                                     : a.patch < b.patch;
                      });
 }
 
@@ -109,8 +112,8 @@ void divide(Range patches, int halvings, std::vector<Range>& parts) {
 PatchClusters::PatchClusters(const ElementForest& forest, std::span<const PatchIndex> patches,
                              std::span<const float> distances, float length, float turn)
     : patch_count_(forest.patch_count()) {
-    std::vector<Placed> placed = places(forest, patches, distances, length, turn);
-    std::vector<Range> ranges{placed};  // patches of each node
+    std::vector<PatchFeatures> features = features_of(forest, patches, distances, length, turn);
+    std::vector<Range> ranges{features};  // patches of each node
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const Range range = ranges[i];
         if (range.size() == 1) {
@@ -120,7 +123,7 @@ PatchClusters::PatchClusters(const ElementForest& forest, std::span<const PatchI
         const std::size_t before = ranges.size();
         if (range.size() <= most_parts)
             for (std::size_t k = 0; k < range.size(); ++k) ranges.push_back(range.subspan(k, 1));
-        else
+        else  // into 4 or 8 children
             divide(range, range.size() < 2 * std::size_t{most_parts + 1} ? 2 : 3, ranges);
         nodes_.push_back(
             {static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(ranges.size() - before), no_patch});
@@ -128,8 +131,8 @@ PatchClusters::PatchClusters(const ElementForest& forest, std::span<const PatchI
 }
 
 std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const RayCaster& ray_caster) {
-    const std::vector<float> before_patches = distances(forest, ray_caster);
-    const float length = distance_of_change(forest, before_patches);
+    const std::vector<float> to_opposite = distances(forest, ray_caster);
+    const float length = distance_of_change(forest, to_opposite);
     std::vector<PatchIndex> patches;
     for (PatchIndex p{0}; p < forest.patch_count(); ++p)
         if (ray_caster.uncovered_share(p) > 0) patches.push_back(p);
@@ -137,7 +140,7 @@ std::vector<PatchClusters> cluster_patches(const ElementForest& forest, const Ra
     std::vector<std::vector<PatchClusters>> made(trees);
     parallel_for_ranges(trees, 1, [&](std::size_t tree, std::size_t) {
         const float turn = static_cast<float>(tree) / trees * 2 * std::numbers::pi_v<float> / 3;
-        made[tree].emplace_back(forest, patches, before_patches, length, turn);
+        made[tree].emplace_back(forest, patches, to_opposite, length, turn);
     });
     std::vector<PatchClusters> all;
     all.reserve(trees);

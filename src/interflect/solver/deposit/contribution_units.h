@@ -20,6 +20,7 @@ struct ContributionUnits {
     ContributionUnits(const PayloadTotals& all, double max_deposits)
         : power(channel_sum(all.power) * max_deposits), square(all.square * max_deposits), importance(all.importance) {}
 
+    /// Returns the contribution of a particle with this power, without importance.
     Contribution contribution_of(const RgbD& particle) const {
         Contribution contribution{};
         const FixedPoint::Value of_power = power.from(particle);

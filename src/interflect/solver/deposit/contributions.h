@@ -71,6 +71,7 @@ class ContributionSums {
         if (group_terms_ > 0) group_sums_.release(begin * group_terms_, end * group_terms_);
     }
 
+    /// The bins of a thread, and the payloads to which their deposits refer.
     class ScatterBuffer {
       public:
         explicit ScatterBuffer(ContributionSums& sums) : sums_(&sums) {}
@@ -94,6 +95,7 @@ class ContributionSums {
                                          terms != Terms::power};
             if (bin.count == bin.deposits.size()) flush(region);
         }
+        /// Call between tasks. Flushes all bins if many payloads are stored.
         void release_payloads() {
             if (contributions_.size() >= enough_payloads) flush_all();
         }
@@ -112,7 +114,7 @@ class ContributionSums {
         };
         struct Bin {
             std::size_t count = 0;
-            std::array<Deposit, 127> deposits;
+            std::array<Deposit, 127> deposits;  // a bin then fills 1 KiB
         };
         void flush(std::size_t region);
         void add_groups(const Bin& bin);

@@ -20,6 +20,7 @@
 
 namespace interflect::detail {
 
+/// Rays that left the scene, and their power [units of ContributionUnits::power].
 struct Escaped {
     FixedPoint::Value power{};
     std::int64_t rays = 0;
@@ -65,6 +66,7 @@ class Descent {
                  std::span<const Ray> rays, std::span<const Parameters> origins, std::span<const Hit> hits,
                  float transmitted = 1);
     void prefetch(const Hit& hit) const;
+    /// Completes the descent of all rays.
     void finish_task();
     void deposit_at(ElementIndex leaf, const Contribution& contribution, std::span<const std::int64_t> power_by_group) {
         buffer_.add(leaf, buffer_.add_payload(contribution, power_by_group), Terms::power);
@@ -80,7 +82,7 @@ class Descent {
     static constexpr std::size_t lanes = RayPairs::lanes;
     struct RayState {
         std::uint32_t payload;  // index of the payload in buffer_
-        PatchIndex patch;       // that the ray hits
+        PatchIndex patch;       // patch that the ray hits
         std::uint32_t source_in_task;
         Parameters start;
         Rgb reflectance{0, 0, 0};  // reflectance rho_i of the hit patch

@@ -20,8 +20,8 @@ struct ElementProxy {
 };
 
 /// Estimates an upper bound of the form factor from receiver to shooter: f cos_i cos_j, where f = A_j / (pi d^2 + A_j)
-/// is that of a disk of area A_j at the distance d. The cosines are at least 2 f, because some parts of close elements
-/// face each other more directly than their centres do.
+/// is the form factor of a disk of area A_j at the distance d. The cosines are at least 2 f, because some parts of
+/// close elements face each other more directly than their centres do.
 inline float form_factor_estimate(const ElementProxy& shooter, const ElementProxy& receiver) {
     // No branches, so that compilers generate vector code.
     const auto smaller = [](float x, float y) { return x < y ? x : y; };

@@ -34,8 +34,8 @@ struct alignas(64) RayPairs {
     Vectors normal;
     Floats area, importance;  // area [m^2] and importance psi_i of the element
     // The shooter, which is the current element around the origin of the ray:
-    Numbers shooter,
-        lowest_shooter;  // indices in SourcePaths of the element and of its smallest descendant on the path
+    Numbers shooter;         // index of the element in SourcePaths
+    Numbers lowest_shooter;  // index of the smallest element on the path
     Vectors shooter_centre, shooter_normal;
     Floats shooter_area, shooter_least_cosine;
     Floats reflected;        // largest channel of rho_i B_j

@@ -30,7 +30,7 @@ SourcePaths::Path SourcePaths::append_leaf(ElementIndex leaf) {
 
 /// Represents the part by a small disk that causes the same irradiance at the receiver.
 SourcePaths::Path SourcePaths::append_part(std::uint32_t part, const Ray& ray, const Hit& hit) {
-    constexpr float share_of_view = 1e-6f;  // so small that the disk is never the larger end of a pair
+    constexpr float share_of_view = 1e-6f;  // small, so that the disk is never the larger end of a pair
     constexpr float tiny = std::numeric_limits<float>::min();
     const Emission::Proxy proxy = step_.emission->proxy(part, ray, hit.distance);
     const float squared = hit.distance * hit.distance;
@@ -56,7 +56,7 @@ bool SourcePaths::subdivide(RayPairs& pairs, std::size_t i, const Parameters& st
     shooter.area = forest_.area(shooter.element);
     sources_.push_back(shooter);
     pairs.lowest_shooter[i] = static_cast<std::uint32_t>(sources_.size() - 1);
-    take(pairs, i, pairs.lowest_shooter[i], reflectance);
+    set_shooter(pairs, i, pairs.lowest_shooter[i], reflectance);
     return true;
 }
 

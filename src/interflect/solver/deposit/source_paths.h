@@ -31,7 +31,7 @@ class SourcePaths {
         pairs.lowest_shooter[i] = path.last;
         pairs.shooter_normal.set(i, sources_[path.first].normal);
         pairs.shooter_least_cosine[i] = sources_[path.first].min_cosine;
-        take(pairs, i, path.first, reflectance);
+        set_shooter(pairs, i, path.first, reflectance);
     }
 
     static bool shooter_is_too_large(const RayPairs& pairs, std::size_t i) {
@@ -44,7 +44,7 @@ class SourcePaths {
     void choose_shooter(RayPairs& pairs, std::size_t i, const Rgb& reflectance) const {
         std::uint32_t number = pairs.shooter[i] + 1;
         while (number < pairs.lowest_shooter[i] && sources_[number].area > pairs.area[i]) ++number;
-        take(pairs, i, number, reflectance);
+        set_shooter(pairs, i, number, reflectance);
     }
 
     /// Divides the lowest shooter and continues at its child. Returns false if it is indivisible.
@@ -60,7 +60,8 @@ class SourcePaths {
         Rgb radiosity{0, 0, 0};
     };
 
-    void take(RayPairs& pairs, std::size_t i, std::uint32_t number, const Rgb& reflectance) const {
+    /// Sets the shooter of lane i to sources_[number].
+    void set_shooter(RayPairs& pairs, std::size_t i, std::uint32_t number, const Rgb& reflectance) const {
         const Shooter& shooter = sources_[number];
         pairs.shooter[i] = number;
         pairs.shooter_centre.set(i, shooter.centre);

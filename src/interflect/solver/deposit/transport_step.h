@@ -11,14 +11,15 @@
 
 namespace interflect::detail {
 
+/// Rays of a step, and the treatment of their hits.
 struct TransportStep : RayPlan {
     explicit TransportStep(RayPlan plan = {}) : RayPlan(std::move(plan)) {}
 
-    Radiosity oracle_light;  ///< Light with which the oracle decides; empty: that of the rays, `light`.
+    Radiosity oracle_light;  ///< Radiosity that the oracle uses; empty: `light`.
     const Radiosity& light_for_oracle() const { return oracle_light.empty() ? light : oracle_light; }
     bool importance_at_patches = false;
     Oracle oracle;
-    bool completes_by_walks = false;
+    bool completes_by_walks = false;  ///< Whether random walks reflect the rays further (Walks).
     /// Per element: 1 if its reflected rays start at hit points (StartPoints), else 0. May be empty.
     std::span<const std::uint8_t> reflecting_where_received;
     bool reflects_where_received(ElementIndex leaf) const {

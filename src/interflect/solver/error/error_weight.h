@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Where errors are measured: in pictures of the views, or on all surfaces.
+/// Domain over which errors are averaged: pictures of the views, or all surfaces.
 enum class ErrorMeasure { pictures, surfaces };
 /// Returns `pictures` if a view shows a surface, else `surfaces`.
 ErrorMeasure default_measure(const LightState& light);

@@ -17,6 +17,7 @@ namespace interflect::detail {
 
 namespace {
 
+/// Limits direct light to the range from zero to the total light.
 void limit_direct(const Solution& solution, GroupLight& direct) {
     for (std::size_t g = 0; g < direct.size(); ++g) {
         const std::vector<Rgb>& all = solution.groups.empty() ? solution.irradiance : solution.groups[g];
@@ -48,7 +49,7 @@ void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, st
             ClusterShrinkage(state.light, clusters, unreduced).means(state.sampling.view.rays());
         for (std::size_t p = 0; p < means.size(); ++p) means[p] += weight * of_tree[p];
     }
-    for (std::uint32_t i = forest.size(); i-- > 0;) {  // patches last
+    for (std::uint32_t i = forest.size(); i-- > 0;) {  // patches last, because their elements need the old means
         const ElementIndex e(i);
         const PatchIndex patch = forest.patch(e);
         for (int c = 0; c < 3; ++c)
@@ -61,17 +62,21 @@ void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, st
 void finish_solution(SolverState& state) {
     const ElementForest& forest = *state.light.forest;
     Solution& solution = state.light.solution;
+
+    // Compute the errors and the numbers of rays of the elements
     const ElementErrors errors = element_errors(state.inputs, state.light, ErrorMeasure::surfaces);
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
     for (ElementIndex e{0}; e < forest.size(); ++e) {
-        const float within = std::max(0.0f, signal_among_siblings(state.light, e)) /
-                             3;  // finer levels add 1/4 + 1/16 + ... = 1/3 of the signal
+        // Finer levels add 1/4 + 1/16 + ... = 1/3 of the signal.
+        const float within = std::max(0.0f, signal_among_siblings(state.light, e)) / 3;
         solution.standard_error[e] = std::sqrt(errors.noise[e]);
         solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
     }
     state.sampling.streams.used.resize(forest.size(), 0);
     solution.rays.assign(state.sampling.streams.used.begin(), state.sampling.streams.used.end());
+
+    // Shrink the differences of siblings, from the patches down to the leaves
     std::vector<Rgb> reduced = solution.irradiance;
     GroupLight reduced_groups = solution.groups, reduced_direct = solution.direct;
     forest.for_siblings_from_roots([&](ElementIndex first) {
@@ -109,11 +114,15 @@ void finish_solution(SolverState& state) {
         reduce(solution.groups, reduced_groups);
         reduce(solution.direct, reduced_direct);
     });
+
+    // Shrink the differences of patches
     reduce_patches(state, solution.irradiance, reduced);
     for (std::size_t g = 0; g < reduced_groups.size(); ++g)
         reduce_patches(state, solution.groups[g], reduced_groups[g]);
     for (std::size_t g = 0; g < reduced_direct.size(); ++g)
         reduce_patches(state, solution.direct[g], reduced_direct[g]);
+
+    // Make light groups and direct light consistent with the total
     solution.irradiance = std::move(reduced);
     for (std::size_t g = 0; g < reduced_groups.size(); ++g)
         if (solution.dimming[g] == 0) reduced_groups[g].assign(forest.size(), Rgb(0));

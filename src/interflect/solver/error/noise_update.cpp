@@ -35,6 +35,7 @@ double measured_signal(const LightState& light, const Estimate& fresh, ElementIn
     return product / area;
 }
 
+/// Compares the predicted errors after shrinkage with errors measured by the new estimate.
 RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
     const ElementForest& forest = *state.light.forest;
     const std::uint32_t roots = forest.patch_count();
@@ -44,11 +45,15 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
         const ElementIndex parent = forest.parent(first);
         const double w = error_weight(state.inputs, state.light, measure, parent) * forest.area(parent);
         if (!variation.is_known() || !(w > 0)) return;
+
+        // Compare the squared errors of the four siblings
         const double signal = measured_signal(state.light, fresh, first), k = variation.shrinkage();
         const double shown = shown_of_siblings(state.inputs, state.light, measure, first);
         const AddedError expected = added_error(state.light, first, variation);
         sum.measured += w * shown * (k * k * variation.spread + (1 - 2 * k) * signal);
         sum.expected += w * shown * static_cast<double>(expected.noise + expected.bias);
+
+        // Sum the signals of leaves, from which those of finer levels are extrapolated
         const double of_parent =
             parent < roots ? 0 : measured_signal(state.light, fresh, first_sibling(forest, parent));
         for (ElementIndex e = first; e < first + 4; ++e) {

@@ -27,9 +27,8 @@ Extents extents_in_pixels(const RunInputs& inputs, const LightState& light, Elem
     const ElementForest& forest = *light.forest;
     const PatchGeometry::Shape& shape = forest.geometry(forest.patch(element)).shape();
     const float u2 = shape.edge_u.length2(), v2 = shape.edge_v.length2();
-    const float across =
-        shape.edge_u.cross(shape.edge_v).length();  // length of the longer edge times the extent across it
-    const float aspect = !(across > 0) ? 1 : u2 > v2 ? u2 / across : across / v2;
+    const float area = shape.edge_u.cross(shape.edge_v).length();  // longer edge times the extent across it [m^2]
+    const float aspect = !(area > 0) ? 1 : u2 > v2 ? u2 / area : area / v2;
     const float pixels = forest.area(element) / pixel_area(inputs, light, element);
     return {std::sqrt(pixels * aspect), std::sqrt(pixels / aspect)};
 }

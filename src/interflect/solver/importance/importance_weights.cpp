@@ -33,34 +33,36 @@ std::vector<BoxImportance> importance_of_boxes(const Emission& emission, const s
         power[emission.box(i)] += channel_sum(emission.power(i));
     }
     if (boxes.size() == 1) return boxes;
-    double first = 0, second = 0;
+    double first_moment = 0, second_moment = 0;
     for (std::size_t b = 0; b < boxes.size(); ++b) {
-        first += power[b] * boxes[b].mean();
-        second += power[b] * boxes[b].mean() * boxes[b].mean();
+        first_moment += power[b] * boxes[b].mean();
+        second_moment += power[b] * boxes[b].mean() * boxes[b].mean();
     }
-    if (!(second > 0)) return boxes;
+    if (!(second_moment > 0)) return boxes;
     for (BoxImportance& box : boxes)
-        box.factor = std::pow(static_cast<float>(box.mean() * first / second), 1 - exponent);
+        box.factor = std::pow(static_cast<float>(box.mean() * first_moment / second_moment), 1 - exponent);
     return boxes;
 }
 
+/// Sets the weights of luminaire parts. The mean of its emitter supplements a part with few rays, and the mean of its
+/// box an emitter with few rays.
 void weigh_parts(const Emission& emission, const std::vector<PartImportance>& found, float exponent,
                  ImportanceWeights& weights) {
-    constexpr std::size_t alike = Emission::parts_per_emitter;
-    constexpr double rays_of_mean = 8;
+    constexpr std::size_t group_size = Emission::parts_per_emitter;
+    constexpr double rays_of_mean = 8;  // number of rays that such a mean is worth
     const std::vector<BoxImportance> boxes = importance_of_boxes(emission, found, exponent);
     if (std::none_of(boxes.begin(), boxes.end(), [](const BoxImportance& box) { return box.all.rays > 0; })) return;
     weights.parts.resize(found.size());
     weights.parts_nearby.resize(found.size());
-    for (std::size_t begin = 0; begin < found.size(); begin += alike) {
+    for (std::size_t begin = 0; begin < found.size(); begin += group_size) {
         const BoxImportance& box = boxes[emission.box(begin)];
         PartImportance group{rays_of_mean * box.mean(), rays_of_mean};
-        for (std::size_t i = begin; i < begin + alike; ++i) {
+        for (std::size_t i = begin; i < begin + group_size; ++i) {
             group.found += found[i].found;
             group.rays += found[i].rays;
         }
         const double mean = group.found / group.rays;
-        for (std::size_t i = begin; i < begin + alike; ++i) {
+        for (std::size_t i = begin; i < begin + group_size; ++i) {
             const double own = (found[i].found + rays_of_mean * mean) / (found[i].rays + rays_of_mean);
             weights.parts[i] = box.factor * std::pow(static_cast<float>(own), exponent);
             weights.parts_nearby[i] = box.factor * std::pow(static_cast<float>(mean), exponent);

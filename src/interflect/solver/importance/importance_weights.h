@@ -30,7 +30,7 @@ struct ImportanceWeights {
     std::vector<float> nearby;               ///< Smoothed over the neighbourhood of each patch.
     std::vector<float> parts, parts_nearby;  ///< For each luminaire part, and smoothed over similar parts.
 };
-/// @param found  Importance found by each luminaire part.
+/// Computes the weights; empty without importance. @param found  Importance found by each luminaire part.
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 

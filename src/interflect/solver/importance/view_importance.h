@@ -33,7 +33,7 @@ class ViewImportance {
     /// @param at_patches  Whether V is spread evenly over each patch.
     std::vector<float> per_area(const ElementForest& forest, bool at_patches);
 
-    /// Call before elements from `size` on are removed.
+    /// Resets lookups that refer to elements from `size` on. Call before these elements are removed.
     void shrink(std::uint32_t size);
 
     void archive(StateArchive& archive);
@@ -54,8 +54,8 @@ class ViewImportance {
     std::uint64_t seed_;
     std::uint64_t rounds_ = 0;
     std::int64_t rays_ = 0;
-    double total_weight_ = 0,
-           hit_weight_ = 0;  // sum of the weights of all camera rays, and of those that hit a surface
+    double total_weight_ = 0;  // sum of the weights of all camera rays
+    double hit_weight_ = 0;    // sum of the weights of camera rays that hit a surface
     std::vector<Point> points_;
 };
 

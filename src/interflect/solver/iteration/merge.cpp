@@ -39,7 +39,7 @@ template <class T>
 void merge_into(const LightState& light, std::vector<T>& mean, const std::vector<T>& received,
                 const TracedIteration& iteration, const Earlier& earlier = {}) {
     const ElementForest& forest = *light.forest;
-    const auto rays = static_cast<float>(iteration.weight);
+    const auto rays = static_cast<float>(iteration.weight);  // number N of Eq. 6
     const auto merge_one = [&](ElementIndex e) {
         const float tau = iteration.plan.warms_up ? 1.0f : rays / (earlier.rays(light.history[e]) + rays);
         mean[e] += tau * (received[e] - mean[e]);

@@ -19,8 +19,9 @@ namespace interflect::detail {
 namespace {
 
 constexpr std::size_t rays_per_task = 1024;
-constexpr std::uint64_t aiming_stream = 0x61696d;
+constexpr std::uint64_t aiming_stream = 0x61696d;  // "aim" in ASCII
 
+/// Finds lines from important surfaces to skies and suns.
 struct LineFinder {
     const SolverState& state;
     const RayPlan& plan;
@@ -47,6 +48,8 @@ struct LineFinder {
     std::vector<OutdoorLine> find(std::size_t begin, std::size_t end) const {
         RayBatch batch;
         maker.make(static_cast<std::int64_t>(begin), static_cast<std::int64_t>(end), batch);
+
+        // Look up the importance and the normal at the origin of each ray
         std::vector<double> importance(batch.rays.size());
         std::vector<V3f> normals(batch.rays.size());
         for (const SourceRays& source : batch.sources)
@@ -63,6 +66,7 @@ struct LineFinder {
             for (const double i : importance) importance_per_radiance.push_back(i * std::numbers::pi);
             keep_escaping(batch.rays, importance_per_radiance, none, lines);
         }
+        // Rays towards the suns start at the same points
         for (std::uint32_t sun = 0; sun < state.inputs.emission.sun_count(); ++sun) {
             std::vector<Ray> rays;
             std::vector<double> importance_per_irradiance;
@@ -177,14 +181,19 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
     constexpr double share_of_rest = 0.05;      // minimum weight of the remaining lines for another chain
     constexpr double worthwhile_share = 0.4;    // minimum weight in a half; evenly spread lines have 0.25
     constexpr float widest_target = 1.0f / 16;  // relative to the diagonal; the scene's box suffices for wider targets
+
+    // Select lines at regular intervals
     std::vector<WeightedLine> rest;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / max_lines);
     for (std::size_t i = 0; i < lines.size(); i += stride)
         if (weights[i] > 0) rest.push_back({lines[i].light, weights[i]});
     const double all = weight_of(rest);
+
+    // Find chains of nested boxes; each chain serves lines that miss the smallest boxes of earlier chains
     std::vector<Imath::Box3f> targets;
     for (int chain = 0; chain < max_chains && rest.size() >= fewest_lines && weight_of(rest) > share_of_rest * all;
          ++chain) {
+        // Start at the last target that most of these lines cross, else at the scene's box
         Imath::Box3f box = scene_box;
         std::vector<WeightedLine> inside = rest;
         for (const Imath::Box3f& target : targets) {
@@ -194,6 +203,7 @@ std::vector<Imath::Box3f> find_targets(const std::vector<OutdoorLine>& lines, co
                 inside = std::move(in_target);
             }
         }
+        // Halve the box repeatedly, up to the last half with a large share of the lines
         std::vector<Imath::Box3f> halves;
         std::size_t worthwhile = 0;
         for (int level = 0; level < max_targets / max_chains && inside.size() >= fewest_lines; ++level) {
@@ -238,7 +248,7 @@ std::vector<double> weights_of(const Emission& emission, const std::vector<Outdo
 /// Returns the importance of each part, which is light per power. A mean line in each box is added, so that the
 /// importance of every part is positive.
 std::vector<PartImportance> importance_of_parts(const Emission& emission, const std::vector<OutdoorLine>& lines) {
-    constexpr double rays_of_lines = 8;  // number of rays that this prior knowledge is worth
+    constexpr double rays_of_lines = 8;  // number of rays per part that the lines count as
     std::vector<double> weights(emission.part_count(), 0.0), power_of_box(emission.box_count(), 0.0);
     double all = 0;
     for (const OutdoorLine& line : lines)

@@ -47,7 +47,7 @@ void append_report(SolverState& state, int iteration) {
     r.error_estimate = error.total();
     r.noise_estimate = error.noise;
     r.discretisation_estimate = error.discretisation;
-    constexpr double share_with_more = 0.001;
+    constexpr double share_with_more = 0.001;  // share of the rays with a higher payload
     r.largest_payload = state.sampling.payloads.largest_over_mean();
     r.high_payload = state.sampling.payloads.quantile_over_mean(share_with_more);
     r.discarded_hits = state.light.discarded_hits;

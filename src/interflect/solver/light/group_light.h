@@ -27,11 +27,12 @@ void scale(GroupLight& light, float factor);
 /// Returns the sum over the groups. @param dimming  Solution::dimming; groups with factor 0 are excluded.
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
 
+/// Radiosity by light group, computed on demand.
 struct GroupRadiosity {
     const SourceGroups* groups = nullptr;  ///< Null if the light of groups is not separated.
     const GroupLight* irradiance = nullptr;
     const std::vector<float>* dimming = nullptr;
-    bool emits = true;
+    bool emits = true;  ///< If false, B = rho H.
 
     std::size_t size() const { return groups ? groups->size() : 0; }
     /// Returns the radiosity B of a leaf that one group causes [lm/m^2 or W/m^2].

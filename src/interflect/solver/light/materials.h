@@ -16,7 +16,7 @@ namespace interflect::detail {
 /// exitance of partly covered emitters is multiplied by their uncovered share (RayCaster).
 class Materials {
   public:
-    /// Ignores coincident faces.
+    /// Uses the full exitance of covered emitters.
     explicit Materials(const Scene& scene) : Materials(scene, std::vector<float>()) {}
     Materials(const Scene& scene, const RayCaster& ray_caster);
 

@@ -17,6 +17,7 @@ struct MeanSurface {
     Rgb transmittance{0, 0, 0};
 };
 
+/// Mean materials of the elements of textured patches.
 class TexturedElements {
   public:
     /// @param exitance_share  Factor of the exitance of each patch; empty: 1.

@@ -16,7 +16,8 @@ constexpr double min_share_left = 0.05;
 constexpr std::int64_t fewest_walks = 32;
 /// Value of total_unshot() before the first pass has measured it.
 constexpr double assumed_bounces = 2;
-/// Expected ratio of the unshot power of successive bounces: after the first bounce; after an increase; at most.
+/// Expected ratio of the unshot power of successive bounces: after the first bounce, after an increase, and the
+/// maximum.
 constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, highest_decay = 0.99;
 
 }  // namespace

@@ -7,7 +7,7 @@ namespace interflect::detail {
 /// Number of rays of a bounce.
 struct BounceRays {
     std::int64_t started = 0;
-    std::int64_t expected = 0;  ///< Number of rays with the expected later rays of random walks.
+    std::int64_t expected = 0;  ///< Number of rays, including the expected later rays of random walks.
 };
 
 /// Distributes the rays of a pass over its bounces.

@@ -24,20 +24,20 @@ void transport_importance(SolverState& state, std::int64_t rays) {
     std::vector<float> unshot = solution.view_importance;
     BounceBudget budget(rays, 0);
     const std::int64_t rays_before = state.rays.importance;
-    double left = 1,
-           decay = 0;  // importance received in the last bounce, initially all of V; its ratio to the bounce before
-    while (left > negligible_importance && !budget.has_planned_last_bounce()) {
+    double unshot_sum = 1;  // importance received in the last bounce; initially all of V
+    double decay = 0;       // ratio of unshot_sum to its value in the bounce before
+    while (unshot_sum > negligible_importance && !budget.has_planned_last_bounce()) {
         TransportStep step(plan_importance(state.inputs.materials, solution, Importance(unshot),
-                                           std::max<std::int64_t>(1, budget.next(left).expected)));
+                                           std::max<std::int64_t>(1, budget.next(unshot_sum).expected)));
         state.rays.importance += step.rays;
         unshot = run_step(state, std::move(step)).importance;
-        const double before = std::exchange(left, 0);
+        const double before = std::exchange(unshot_sum, 0);
         for (ElementIndex e{0}; e < state.light.forest->size(); ++e) {
             solution.indirect_importance[e] += unshot[e];
             if (e < state.light.forest->patch_count())
-                left += static_cast<double>(unshot[e]) * state.light.forest->area(e);
+                unshot_sum += static_cast<double>(unshot[e]) * state.light.forest->area(e);
         }
-        decay = std::min(most_received_again, left / before);
+        decay = std::min(most_received_again, unshot_sum / before);
     }
     // Estimate the untraced bounces as a geometric series with the distribution of the last bounce.
     const auto rest = static_cast<float>(decay / (1 - decay));

@@ -22,7 +22,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// One ray for importance, one for each of the two passes of prepare(), and one for an iteration.
+/// Minimum for a preparation: a ray for importance, one for each of the two passes of prepare(), one for an iteration.
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
 /// Returns beta p + (1 - beta) w, where p is the unshot power and w the importance-weighted unshot power, both relative
@@ -82,7 +82,7 @@ void Passes::prepare(SolverState& state) {
     if (state.light.options().limits.rays < fewest_rays_with_preparation) return;
     const bool uses_importance = importance_use(state.light.solution) == ImportanceUse::full;
     // With importance, the passes share an eighth of all rays. Without importance, each pass gets an eighth, because
-    // runs of 20,000 rays need that many for the initial mesh.
+    // runs of 20,000 rays need this number for the initial mesh.
     const std::int64_t passes = !uses_importance ? 1 : state.light.options().method.refines ? 3 : 1;
     const std::int64_t rays = state.rays.schedule.start_rays(passes);
     total_unshot_ = 0;

@@ -13,7 +13,7 @@ namespace interflect::detail {
 /// estimates on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
-    /// Estimates importance and makes the initial mesh by two passes (Eq. 14, 15), not averaged.
+    /// Estimates importance and makes the initial mesh by two passes (Eq. 14, 15), whose light is not averaged.
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, TracedIteration& iteration) override;
     Estimate trace(SolverState& state, TracedIteration& iteration) override;

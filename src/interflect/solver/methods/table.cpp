@@ -31,7 +31,7 @@ using namespace detail;
 namespace {
 
 constexpr const char* equal_power = "it keeps every ray, which needs rays of equal power";
-// A ray takes 17 bytes, three times while the arrays grow, and some rays have crossed panes.
+// Memory of a ray: 17 bytes, up to three times while the arrays grow, and more for rays that have crossed panes.
 constexpr std::size_t bytes_of_kept_ray = 60;
 constexpr const char* counted_particles = "it counts particles, which need equal power";
 constexpr const char* uniform_lines = "its lines are spread evenly, whatever they meet";

@@ -91,12 +91,12 @@ std::vector<float> ViewChange::history_factor(const SolverState& state,
         of_new_views.before += noise_of_lines(old_emission, old_.part_q, outdoor_light);
         of_new_views.now += noise_of_lines(state.inputs.emission, now.part_q, outdoor_light);
     }
-    const float here = of_new_views.ratio();
-    const float there = noise_of_leaves(state.inputs, state.light, old_importance_, old_q, now.q).ratio();
+    const float new_views_ratio = of_new_views.ratio();
+    const float old_views_ratio = noise_of_leaves(state.inputs, state.light, old_importance_, old_q, now.q).ratio();
     std::vector<float> ratio(state.light.forest->patch_count());
     for (std::uint32_t i = 0; i < ratio.size(); ++i) {
         const float both = new_psi[i] + old_importance_[i], share = both > 0 ? new_psi[i] / both : 0.5f;
-        ratio[i] = std::exp(share * std::log(here) + (1 - share) * std::log(there));
+        ratio[i] = std::exp(share * std::log(new_views_ratio) + (1 - share) * std::log(old_views_ratio));
     }
     return ratio;
 }

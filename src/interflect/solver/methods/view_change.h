@@ -11,8 +11,8 @@
 
 namespace interflect::detail {
 
-/// Converts the history after a change of views: to the number of rays that would give the same noise with the new
-/// views.
+/// Converts the history after a change of views to the number of rays that would give the same noise with the sampling
+/// for the new views.
 class ViewChange {
   public:
     bool empty() const { return old_.q.empty(); }

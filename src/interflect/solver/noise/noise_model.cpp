@@ -11,7 +11,10 @@ namespace {
 
 /// Factor by which the weight of earlier spreads decreases in each iteration, because mesh and sampling change.
 constexpr double spread_decay = 0.75;
+
+/// Limit of a factor of the noise, and of its inverse.
 constexpr double largest_scale = 100;
+
 /// Number of contributions at which the measured shares have weight 1/2.
 constexpr float contributions_of_half_weight = 16;
 
@@ -50,6 +53,7 @@ std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<c
 
 void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
                      std::span<const float> history, float rays, const std::function<double(ElementIndex)>& weight) {
+    // Compare the differences between the iteration and the mean with the noise of independent rays
     const Spread spread =
         parallel_sum(forest.size(), elements_per_task, Spread(), [&](std::size_t begin, std::size_t end) {
             Spread sum;
@@ -69,6 +73,8 @@ void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::sp
             }
             return sum;
         });
+
+    // Average the variance per ray
     parallel_for_ranges(forest.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t e = begin; e < end; ++e) {
             const float share = iterations_ == 0 ? 1 : rays / (rays + std::max(history[e], rays));
@@ -77,6 +83,8 @@ void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::sp
     });
     ++iterations_;
     if (!is_known()) return;
+
+    // Update the factor of each class of hit rates
     for (std::size_t n = 0; n < hit_rate_classes; ++n) {
         spread_.observed[n] = spread_decay * spread_.observed[n] + spread.observed[n];
         spread_.independent[n] = spread_decay * spread_.independent[n] + spread.independent[n];

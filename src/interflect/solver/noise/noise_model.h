@@ -20,8 +20,8 @@ class NoiseModel {
   public:
     explicit NoiseModel(std::size_t elements) : per_ray_(elements, 0.0f) { scale_.fill(1); }
 
-    /// Returns the luminance variance of a mean over `rays` rays: of a root, or of another element's difference from
-    /// its parent.
+    /// Returns the luminance variance after `rays` rays: of the mean of a root, or of the difference of another element
+    /// from its parent.
     float variance(const ElementForest& forest, std::span<const Rgb> mean, ElementIndex e, float rays) const {
         return scale_[hit_rate_class(forest, mean, e)] * independent_variance(forest, e) / rays;
     }
@@ -69,6 +69,8 @@ class NoiseModel {
 
   private:
     static constexpr std::size_t hit_rate_classes = 48;
+
+    /// Squared differences between iterations by class: observed, and expected for independent rays.
     struct Spread {
         std::array<double, hit_rate_classes> observed{}, independent{};
         Spread& operator+=(const Spread& other);

@@ -30,7 +30,7 @@ struct RiskCheck {
         for (const double level : within) sum += level;
         return std::isfinite(sum);
     }
-    /// Returns the correction factor of predicted squared errors; 1 without data.
+    /// Returns the correction factor of predicted squared errors, from 0.1 to 10; 1 without data.
     double factor() const { return expected > 0 ? std::clamp(measured / expected, 0.1, 10.0) : 1; }
 
   private:

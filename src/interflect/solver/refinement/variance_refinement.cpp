@@ -53,7 +53,7 @@ class VarianceOracle {
         max_misplaced_power_ = tolerable_misplacement * reference;
     }
 
-    /// Returns the least reduction of the squared error by a split [weight times irradiance^2].
+    /// Returns the minimum reduction of the squared error for which a leaf is split [weight times irradiance^2].
     double min_gain() const {
         const double error = estimate_error(state_, measure_).total();
         return std::isfinite(error) ? negligible_gain * error * error * weighted_mean_square() : 0;
@@ -81,6 +81,7 @@ class VarianceOracle {
     struct Expected {
         float signal, noise;
     };
+    /// Children have four times the variance of their parent, of which 3/4 remain in the differences from it.
     Expected expected_children(ElementIndex leaf) const {
         if (leaf < forest_.patch_count()) {
             const float h = luminance(state_.light.solution.irradiance[leaf]);
@@ -133,11 +134,11 @@ class VarianceOracle {
 std::vector<std::uint8_t> leaves_reflecting_where_received(const SolverState& state) {
     if (!refines_by_variance(state.light.options())) return {};
     const VarianceOracle oracle(state);
-    std::vector<std::uint8_t> blurs(state.light.forest->size(), 0);
-    parallel_for_ranges(blurs.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (ElementIndex e(begin); e < end; ++e) blurs[e] = state.light.forest->is_leaf(e) && oracle.may_misplace(e);
+    std::vector<std::uint8_t> marks(state.light.forest->size(), 0);
+    parallel_for_ranges(marks.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
+        for (ElementIndex e(begin); e < end; ++e) marks[e] = state.light.forest->is_leaf(e) && oracle.may_misplace(e);
     });
-    return blurs;
+    return marks;
 }
 
 void refine_by_variance(SolverState& state) {

@@ -14,14 +14,14 @@ namespace {
 
 struct WeightSums {
     double power = 0, weighted_power = 0, power_nearby = 0, importance = 0;
-    std::int64_t lost = 0;
+    std::int64_t non_finite = 0;
 
     WeightSums& operator+=(const WeightSums& other) {
         power += other.power;
         weighted_power += other.weighted_power;
         power_nearby += other.power_nearby;
         importance += other.importance;
-        lost += other.lost;
+        non_finite += other.non_finite;
         return *this;
     }
 };
@@ -44,7 +44,7 @@ WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, 
             }
             if (!by_power) continue;
             const double power = s.power(e);
-            sums.lost += power == 0 && s.light.is_not_finite(s.forest, e);
+            sums.non_finite += power == 0 && s.light.is_not_finite(s.forest, e);
             sums.power += power;
             if (shares.weighted_power > 0) sums.weighted_power += power * s.importance_weight[e];
             if (shares.power_nearby > 0) sums.power_nearby += power * s.nearby[s.forest.patch(e)];
@@ -88,13 +88,13 @@ Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     });
     for (std::size_t i = 0; i < sampled.part_count(); ++i) {
         double by_power = for_power;
-        if (sampled.part_importance.empty())  // if the importance is unknown, use the mean
+        if (sampled.part_importance.empty())  // unknown importance is replaced by its mean
             by_power = factor(shares.power + shares.weighted_power + shares.power_nearby, sums.power);
         else
             by_power += for_weighted * sampled.part_importance[i] + for_nearby * sampled.part_nearby[i];
         q[forest.size() + i] = static_cast<float>(by_power * channel_sum(sampled.emission->power(i)));
     }
-    return {std::move(q), sums.lost, sums.power, sums.weighted_power};
+    return {std::move(q), sums.non_finite, sums.power, sums.weighted_power};
 }
 
 }  // namespace interflect::detail

@@ -45,8 +45,8 @@ struct MixtureWeights {
 };
 
 struct Mixture {
-    /// Probability of each element (0 for inner elements), then of each luminaire part. The sum is that of the used
-    /// shares.
+    /// Probability of each element (0 for inner elements), then of each luminaire part. The probabilities sum to the
+    /// sum of the used shares.
     std::vector<float> q;
     std::int64_t non_finite_leaves = 0;
     double power = 0, weighted_power = 0;

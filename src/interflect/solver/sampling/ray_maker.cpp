@@ -46,8 +46,8 @@ void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, Poin
         const std::size_t count = std::min(PointBlock::capacity, rays.size() - begin);
         fill_points(set, key, first_sample + begin, count, points);
         auto& [a, b, c, d] = points.coordinate;
-        for (std::size_t i = 0; i < count;
-             ++i) {  // Malley's method: project a uniform point of the disk to the hemisphere
+        // Malley's method: project a uniform point of the disk to the hemisphere
+        for (std::size_t i = 0; i < count; ++i) {
             const float radius = std::sqrt(c[i]), height = std::sqrt(1 - c[i]);
             const CosSin turn = cos_sin_of_turn(d[i]);
             rays[begin + i].direction =
@@ -93,11 +93,11 @@ void RayMaker::make(std::int64_t begin, std::int64_t end, RayBatch& batch) const
 void RayMaker::shoot_from_leaf(ElementIndex leaf, std::uint64_t skipped, std::size_t offset, std::size_t length,
                                RayBatch& batch) const {
     const PatchIndex patch = forest_.patch(leaf);
-    const std::uint64_t place = std::uint64_t{patch} << 32 | forest_.path(leaf);
+    const std::uint64_t leaf_key = std::uint64_t{patch} << 32 | forest_.path(leaf);
     const std::uint64_t used = leaf < streams_.used.size() ? streams_.used[leaf] : 0;
     const std::span<const StartPoint> starts = start_points_ ? start_points_->of(leaf) : std::span<const StartPoint>();
     shoot_rays(forest_.geometry(patch), forest_.cell(leaf), ray_caster_.ray_offset(patch), streams_.points,
-               stream_key(streams_, Purpose::sampling, place), used + skipped, batch.points,
+               stream_key(streams_, Purpose::sampling, leaf_key), used + skipped, batch.points,
                std::span(batch.rays).subspan(offset, length), std::span(batch.origins).subspan(offset, length), starts);
 }
 

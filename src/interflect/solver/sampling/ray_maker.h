@@ -27,8 +27,8 @@ struct SampleStreams {
     std::uint64_t allocations = 0;             // number of allocations so far
 };
 
-/// Samples rays with origins `offset` above the patch, uniform on the cell. Directions have the density cos(theta) /
-/// pi.
+/// Samples rays with origins `offset` [m] above the patch, uniform on the cell. Directions have the density
+/// cos(theta) / pi.
 /// @param key     Key of the point sequence (fill_points).
 /// @param starts  Origins to sample (StartPoints::of); empty: uniform origins.
 void shoot_rays(const PatchGeometry& patch, const Cell& cell, float offset, PointSet set, std::uint64_t key,
@@ -58,6 +58,7 @@ class RayMaker {
     const RayAllocation& allocation() const { return allocation_; }
     std::uint32_t elements() const { return elements_; }
 
+    /// Samples the rays [begin, end) of the plan.
     void make(std::int64_t begin, std::int64_t end, RayBatch& batch) const;
 
   private:

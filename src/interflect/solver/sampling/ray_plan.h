@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-/// How the rays of a step are sampled, and what they carry.
+/// Sampling probabilities and payloads of the rays of a step.
 struct RayPlan {
     /// Weight >= 0 of each element (0 for inner elements), then of each part of `emission`. If all are 0, no ray is
     /// shot.

@@ -34,7 +34,7 @@ class StartPoints {
     static Parameters choose(std::span<const StartPoint> points, float u);
 
   private:
-    std::vector<StartPoint> points_;  // by leaf, then along the curve, which stratifies samples
+    std::vector<StartPoint> points_;  // sorted by leaf, then along the Morton curve, which stratifies samples
 };
 
 }  // namespace interflect::detail

@@ -17,8 +17,8 @@ namespace {
 /// without contributions would seem to be exactly black.
 constexpr double contributions_of_half_trust = 8;
 /// Number of contributions at which a part keeps at least half of its own mean, for any difference from its cluster.
-/// With ten times as many, it keeps 99%. Bright faces beside a lamp need this, because they differ from most parts of
-/// their cluster.
+/// With ten times this number, it keeps 99%. Bright faces beside a lamp need this, because they differ from most parts
+/// of their cluster.
 constexpr double contributions_of_own_mean = 80;
 /// Minimum number of camera rays in a region of the pictures that keeps its mean. Smaller regions would restore the
 /// noise of the unshrunk light.
@@ -92,7 +92,9 @@ struct Region {
     /// Returns 1 for patches that are at least as visible as the region on average, and less for other patches.
     double visibility(double seen) const { return std::min(1.0, seen * area / share); }
 
-    /// Adds a patch. @param uncertainty  Share of the cluster's mean in the shrunk light.
+    /// Adds a patch.
+    /// @param seen         View importance of the patch [1/m^2].
+    /// @param uncertainty  Share of the cluster's mean in the shrunk light.
     void add(double seen, double patch_area, double uncertainty, const RgbD& unreduced, const RgbD& reduced) {
         if (!(share > 0)) return;
         before += seen * patch_area * unreduced;
@@ -143,6 +145,8 @@ void ClusterShrinkage::measure_parts() {
         const double variance = all > 0 ? of_all * std::clamp(h / all, 0.0, 1.0) : 0;
         return Sums(area, area * h, area * area * variance);
     });
+
+    // Estimate the signal of each cluster, and the share of its own mean that each part keeps
     parts_[0].variance = static_cast<float>(sums[0].variance / (sums[0].area * sums[0].area));
     parallel_for_ranges(sums.size(), clusters_per_task, [&](std::size_t begin, std::size_t end) {
         std::vector<Sample> samples;
@@ -211,6 +215,8 @@ ClusterShrinkage::Means ClusterShrinkage::reduce_parts(std::span<const Part> par
 std::vector<Rgb> ClusterShrinkage::reduce() const {
     std::vector<Rgb> means(irradiance_.begin(), irradiance_.begin() + clusters_->patch_count());
     const std::span<const PatchClusters::Node> nodes = clusters_->nodes();
+
+    // Compute the unshrunk means from the patches up
     std::vector<Rgb> before(nodes.size(), Rgb(0));
     for (std::size_t i = nodes.size(); i-- > 0;) {
         const auto [first, count, patch] = nodes[i];
@@ -219,6 +225,8 @@ std::vector<Rgb> ClusterShrinkage::reduce() const {
         else
             for (std::uint32_t k = first; k < first + count; ++k) before[i] += parts_[k].share * before[k];
     }
+
+    // Shrink the parts of each cluster from the root down
     std::vector<Rgb> after(nodes.size());
     after[0] = before[0];
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -249,6 +257,8 @@ void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vec
     if (seen.empty()) return;
     const std::vector<double> shares = clusters_->sums<double>([&](PatchIndex p) { return seen[p] * forest.area(p); });
     const double fewest = fewest_camera_rays / static_cast<double>(camera_rays);
+
+    // Assign each patch to the smallest cluster that enough camera rays hit
     std::vector<Region> regions(nodes.size());
     std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
     std::vector<float> uncertainty(means.size());
@@ -263,6 +273,8 @@ void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vec
         uncertainty[patch] = 1 - parts_[i].kept;
         regions[region[i]].share += shares[i], regions[region[i]].area += forest.area(patch);
     }
+
+    // Sum the light of the regions before and after shrinkage, then scale the patches
     for (PatchIndex p{0}; p < means.size(); ++p)
         regions[region_of_patch[p]].add(seen[p], forest.area(p), uncertainty[p], RgbD(irradiance_[p]), RgbD(means[p]));
     for (PatchIndex p{0}; p < means.size(); ++p) {

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Minimum area of elements, from views and surface sizes.
+/// Lower limit of the area of elements, from views and surface sizes.
 class ElementFloor {
   public:
     ElementFloor(const Scene& scene, const SolveOptions& options);

@@ -30,7 +30,7 @@ struct LightState {
     double discarded_hits = 0;      // see IterationReport
 };
 
-/// Takes the sources from `lit`, which must outlive the inputs.
+/// Replaces the sources. @param lit  Scene with the new sources; must outlive the inputs.
 void set_sources(RunInputs& inputs, LightState& light, const Scene& lit);
 
 /// Returns the radiosity of each light group. It refers to the arguments.

@@ -15,7 +15,7 @@
 
 namespace interflect::detail {
 
-/// Start points and payloads of rays.
+/// Importance, random sequences and contributions of rays.
 struct SamplingState {
     SamplingState(const RunInputs& inputs, const LightState& light);
 

@@ -85,6 +85,7 @@ void require(bool holds, const char* what) {
 }  // namespace
 
 void SolverState::archive(StateArchive& archive) {
+    // Archive the reports, the mesh and the light
     std::vector<ReportNumbers> reports;
     for (const IterationReport& r : light.solution.iterations) reports.push_back(numbers_of(r));
     reports = archive.by_value(reports_name, std::move(reports));
@@ -102,6 +103,8 @@ void SolverState::archive(StateArchive& archive) {
     archive("risk", light.risk_check);
     StateArchive::require_range(light.risk_check.is_finite(), "risk");
     sampling.payloads.archive(archive);
+
+    // Archive the targets, and aim the restored emission at them
     archive("targets", inputs.targets);
     if (archive.reads() && !inputs.targets.empty()) {
         // Halves of the scene's box may exceed it by rounding.
@@ -118,6 +121,8 @@ void SolverState::archive(StateArchive& archive) {
                 "expected targets within the scene");
         inputs.emission = Emission(*inputs.lit, inputs.targets);
     }
+
+    // Archive the sampling of the rays, and their numbers
     archive("points/used", sampling.streams.used);
     archive("points/used_by_parts", sampling.streams.used_by_parts);
     archive("part_importance", sampling.part_importance);
@@ -134,6 +139,8 @@ void SolverState::archive(StateArchive& archive) {
     archive("escaped_power", light.escaped_power);
     archive.amounts("escaped_power_rays", light.escaped_power_rays);
     if (!archive.reads()) return;
+
+    // Restore the reports and the mesh, and check that all arrays are consistent with them
     light.solution.iterations.clear();
     for (const ReportNumbers& numbers : reports) light.solution.iterations.push_back(report_of(numbers));
     light.forest->rebuild(parents);

@@ -27,7 +27,7 @@ Schedule::Schedule(const SolveOptions& options, std::size_t patches) : options_(
 }
 
 std::int64_t Schedule::start_rays(std::int64_t passes) const {
-    constexpr std::int64_t rays_of_a_moment = 1 << 18;
+    constexpr std::int64_t rays_of_a_moment = 1 << 18;  // 1/64 of largest_iteration, which takes a second or two
     return std::min({smallest_, std::max(first_rays_, rays_of_a_moment),
                      std::max<std::int64_t>(1, options_.limits.rays / budget_over_first_rays / passes)});
 }

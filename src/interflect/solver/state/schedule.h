@@ -32,7 +32,7 @@ class Schedule {
   public:
     Schedule(const SolveOptions& options, std::size_t patches);
 
-    /// Returns the rays of each of `passes` passes before the first iteration: together at most an eighth of all.
+    /// Returns the rays of each of `passes` passes before the first iteration: together at most an eighth of all rays.
     std::int64_t start_rays(std::int64_t passes = 1) const;
     /// Records the rays of these passes, of which `averaged_rays` are part of the first mean.
     void record_start(std::int64_t averaged_rays, std::int64_t other_rays);
@@ -40,7 +40,7 @@ class Schedule {
     IterationPlan next(double seconds);
     bool is_fulfilled() const;
     void done(const TracedIteration& iteration);
-    /// Lets the size of iterations start again at its minimum.
+    /// Resets the size of iterations to its minimum.
     void restart() { averaged_at_restart_ = averaged_rays_; }
     void count_other_rays(std::int64_t rays) { rays_ += rays; }
 
@@ -60,8 +60,8 @@ class Schedule {
     std::int64_t smallest_;    // minimum or given size of an iteration [rays]
     std::int64_t rays_ = 0;
     std::int64_t averaged_rays_ = 0;
-    std::int64_t averaged_at_restart_ = 0;
-    int finished_ = 0;
+    std::int64_t averaged_at_restart_ = 0;  // averaged_rays_ at the last restart()
+    int finished_ = 0;                      // number of finished iterations
     bool is_over_ = false;
     double planned_at_ = 0;           // time of the last plan since the run began [s]
     std::int64_t planned_after_ = 0;  // number of rays traced before the last plan

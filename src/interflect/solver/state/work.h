@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// The call of Solver in progress. Only the work of a call may be shared with other ranks.
+/// The call of Solver in progress. Monitor, stop request and ranks are set during a call only.
 struct Work {
     Monitor monitor;
     CommonStop stop;  // after a first estimate, the time limit stops the call as well

@@ -41,6 +41,7 @@ class RenumberedSums {
     std::vector<ElementIndex> old_numbers_;
 };
 
+/// Removes the last elements beyond `max_elements`, and adds their sums to their parents.
 void drop_excess(ElementForest& forest, RenumberedSums& sums, std::size_t max_elements, std::uint32_t old_size) {
     while (forest.size() > std::max<std::size_t>(max_elements, old_size)) {
         const ElementIndex first(forest.size() - 4), parent = forest.drop_last_siblings();

@@ -32,8 +32,8 @@ struct Received {
     std::int64_t escaped_rays = 0;
 };
 
-/// Converts contributions to received values, and sets them to 0. Sorts the new elements and removes those beyond the
-/// oracle's limit, whose contributions go to their parents. Reuses buffers of the step.
+/// Converts contributions to received values, and resets the contributions to 0. Sorts the new elements, and merges
+/// elements beyond the oracle's limit into their parents. Reuses buffers of the step.
 /// @param importance  Importance found by the rays, or null.
 /// @param ranks       Ranks whose contributions are added; null: this process is alone.
 Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_size, const RayAllocation& allocation,

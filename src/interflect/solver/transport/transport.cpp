@@ -44,6 +44,7 @@ double max_deposits_per_particle(const Scene& scene) {
     return margin / (1 - rho);
 }
 
+/// Data of a step that all threads read.
 struct StepData {
     StepData(const Materials& materials, const ElementForest& forest, const RayCaster& ray_caster,
              const TransportStep& step, const SampleStreams& streams)
@@ -78,7 +79,7 @@ void drop_new_elements(ElementForest& forest, std::uint32_t old_size) {
 }
 
 /// Makes sums of the importance at the hits of each source's rays. Returns nullopt if they are not needed: without
-/// importance, or if it is deposited at patches and there are no parts of luminaires to rate.
+/// importance, or if it is deposited at patches and no luminaire part shoots.
 std::optional<FoundImportance> make_found_importance(const TransportStep& step, const Materials& materials,
                                                      const ElementForest& forest) {
     if (!step.carries_importance() || (step.importance_at_patches && step.part_count() == 0)) return {};
@@ -205,6 +206,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     const std::uint32_t old_size = forest.size();
     if (!(data.rays.allocation().q_sum() > 0)) return nothing_received(step, old_size);
 
+    // Trace batches of rays, and deposit their payloads
     sums.begin_step(old_size);
     std::optional<FoundImportance> found_importance = make_found_importance(step, materials, forest);
     const Walks walks(materials, forest, ray_caster, data.panes, step, data.contribution_units, old_size,
@@ -225,6 +227,8 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
         drop_new_elements(forest, old_size);
         throw;
     }
+
+    // Combine the results of threads and ranks
     Escaped escaped;
     std::vector<StartPoint> start_points;
     for (ThreadBuffers& buffers : all_buffers) {
@@ -238,6 +242,8 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
         start_points = gather_over_ranks<StartPoint>(*stop.ranks(), start_points);
         escaped = sum_over_ranks(*stop.ranks(), escaped);
     }
+
+    // Convert the contributions to irradiance and importance
     const RayAllocation& allocation = data.rays.allocation();
     advance(streams, allocation, old_size, step.part_count());
     Received received = collect(step, forest, old_size, allocation, data.payload_totals, data.contribution_units,

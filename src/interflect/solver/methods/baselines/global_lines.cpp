@@ -24,8 +24,8 @@ namespace {
 
 constexpr std::size_t lines_per_task = PointBlock::capacity;
 
-/// Most deposits of a line on one patch, on average, that the fixed-point sums can hold. A line crosses a flat patch
-/// once; each pane and each one-sided face behind it adds a deposit.
+/// Maximum mean number of deposits of a line on one patch that the fixed-point sums can hold. A line crosses a flat
+/// patch once; each pane and each one-sided face behind it adds a deposit.
 constexpr double most_deposits_per_line = 0x1p8;
 
 /// Sphere around the scene; lines are uniform in it.
@@ -50,8 +50,9 @@ struct LineDomain {
 
 /// Part of a line between two patches.
 struct LineSegment {
-    PatchIndex from, to;  ///< The line arrives at `from`, whose light goes back along it to `to`; `none` if it escapes.
-    bool is_mutual;       ///< Whether `to` also sees `from`; false if a one-sided face between them faces `from` only.
+    PatchIndex from;  ///< Patch that the line hits. Its light travels back along the line.
+    PatchIndex to;    ///< Patch that receives this light; `none` if the light escapes.
+    bool is_mutual;   ///< Whether `to` also sees `from`; false if a one-sided face between them faces `from` only.
 };
 
 /// Lines that a thread traces together.
@@ -59,7 +60,7 @@ struct LineBundle {
     PointBlock points;
     std::vector<Ray> lines, reversed_lines;
     std::vector<PatchIndex> crossed;  ///< The patch that each line crossed last.
-    std::vector<float> slack;         ///< Error of the distance to it [m]; infinite before the first crossing.
+    std::vector<float> slack;         ///< Error of the distance to `crossed` [m]; infinite before the first crossing.
     std::vector<Hit> hits, reversed_hits;
     std::vector<float> mutual_limit;  ///< A reversed hit beyond this distance has passed a one-sided face [m].
     std::vector<LineSegment> segments;
@@ -140,17 +141,18 @@ class LineSums {
         escaped_rays_.resize(radiosity_.size(), 0);
     }
 
-    /// Lines of both directions sample a mutual exchange, lines of one direction any other. The latter counts twice.
+    /// Lines of both directions sample a mutual exchange. Lines of one direction sample other exchanges, which count
+    /// twice.
     void add(const LineSegment& segment) {
         add_concurrently(started_[segment.from], 1);
-        carry(segment.from, segment.to, Rgb(segment.is_mutual ? 1.0f : 2.0f));
+        add_power(segment.from, segment.to, Rgb(segment.is_mutual ? 1.0f : 2.0f));
         if (!segment.is_mutual) return;
         add_concurrently(started_[segment.to], 1);
-        carry(segment.to, segment.from, Rgb(1));
+        add_power(segment.to, segment.from, Rgb(1));
     }
     /// Adds the light behind a pane in one direction, as the pane may be one-sided; so it counts twice.
     void add(const LineSegment& segment, const Panes::HitBehind& behind) {
-        carry(segment.from, behind.hit.patch, 2.0f * behind.transmittance);
+        add_power(segment.from, behind.hit.patch, 2.0f * behind.transmittance);
     }
 
     Received received(const ElementForest& forest) const {
@@ -173,7 +175,7 @@ class LineSums {
     /// Adds the power from one patch to another.
     /// @param to      May be `none`.
     /// @param factor  Transmittance, times 1 for a mutual exchange or 2 for an exchange in one direction.
-    void carry(PatchIndex from, PatchIndex to, const Rgb& factor) {
+    void add_power(PatchIndex from, PatchIndex to, const Rgb& factor) {
         const RgbD power = RgbD(radiosity_[from]) * RgbD(factor) * power_per_radiosity_;
         if (to == no_patch) {
             add_concurrently(escaped_[from], power_.from(power));
@@ -203,13 +205,13 @@ class GlobalLines final : public Passes {
 
   protected:
     Received trace_without_walks(SolverState& state, TransportStep step) override {
-        // In a sphere of cross section C, a line faces on average an area A A / (4 C) times. It traces two rays for
-        // each crossing, and a last one that escapes.
+        // In a sphere of cross section C, a line hits the front of surfaces of total area A on average A / (4 C) times.
+        // Each of these hits takes two rays, and the escape a last one.
         const double rays_per_line = 1 + 2 * area_ / (4 * domain_.cross_section());
         const auto lines = std::max<std::int64_t>(1, std::llround(static_cast<double>(step.rays) / rays_per_line));
         const ElementForest& forest = *state.light.forest;
-        // A patch of area A meets A / (2 C) of the lines, from both sides, so each carries 2 C / lines of its
-        // radiosity.
+        // The share A / (2 C) of the lines crosses a patch of area A, from both sides; so each of these lines carries
+        // 2 C / lines of its radiosity.
         LineSums sums(forest, step.light, 2 * domain_.cross_section() / static_cast<double>(lines), lines);
         // Each bounce has a new key, because products of dependent bounces would be biased.
         const std::uint64_t key =

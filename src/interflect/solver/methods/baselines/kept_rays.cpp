@@ -29,11 +29,11 @@ namespace {
 constexpr std::size_t rays_per_task = 4096;
 
 /// Parameters of a point on a patch, rounded to 16 bits.
-struct Place {
+struct RoundedParameters {
     std::uint16_t u = 0, v = 0;
 
-    Place() = default;
-    explicit Place(const Parameters& p) : u(rounded(p.u)), v(rounded(p.v)) {}
+    RoundedParameters() = default;
+    explicit RoundedParameters(const Parameters& p) : u(rounded(p.u)), v(rounded(p.v)) {}
     Parameters parameters() const { return {middle(u), middle(v)}; }
 
   private:
@@ -45,7 +45,7 @@ struct Place {
 struct KeptRay {
     std::uint32_t source;   // leaf or luminaire part
     ElementIndex receiver;  // leaf; no_element if the ray escaped
-    Place start, end;
+    RoundedParameters start, end;
 };
 
 /// Rays in the order in which they were shot. The continuations behind panes follow the other rays of a step.
@@ -93,8 +93,8 @@ class PayloadUnits {
     FixedPoint remainder_;
 };
 
-ElementIndex leaf_within(const ElementForest& forest, ElementIndex e, Place place) {
-    return forest.is_leaf(e) ? e : forest.leaf_below(e, forest.cell(e), place.parameters());
+ElementIndex leaf_within(const ElementForest& forest, ElementIndex e, RoundedParameters point) {
+    return forest.is_leaf(e) ? e : forest.leaf_below(e, forest.cell(e), point.parameters());
 }
 
 /// Well-distributed rays with importance, which Prikryl et al. 2000 propose as future work. Both ends of every ray are
@@ -114,7 +114,7 @@ class KeptRays : public IterationMethod {
     bool is_consistent(const SolverState& state) const override;
 
   private:
-    /// Number of rays of each element, of which only leaves count, then of each luminaire part.
+    /// Number of rays of each element (unused for inner elements), then of each luminaire part.
     using Quotas = std::vector<double>;
 
     void drop_rays_of_parts(const SolverState& state);
@@ -147,7 +147,7 @@ class KeptRays : public IterationMethod {
     Quotas quotas_, next_quotas_;        // quotas of complete iterations, and with the iteration in progress
     std::vector<Rgb> reflected_;         // irradiance that this iteration reflects
     std::vector<Imath::Box3f> targets_;  // targets of the kept rays from luminaire parts
-    bool needs_importance_ = false;
+    bool needs_importance_ = false;      // whether the next iteration starts with transport_importance()
 };
 
 /// Returns max(quota, x q) for each source; x is chosen so that the sum of the quotas grows by `rays`.
@@ -274,6 +274,8 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
     const Panes panes(state.inputs.scene, state.inputs.ray_caster);
     const auto count = static_cast<std::size_t>(plan.rays);
     set_.resize(merged_ + count);
+
+    // Trace the rays, and store continuations behind panes apart
     struct Behind {
         KeptRay ray;
         std::uint8_t kind;
@@ -283,8 +285,8 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
     const auto kept = [&](const Hit& hit, KeptRay ray, const Ray& traced) {
         if (hit.patch == none) return ray;
         const Parameters p = forest.geometry(hit.patch).parameters_of(traced.origin + hit.distance * traced.direction);
-        ray.receiver = forest.leaf_at(hit.patch, Place(p).parameters());
-        ray.end = Place(p);
+        ray.receiver = forest.leaf_at(hit.patch, RoundedParameters(p).parameters());
+        ray.end = RoundedParameters(p);
         return ray;
     };
     parallel_for_ranges(
@@ -302,7 +304,8 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
                 const std::uint8_t kind = is_part ? RaySet::from_part : RaySet::from_leaf;
                 const std::uint32_t source = is_part ? of_source.source - forest.size() : of_source.source;
                 for (std::uint32_t i = of_source.begin; i < of_source.end; ++i) {
-                    const KeptRay ray{source, no_element, is_part ? Place() : Place(batch.origins[i]), {}};
+                    const KeptRay ray{
+                        source, no_element, is_part ? RoundedParameters() : RoundedParameters(batch.origins[i]), {}};
                     set_.rays[merged_ + begin + i] = kept(hits[i], ray, batch.rays[i]);
                     set_.kind[merged_ + begin + i] = kind;
                     for (; next != hits_behind.end() && next->ray == i; ++next)
@@ -312,6 +315,8 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
                 }
             }
         });
+
+    // Append the continuations in the order of their rays
     if (!panes.empty()) set_.transmittance.resize(set_.size(), Rgb(1));
     for (const std::vector<Behind>& some : behind)
         for (const Behind& b : some) {

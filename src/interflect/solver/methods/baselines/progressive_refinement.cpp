@@ -27,9 +27,9 @@ constexpr double assumed_shots = 2;
 /// Distributes rays over the steps of a series. Weights are amounts of power or importance, relative to the initial
 /// amount.
 struct ShotBudget {
-    std::int64_t left;
-    double expected;  ///< Expected sum of the weights of all steps.
-    double shot = 0;
+    std::int64_t left;  ///< Number of rays of the remaining steps.
+    double expected;    ///< Expected sum of the weights of all steps.
+    double shot = 0;    ///< Sum of the weights so far.
 
     double measured() const { return shot > 0 ? shot : expected; }
     /// Returns the number of rays of a step.
@@ -48,6 +48,7 @@ struct ShotBudget {
     }
 };
 
+/// Sets small weights to 0.
 void choose_largest(std::vector<float>& q) {
     const float least = share_of_largest * *std::max_element(q.begin(), q.end());
     for (float& weight : q)
@@ -114,17 +115,19 @@ bool shoot_some_importance(SolverState& state, ImportanceSeries& series) {
 
 bool shoot_some_power(SolverState& state, PowerSeries& series) {
     const Radiosity light(state.inputs.materials, series.unshot, series.emits);
-    auto [plan, power, weighted_power, lost] = plan_power(state.inputs.materials, state.inputs.emission,
-                                                          state.light.solution, light, series.weights, false, 0);
+    auto [plan, power, weighted_power, non_finite_leaves] = plan_power(
+        state.inputs.materials, state.inputs.emission, state.light.solution, light, series.weights, false, 0);
     if (!(power > 0)) return false;
     TransportStep step(std::move(plan));
     if (series.emits) {
         series.first_power = power;
         series.first_weighted_power = weighted_power;
     }
+    // Compute the unshot amount relative to the first step
     const double beta = series.first_weighted_power > 0 ? state.light.options().experimental.beta : 1;
     const double unshot =
         beta * ratio(power, series.first_power) + (1 - beta) * ratio(weighted_power, series.first_weighted_power);
+    // Choose all emitters in the first step, then the patches with the most unshot power
     std::vector<float> chosen = step.q;
     if (series.emits)
         for (ElementIndex e{0}; e < state.light.forest->size(); ++e)
@@ -145,7 +148,7 @@ bool shoot_some_power(SolverState& state, PowerSeries& series) {
     const Received received = run_step(state, std::move(step));
     state.rays.power += rays;
     state.sampling.payloads += received.payloads;
-    state.light.solution.non_finite += lost;
+    state.light.solution.non_finite += non_finite_leaves;
     series.fresh.escaped_power += received.escaped_power;
     series.budget.left -= rays;
     series.budget.shot += weight;
@@ -164,7 +167,7 @@ class ProgressiveRefinement final : public IterationMethod {
     void prepare(SolverState& state) override {
         current_.importance_history = 0;
         shoot_importance(state, std::min(state.rays.schedule.start_rays(),
-                                         lacking_importance(state, state.light.options().limits.rays)));
+                                         missing_importance_rays(state, state.light.options().limits.rays)));
         state.rays.schedule.record_start(0, state.rays.importance);
     }
     void update_importance(SolverState& state, TracedIteration& iteration) override;
@@ -175,17 +178,17 @@ class ProgressiveRefinement final : public IterationMethod {
     void archive(StateArchive& archive) override;
 
   private:
-    std::int64_t lacking_importance(const SolverState& state, std::int64_t planned) const;
+    std::int64_t missing_importance_rays(const SolverState& state, std::int64_t planned) const;
     void shoot_importance(SolverState& state, std::int64_t rays);
 
-    struct Numbers {
+    struct SeriesHistory {
         double importance_shots = assumed_shots, power_shots = assumed_shots;  // values of ShotBudget::expected
         std::int64_t importance_history = 0;                                   // number of rays in the mean importance
     };
-    Numbers current_, before_;
+    SeriesHistory current_, before_;
 };
 
-std::int64_t ProgressiveRefinement::lacking_importance(const SolverState& state, std::int64_t planned) const {
+std::int64_t ProgressiveRefinement::missing_importance_rays(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.light.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.light.options().experimental.alpha * static_cast<double>(planned));
     return std::max<std::int64_t>(0, share - current_.importance_history);
@@ -207,7 +210,7 @@ void ProgressiveRefinement::shoot_importance(SolverState& state, std::int64_t ra
 void ProgressiveRefinement::update_importance(SolverState& state, TracedIteration& iteration) {
     before_ = current_;
     iteration.importance_rays =
-        std::min(iteration.plan.rays, lacking_importance(state, state.rays.schedule.rays() + iteration.plan.rays));
+        std::min(iteration.plan.rays, missing_importance_rays(state, state.rays.schedule.rays() + iteration.plan.rays));
     const std::int64_t rays_before = state.rays.importance;
     shoot_importance(state, iteration.importance_rays);
     iteration.rays = state.rays.importance - rays_before;

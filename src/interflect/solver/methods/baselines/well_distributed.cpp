@@ -34,33 +34,33 @@ void WellDistributedRays::archive(StateArchive& archive) {
     archive("well_distributed/total", total_);
 }
 
-/// Replaces plan.q by the number of rays that each source lacks if all sources together should have `all` rays. If a
+/// Replaces plan.q by the number of missing rays of each source, if all sources together should have `all` rays. If a
 /// leaf has shot more than its share, other leaves of its patch shoot less.
-void WellDistributedRays::keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const {
+void WellDistributedRays::plan_missing_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const {
     struct Balance {
-        double lacks = 0;    // missing rays of the patch, reduced by the surplus of some leaves
-        double lacking = 0;  // sum of the missing rays of its leaves
+        double net = 0;      // missing rays of the patch, reduced by the surplus of some leaves
+        double missing = 0;  // sum of the missing rays of its leaves, without surpluses
     };
     std::vector<Balance> patches(forest.patch_count());
-    const auto lacks = [&](ElementIndex e) { return static_cast<double>(all) * plan.q[e] - shot_[e]; };
+    const auto missing = [&](ElementIndex e) { return static_cast<double>(all) * plan.q[e] - shot_[e]; };
     for (ElementIndex e{0}; e < forest.size(); ++e) {
         if (!forest.is_leaf(e)) continue;
-        patches[forest.patch(e)].lacks += lacks(e);
-        patches[forest.patch(e)].lacking += std::max(0.0, lacks(e));
+        patches[forest.patch(e)].net += missing(e);
+        patches[forest.patch(e)].missing += std::max(0.0, missing(e));
     }
-    double lacking = 0;
+    double all_missing = 0;
     for (ElementIndex e{0}; e < forest.size(); ++e) {
         const Balance& patch = patches[forest.patch(e)];
-        const bool shoots = forest.is_leaf(e) && patch.lacks > 0;
-        plan.q[e] = shoots ? static_cast<float>(std::max(0.0, lacks(e)) * (patch.lacks / patch.lacking)) : 0.0f;
-        lacking += plan.q[e];
+        const bool shoots = forest.is_leaf(e) && patch.net > 0;
+        plan.q[e] = shoots ? static_cast<float>(std::max(0.0, missing(e)) * (patch.net / patch.missing)) : 0.0f;
+        all_missing += plan.q[e];
     }
     for (std::size_t i = 0; i < plan.part_count(); ++i) {
         float& q = plan.q[forest.size() + i];
         q = static_cast<float>(std::max(0.0, static_cast<double>(all) * q - shot_by_parts_[i]));
-        lacking += q;
+        all_missing += q;
     }
-    plan.rays = std::max<std::int64_t>(1, std::llround(lacking));
+    plan.rays = std::max<std::int64_t>(1, std::llround(all_missing));
 }
 
 Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iteration) {
@@ -73,11 +73,12 @@ Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iterati
     step.groups = group_radiosity(state.inputs, state.light, state.light.solution.groups);
     // Without importance, the probabilities q are shares of all power.
     const double all_power = channel_sum(radiated_power(state.inputs, state.light));
-    keep_lacking_rays(forest, total_ + iteration.plan.rays, step);
+    plan_missing_rays(forest, total_ + iteration.plan.rays, step);
     const std::int64_t rays = iteration.weight = iteration.rays = step.rays;
     if (state.light.options().method.refines)
         step.oracle = make_oracle(state.light.solution, total_ + rays, state.inputs.floor.default_min_area());
 
+    // Trace the missing rays, and count the rays of each source
     std::vector<std::uint64_t> used_before = state.sampling.streams.used,
                                used_by_parts_before = state.sampling.streams.used_by_parts;
     used_by_parts_before.resize(shot_by_parts_.size(), 0);
@@ -94,6 +95,7 @@ Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iterati
         shot_[e] = shot_[forest.parent(e)] * forest.area(e) / forest.area(forest.parent(e));
     inherit(forest, iteration.plan.old_elements, received_);
     inherit(forest, iteration.plan.old_elements, received_groups_);
+    // Convert numbers of payloads to irradiance, and add them to the earlier numbers
     const auto payload = static_cast<float>(all_power / static_cast<double>(rays));
     Estimate estimate;
     estimate.irradiance.resize(forest.size());

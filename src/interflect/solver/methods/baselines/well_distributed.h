@@ -11,9 +11,9 @@
 namespace interflect::detail {
 
 /// Well-distributed ray set that keeps every ray (Neumann, Neumann and Bekaert 1997; with refinement, Bekaert et al.
-/// 1998). Of all N rays, leaf i of power P_i has shot n_i = N P_i / sum P. Each ray has the payload sum P / N. When P
-/// or N changes, an iteration shoots the missing rays. Earlier hits count with the new payload, but with their old
-/// colour. A leaf that has shot more than its share pauses.
+/// 1998). Leaf i of power P_i has shot n_i = N P_i / sum P of all N rays. Each ray has the payload sum P / N. When P or
+/// N changes, an iteration shoots the missing rays. Earlier hits count with the new payload, but with their old colour.
+/// A leaf that has shot more than its share pauses.
 class WellDistributedRays : public IterationMethod {
   public:
     explicit WellDistributedRays(const SolverState& state);
@@ -33,7 +33,7 @@ class WellDistributedRays : public IterationMethod {
     }
 
   private:
-    void keep_lacking_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const;
+    void plan_missing_rays(const ElementForest& forest, std::int64_t all, RayPlan& plan) const;
 
     Passes passes_;
     std::vector<double> shot_;           // number of rays from each leaf

@@ -23,8 +23,8 @@ bool are_distant(const Sphere& a, const Sphere& b) {
 }
 
 /// Returns twice the standard deviation of the transmittance of a line, after a blocked and a free line are added to
-/// the sample (Laplace). It is positive even if all lines agree, in contrast to their range. With the range, links
-/// whose few lines are free by chance would remain, the others be divided, and light be overestimated.
+/// the sample (Laplace). It is positive even if all lines agree, in contrast to their range. With the range, only links
+/// whose few lines are free by chance would remain undivided, which overestimates light.
 /// @param mean, mean_square  Mean and mean square of the transmittance of the sampled lines.
 float likely_variation(double mean, double mean_square, std::size_t lines) {
     const auto n = static_cast<double>(lines);
@@ -124,11 +124,13 @@ Exchange ClusterExchange::estimate(const ElementPair& pair, Effort effort, std::
     if (!(exchange.area > 0)) return Exchange{};
 
     const std::size_t lines = static_cast<std::size_t>(effort) * static_cast<std::size_t>(effort);
-    const auto place_of = [&](ElementIndex end) {
-        return is_cluster(end) ? std::uint64_t{end} << 32 : place(forest_, end);
+
+    // Choose the ends of the lines of sight in proportion to the weights
+    const auto key_of = [&](ElementIndex end) {
+        return is_cluster(end) ? std::uint64_t{end} << 32 : element_key(forest_, end);
     };
     PointBlock random;
-    fill_points(PointSet::sobol, mix(mix(seed_, place_of(pair.a)), place_of(pair.b)), 0, lines, random);
+    fill_points(PointSet::sobol, mix(mix(seed_, key_of(pair.a)), key_of(pair.b)), 0, lines, random);
     std::array<Choice, most_lines> ends_a, ends_b;
     choose(factors.a.members(), factors.weight_a, sum_a, std::span(random.coordinate[0]).first(lines), ends_a);
     choose(factors.b.members(), factors.weight_b, sum_b, std::span(random.coordinate[1]).first(lines), ends_b);
@@ -138,6 +140,8 @@ Exchange ClusterExchange::estimate(const ElementPair& pair, Effort effort, std::
         const Cell cell = forest_.cell(e);
         return geometry.point(geometry.uniform_parameters(choice.remainder, second, {cell.u, cell.v}, cell.size));
     };
+
+    // Average the transmittance over the lines, weighted by the ratio of exact to approximate exchange
     double all = 0, squares = 0, least_ratio = std::numeric_limits<double>::infinity(), most_ratio = 0;
     RgbD free(0, 0, 0);
     for (std::size_t k = 0; k < lines; ++k) {

@@ -54,6 +54,7 @@ class ClusterExchange {
 
         std::span<const ClusterMember> members() const { return patches.empty() ? std::span(&element, 1) : patches; }
     };
+    /// Weight w of a member, from a point or polygon at the other end.
     struct Weight {
         enum class Kind { by_point, by_polygon, one } kind = Kind::one;
         V3f point{0, 0, 0};
@@ -61,6 +62,7 @@ class ClusterExchange {
 
         double operator()(const ClusterMember& member) const;
     };
+    /// Factors of A_p F_pq: the weights of both ends, and the scale s.
     struct Factors {
         End a, b;
         Weight weight_a, weight_b;

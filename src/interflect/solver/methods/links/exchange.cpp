@@ -34,6 +34,7 @@ constexpr GaussRule gauss_2{{0.2113248654051871, 0.7886751345948129, 0, 0}, {0.5
 constexpr GaussRule gauss_4{{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263},
                             {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269}};
 
+/// Points on an element and their weights, as a product of two Gauss rules.
 struct Quadrature {
     static constexpr std::size_t capacity = 16;
 
@@ -96,8 +97,8 @@ struct LinesOfSight {
         const Cell cell = forest.cell(large);
         const float disk = forest.area(large) / static_cast<float>(points.count);  // area represented by y [m^2]
         PointBlock random;
-        fill_points(PointSet::sobol, mix(mix(seed, place(forest, small)), place(forest, large)), 0, points.count,
-                    random);
+        fill_points(PointSet::sobol, mix(mix(seed, element_key(forest, small)), element_key(forest, large)), 0,
+                    points.count, random);
         double all = 0;
         RgbD free(0, 0, 0);
         Rgb least(1), most(0);
@@ -124,7 +125,7 @@ struct LinesOfSight {
 
 }  // namespace
 
-std::uint64_t place(const ElementForest& forest, ElementIndex e) {
+std::uint64_t element_key(const ElementForest& forest, ElementIndex e) {
     return std::uint64_t{forest.patch(e)} << 32 | forest.path(e);
 }
 

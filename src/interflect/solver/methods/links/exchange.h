@@ -53,7 +53,7 @@ struct PointOfElement {
 };
 
 /// Returns a number that identifies an element among all possible elements of the forest.
-std::uint64_t place(const ElementForest& forest, ElementIndex element);
+std::uint64_t element_key(const ElementForest& forest, ElementIndex element);
 
 struct Exchange {
     /// Unoccluded exchange A_a F_ab = A_b F_ba [m^2].

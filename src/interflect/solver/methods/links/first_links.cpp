@@ -32,7 +32,7 @@ class PatchPairs {
           estimator_(estimator) {
         for (PatchIndex i{0}; i < forest_.patch_count(); ++i) {
             spheres_.push_back(sphere_around(forest_, i));
-            surface_ += forest_.area(i);
+            total_area_ += forest_.area(i);
         }
     }
 
@@ -45,7 +45,7 @@ class PatchPairs {
     /// Returns whether a reflector of average brightness sends less power than the threshold over this exchange.
     bool is_weak(PatchIndex i, PatchIndex j) const {
         return !emits(inputs_, i) && !emits(inputs_, j) &&
-               largest_exchange(spheres_[i], spheres_[j], forest_.area(i), forest_.area(j)) < epsilon_ * surface_;
+               largest_exchange(spheres_[i], spheres_[j], forest_.area(i), forest_.area(j)) < epsilon_ * total_area_;
     }
 
     const RunInputs& inputs_;
@@ -53,7 +53,7 @@ class PatchPairs {
     double epsilon_;
     const ExchangeEstimator& estimator_;
     std::vector<Sphere> spheres_;
-    double surface_ = 0;  // [m^2]
+    double total_area_ = 0;  // [m^2]
 };
 
 /// Divides pairs of clusters until the approximation of ClusterExchange is valid.
@@ -61,13 +61,13 @@ struct PairDivision {
     const ElementForest& forest;
     const PatchTree& tree;
     const ClusterExchange& exchange;
-    const PatchPairs& of_patches;
+    const PatchPairs& patch_pairs;
     std::size_t limit;
     std::vector<LinkCandidate> candidates = {};
 
     void add(ElementIndex a, ElementIndex b) {
         if (candidates.size() > limit) return;
-        if (!is_cluster(a) && !is_cluster(b)) return of_patches.add(forest.patch(a), forest.patch(b), candidates);
+        if (!is_cluster(a) && !is_cluster(b)) return patch_pairs.add(forest.patch(a), forest.patch(b), candidates);
         if (exchange.is_valid({a, b})) return candidates.push_back({{a, b}, Effort::quick});
         const bool divides_a =
             is_cluster(a) && (!is_cluster(b) || tree.cluster(a).sphere.radius >= tree.cluster(b).sphere.radius);
@@ -116,8 +116,8 @@ std::vector<LinkCandidate> pairs_of_patches(const SolverState& state, const Exch
 std::vector<LinkCandidate> pairs_of_clusters(const RunInputs& inputs, const LightState& light,
                                              const ExchangeEstimator& estimator, const PatchTree& tree,
                                              const ClusterExchange& exchange, std::size_t limit) {
-    const PatchPairs of_patches(inputs, light, estimator);
-    PairDivision division{*light.forest, tree, exchange, of_patches, limit};
+    const PatchPairs patch_pairs(inputs, light, estimator);
+    PairDivision division{*light.forest, tree, exchange, patch_pairs, limit};
     const std::uint32_t patches = light.forest->patch_count();
     for (PatchIndex a{0}; a < patches && division.candidates.size() <= limit; ++a)
         if (emits(inputs, a))

@@ -25,7 +25,7 @@ struct RefinementCandidate {
 
 namespace {
 
-/// Links are refined if the relative change of light in a sweep is below `settled`. If none can be refined, the run
+/// Links are refined if the relative change of light in a sweep is below `settled`. If no link can be refined, the run
 /// ends when the change is below `negligible_change`.
 constexpr double settled = 1e-2, negligible_change = 1e-6;
 /// Relative error bound of a link whose 16 sampled lines of sight are all blocked, because one more line may be free.
@@ -131,7 +131,7 @@ void LinkedElements::prepare(SolverState&) {
     link_candidates();
 }
 
-/// Links all pairs of patches if most of the rays then remain for refinement. Else links clusters.
+/// Chooses all pairs of patches as candidates if most of the rays then remain for refinement, else pairs of clusters.
 void LinkedElements::find_first_links() {
     const double pairs = 0.5 * forest_.patch_count() * (forest_.patch_count() - 1.0);
     const auto rays = static_cast<double>(std::min(state_.light.options().limits.rays, SolveOptions().limits.rays));
@@ -303,6 +303,7 @@ bool LinkedElements::may_divide(ElementIndex end) const {
     return is_cluster(end) || forest_.area(end) >= 4.0 * static_cast<double>(state_.inputs.floor.default_min_area());
 }
 
+/// Keeps the candidates with the largest errors, so that the remaining rays suffice for their links.
 void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidates) const {
     const std::int64_t rays = std::max<std::int64_t>(0, state_.light.options().limits.rays - rays_);
     const auto affordable = static_cast<std::size_t>(rays / rays_per_division);
@@ -314,7 +315,7 @@ void LinkedElements::keep_affordable(std::vector<RefinementCandidate>& candidate
     candidates.resize(affordable);
 }
 
-void LinkedElements::describe_new_elements(std::uint32_t first) {
+void LinkedElements::initialise_new_elements(std::uint32_t first) {
     Solution& solution = state_.light.solution;
     inherit(forest_, first, solution.irradiance);
     state_.inputs.materials.grow(forest_);
@@ -351,7 +352,7 @@ void LinkedElements::subdivide_links() {
         }
         link.exchange.area = 0;  // link_candidates() removes it
     }
-    describe_new_elements(before);
+    initialise_new_elements(before);
 }
 
 bool LinkedElements::is_fulfilled(const SolverState& state) const {

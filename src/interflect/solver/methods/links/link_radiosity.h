@@ -39,9 +39,8 @@ struct RefinementCandidate;
 ///
 /// The run ends when light and links have settled. It stays within limits.rays (except for the first links),
 /// max_elements and min_area; `until` has no effect. Reported rays are visibility rays. In a closed scene,
-/// escaped_power is the error of the form factors. Cost: O(patches^2 + links), with clusters about O(patches
-/// log(patches)
-/// + links); a sweep costs the number of members of all links.
+/// escaped_power is the error of the form factors. Cost: O(patches^2 + links), with clusters about
+/// O(patches log(patches) + links); the cost of a sweep is the number of members of all links.
 class LinkedElements : public IterationMethod {
   public:
     /// The state must outlive this.
@@ -72,7 +71,7 @@ class LinkedElements : public IterationMethod {
     ElementIndex divided_end(const ElementPair& ends, double over_a, double over_b) const;
     bool may_divide(ElementIndex end) const;
     void keep_affordable(std::vector<RefinementCandidate>& candidates) const;
-    void describe_new_elements(std::uint32_t first);
+    void initialise_new_elements(std::uint32_t first);
 
     SolverState& state_;
     ElementForest& forest_;
@@ -86,7 +85,8 @@ class LinkedElements : public IterationMethod {
     std::int64_t rays_ = 0;
     int sweeps_ = 0;
     bool refines_ = false;
-    bool refines_next_ = false, is_settled_ = false;
+    bool refines_next_ = false;  // whether the next iteration starts with refine_links()
+    bool is_settled_ = false;
 };
 
 }  // namespace interflect::detail

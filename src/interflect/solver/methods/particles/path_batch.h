@@ -86,16 +86,16 @@ struct PathSums {
     std::int64_t rays = 0, escaped_rays = 0;
 
     /// @param most_hits  Maximum number of hits per ray; more than 1 with panes.
-    PathSums(const WalkSource& payload, double most_hits)
-        : unit(sum_headroom * most_hits * max_expected(payload)),
-          received(payload.reflectance.size()),
-          started(payload.reflectance.size(), 0),
-          hits(payload.starts_at_hits ? payload.reflectance.size() : 0) {}
+    PathSums(const WalkSource& walk_source, double most_hits)
+        : unit(sum_headroom * most_hits * max_expected(walk_source)),
+          received(walk_source.reflectance.size()),
+          started(walk_source.reflectance.size(), 0),
+          hits(walk_source.starts_at_hits ? walk_source.reflectance.size() : 0) {}
 
-    static double max_expected(const WalkSource& payload) {
+    static double max_expected(const WalkSource& walk_source) {
         double power = 0, rho = 0;
-        for (const Rgb& w : payload.emitted) power += static_cast<double>(largest_channel(w));
-        for (const Rgb& r : payload.reflectance) rho = std::max(rho, static_cast<double>(largest_channel(r)));
+        for (const Rgb& w : walk_source.emitted) power += static_cast<double>(largest_channel(w));
+        for (const Rgb& r : walk_source.reflectance) rho = std::max(rho, static_cast<double>(largest_channel(r)));
         return power / (1 - rho);
     }
 };
@@ -124,9 +124,10 @@ struct Wavefront {
     }
 };
 
+/// Paths of particles that are traced to their end.
 class PathBatch {
   public:
-    PathBatch(const SolverState& state, const WalkSource& payload, std::int64_t paths, std::uint64_t key)
+    PathBatch(const SolverState& state, const WalkSource& walk_source, std::int64_t paths, std::uint64_t key)
         : forest_(*state.light.forest),
           elements_(forest_.size()),
           emission_(state.inputs.emission),
@@ -134,21 +135,22 @@ class PathBatch {
           panes_(state.inputs.scene, state.inputs.ray_caster),
           stop_(state.work.stop.within_process()),
           first_points_(state.light.options().experimental.points),
-          payload_(payload),
+          walk_source_(walk_source),
           paths_(paths),
           key_(key),
-          sums_(payload, panes_.empty() ? 1 : 1 + Panes::max_consecutive_panes) {
+          sums_(walk_source, panes_.empty() ? 1 : 1 + Panes::max_consecutive_panes) {
         const auto weight = [&](std::size_t i) {
-            return static_cast<double>(channel_sum(payload.emitted[i])) * payload.density[i];
+            return static_cast<double>(channel_sum(walk_source.emitted[i])) * walk_source.density[i];
         };
         double sum = 0;
-        for (std::size_t i = 0; i < payload.emitted.size(); ++i) sum += weight(i);
+        for (std::size_t i = 0; i < walk_source.emitted.size(); ++i) sum += weight(i);
         if (!(sum > 0)) return;
         unit_power_ = sum / static_cast<double>(paths);
-        for (std::size_t i = 0; i < payload.emitted.size(); ++i) q_.push_back(static_cast<float>(weight(i) / sum));
+        for (std::size_t i = 0; i < walk_source.emitted.size(); ++i) q_.push_back(static_cast<float>(weight(i) / sum));
         allocation_.emplace(q_, paths, random_double(sub_key(key, WalkPurpose::allocation), 0));
     }
 
+    /// Traces all paths. Returns their sums.
     const PathSums& follow() {
         if (!(unit_power_ > 0)) return sums_;
         PerThread<Wavefront> wavefronts;
@@ -188,9 +190,9 @@ class PathBatch {
             const auto s = static_cast<std::uint32_t>(source);
             const auto offset = static_cast<std::size_t>(from - begin), count = static_cast<std::size_t>(to - from);
             const double share =
-                unit_power_ / payload_.density[s] / static_cast<double>(channel_sum(payload_.emitted[s]));
+                unit_power_ / walk_source_.density[s] / static_cast<double>(channel_sum(walk_source_.emitted[s]));
             const PatchIndex patch = s < elements_ ? forest_.patch(ElementIndex(s)) : no_patch;
-            const Particle particle{s, patch, {}, Rgb(RgbD(payload_.emitted[s]) * share)};
+            const Particle particle{s, patch, {}, Rgb(RgbD(walk_source_.emitted[s]) * share)};
             std::fill_n(&w.particles[offset], count, particle);
             const std::uint64_t key = sub_key(key_, WalkPurpose::emission, number_of(s));
             const auto first_sample = static_cast<std::uint64_t>(from - first);
@@ -205,16 +207,18 @@ class PathBatch {
         allocation_->for_each_source(begin, end, emit_some);
     }
 
+    /// Hit leaf, and the hit point on its patch.
     struct HitPlace {
         ElementIndex leaf;
         Parameters at;
     };
     HitPlace hit_place(const Ray& ray, const Hit& hit) const {
-        if (!payload_.starts_at_hits && forest_.is_leaf(hit.patch)) return {hit.patch, {}};
+        if (!walk_source_.starts_at_hits && forest_.is_leaf(hit.patch)) return {hit.patch, {}};
         const Parameters at = forest_.geometry(hit.patch).parameters_of(ray.origin + hit.distance * ray.direction);
         return {forest_.leaf_at(hit.patch, at), at};
     }
 
+    /// Adds the hits of the particles to the sums, and creates the reflected particles.
     void score(Wavefront& w) {
         FixedPoint::Value escaped{};
         std::int64_t escaped_rays = 0;
@@ -229,10 +233,10 @@ class PathBatch {
             }
             const auto [leaf, at] = hit_place(w.rays[i], hit);
             add_concurrently(sums_.received[leaf], term);
-            if (payload_.starts_at_hits)
+            if (walk_source_.starts_at_hits)
                 sums_.hits[leaf].add_concurrent(static_cast<double>(channel_sum(power)) /
                                                 static_cast<double>(channel_sum(w.particles[i].power)));
-            w.reflected.push_back({leaf, hit.patch, at, payload_.reflectance[leaf] * power});
+            w.reflected.push_back({leaf, hit.patch, at, walk_source_.reflectance[leaf] * power});
         };
         auto behind = w.behind.begin();
         for (std::size_t i = 0; i < w.particles.size(); ++i) {
@@ -241,7 +245,7 @@ class PathBatch {
             arrive(i, w.hits[i], Rgb(1));
             for (; behind != w.behind.end() && behind->ray == i; ++behind) {
                 const Rgb& t = behind->transmittance;
-                arrive(i, behind->hit, payload_.is_grey ? Rgb(channel_sum(t) / 3) : t);
+                arrive(i, behind->hit, walk_source_.is_grey ? Rgb(channel_sum(t) / 3) : t);
             }
         }
         add_concurrently(sums_.escaped, escaped);
@@ -256,7 +260,7 @@ class PathBatch {
         double cumulative = offset;
         for (const Particle& p : w.reflected) {
             const double n = std::min(
-                max_copies, static_cast<double>(channel_sum(p.power)) * payload_.density[p.source] / unit_power_);
+                max_copies, static_cast<double>(channel_sum(p.power)) * walk_source_.density[p.source] / unit_power_);
             const double before = std::floor(cumulative);
             cumulative += n;
             const auto copies = static_cast<std::size_t>(std::floor(cumulative) - before);
@@ -274,7 +278,7 @@ class PathBatch {
             const float offset = ray_caster_.ray_offset(p.patch);
             shoot_rays(geometry, forest_.cell(ElementIndex(p.source)), offset, PointSet::random, key, i, w.points,
                        std::span(w.rays).subspan(i, 1), std::span(w.origins).subspan(i, 1));
-            if (payload_.starts_at_hits) w.rays[i].origin = geometry.point(p.at) + geometry.normal() * offset;
+            if (walk_source_.starts_at_hits) w.rays[i].origin = geometry.point(p.at) + geometry.normal() * offset;
         }
     }
 
@@ -285,7 +289,7 @@ class PathBatch {
     const Panes panes_;
     const StopRequest& stop_;
     PointSet first_points_;
-    const WalkSource& payload_;
+    const WalkSource& walk_source_;
     std::int64_t paths_;
     std::uint64_t key_;
     PathSums sums_;

@@ -29,7 +29,7 @@ struct BatchResult {
 };
 
 /// Traces one batch of about `rays` rays. @throws Interrupted; `series` may then have changed.
-BatchResult walk(SolverState& state, const WalkSource& payload, std::int64_t rays, PathSeries& series);
+BatchResult walk(SolverState& state, const WalkSource& walk_source, std::int64_t rays, PathSeries& series);
 
 /// Returns the emission of leaves and luminaires, with density 1.
 WalkSource light_source(const RunInputs& inputs, const LightState& light);

@@ -53,24 +53,25 @@ std::vector<float> particle_density(const Solution& so_far, const std::vector<Rg
 }
 
 WalkSource particles_of_light(const RunInputs& inputs, const LightState& light) {
-    WalkSource payload = light_source(inputs, light);
-    const std::vector<Rgb> of_patches(payload.emitted.begin(), payload.emitted.begin() + light.forest->patch_count());
+    WalkSource walk_source = light_source(inputs, light);
+    const std::vector<Rgb> of_patches(walk_source.emitted.begin(),
+                                      walk_source.emitted.begin() + light.forest->patch_count());
     const std::vector<float> density = particle_density(light.solution, of_patches);
     // Luminaire parts keep the mean density 1, because their importance is unknown.
-    std::copy(density.begin(), density.end(), payload.density.begin());
-    return payload;
+    std::copy(density.begin(), density.end(), walk_source.density.begin());
+    return walk_source;
 }
 
 WalkSource importance_from_cameras(const RunInputs& inputs, const LightState& light) {
-    WalkSource payload;
-    payload.is_grey = true;
+    WalkSource walk_source;
+    walk_source.is_grey = true;
     for (PatchIndex i{0}; i < light.forest->patch_count(); ++i) {
         const float rho = inputs.materials.mean_reflectance(i);
-        payload.emitted.emplace_back(rho * light.solution.view_importance[i] * light.forest->area(i));
-        payload.reflectance.emplace_back(rho);
+        walk_source.emitted.emplace_back(rho * light.solution.view_importance[i] * light.forest->area(i));
+        walk_source.reflectance.emplace_back(rho);
     }
-    payload.density.assign(light.forest->patch_count(), 1.0f);
-    return payload;
+    walk_source.density.assign(light.forest->patch_count(), 1.0f);
+    return walk_source;
 }
 
 }  // namespace
@@ -85,11 +86,11 @@ void RandomWalks::prepare(SolverState& state) {
     current_.importance.pilot_rays = 0;
     current_.importance_history = 0;
     walk_importance(state, std::min(state.rays.schedule.start_rays(),
-                                    lacking_importance(state, state.light.options().limits.rays)));
+                                    missing_importance_rays(state, state.light.options().limits.rays)));
     state.rays.schedule.record_start(0, state.rays.importance);
 }
 
-std::int64_t RandomWalks::lacking_importance(const SolverState& state, std::int64_t planned) const {
+std::int64_t RandomWalks::missing_importance_rays(const SolverState& state, std::int64_t planned) const {
     if (importance_use(state.light.solution) != ImportanceUse::full) return 0;
     const std::int64_t share = std::llround(state.light.options().experimental.alpha * static_cast<double>(planned));
     return std::max<std::int64_t>(0, share - current_.importance_history);
@@ -109,7 +110,7 @@ void RandomWalks::walk_importance(SolverState& state, std::int64_t rays) {
 void RandomWalks::update_importance(SolverState& state, TracedIteration& iteration) {
     before_ = current_;
     iteration.importance_rays =
-        std::min(iteration.plan.rays, lacking_importance(state, state.rays.schedule.rays() + iteration.plan.rays));
+        std::min(iteration.plan.rays, missing_importance_rays(state, state.rays.schedule.rays() + iteration.plan.rays));
     const std::int64_t rays_before = state.rays.importance;
     walk_importance(state, iteration.importance_rays);
     iteration.rays = state.rays.importance - rays_before;
@@ -124,7 +125,7 @@ Estimate RandomWalks::trace(SolverState& state, TracedIteration& iteration) {
         iteration.rays += batch.rays;
         estimate = independent_contributions(state.light, batch);
     }
-    if (iteration.rays == 0) iteration.rays = iteration.plan.rays;  // no rays were traced: no visible surface reflects
+    if (iteration.rays == 0) iteration.rays = iteration.plan.rays;  // no visible surface reflects
     return estimate;
 }
 

@@ -30,7 +30,7 @@ class RandomWalks : public IterationMethod {
     void archive(StateArchive& archive) override;
 
   private:
-    std::int64_t lacking_importance(const SolverState& state, std::int64_t planned) const;
+    std::int64_t missing_importance_rays(const SolverState& state, std::int64_t planned) const;
     void walk_importance(SolverState& state, std::int64_t rays);
 
     struct Series {
