@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-/// The mesh of a node, in the size in which the node shows it. Each triangle of the file is a patch.
+/// The mesh of a node, scaled as in the node. Each triangle of the file is a patch.
 struct AuthoredShape {
     /// Place of a patch in the file.
     struct Triangle {
@@ -31,7 +31,7 @@ struct AuthoredShape {
 struct AuthoredObject {
     std::uint32_t node, shape;
     std::uint32_t object;       ///< Index into Model::objects.
-    std::uint32_t first_chart;  ///< Index of its first chart; the order is that of its shape's charts.
+    std::uint32_t first_chart;  ///< Index of its first chart; the others follow in the order of its shape.
     Imath::M44d to_world;
 };
 

@@ -8,7 +8,7 @@
 namespace interflect::detail {
 
 struct PatchVisibility {
-    std::vector<float> light;   ///< Undimmed [lm/m^2].
+    std::vector<float> light;   ///< Undimmed light by patch_light() [lm/m^2].
     std::vector<bool> lit;      ///< Patches with more than stray light.
     std::vector<bool> encased;  ///< By encased_patches().
     std::vector<bool> hidden;   ///< Patches covered by coincident faces, and encased ones.
