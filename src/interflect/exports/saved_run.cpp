@@ -25,7 +25,7 @@ void archive_options(StateArchive& archive, SolveOptions& options) {
         archive.by_value("options/max_elements", std::vector{options.refinement.max_elements}).at(0);
 }
 
-/// Calls write(scene, solution, state).
+/// Calls write(scene, solution, state) with the undimmed scene and the state of the run.
 template <class Write>
 void write_run(Run& run, Solution result, SolveOptions options, const Write& write) {
     result.dimming = run.state.light.solution.dimming;
