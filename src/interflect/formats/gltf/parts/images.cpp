@@ -32,13 +32,13 @@ Rgb colour_at(const StoredImage& image, std::size_t pixel) {
     return {decoded[values[0]], decoded[values[1]], decoded[values[2]]};
 }
 
-/// Returns the index of the pixel of `image` at the centre of pixel (x, y) of `of`.
-std::size_t pixel_at(const StoredImage& image, std::uint32_t x, std::uint32_t y, const Texture& of) {
+/// Returns the index of the pixel of `image` at the centre of texel (x, y) of `texture`.
+std::size_t pixel_at(const StoredImage& image, std::uint32_t x, std::uint32_t y, const Texture& texture) {
     const auto scaled = [](std::uint64_t i, std::uint64_t from, int to) {
         return static_cast<std::size_t>((2 * i + 1) * static_cast<std::uint64_t>(to) / (2 * from));
     };
-    return scaled(y, of.height, image.height) * static_cast<std::size_t>(image.width) +
-           scaled(x, of.width, image.width);
+    return scaled(y, texture.height, image.height) * static_cast<std::size_t>(image.width) +
+           scaled(x, texture.width, image.width);
 }
 
 }  // namespace
@@ -136,8 +136,8 @@ Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
             if (texels.metallic != none) share *= metallic.value(pixel_at(metallic, x, y, result), blue);
             texel *= texels.factor * (1 - share);
             if (texels.coverage.image != none) {
-                const float there = texels.coverage.at(coverage.value(pixel_at(coverage, x, y, result), alpha));
-                texel = texel * there + texels.open * (1 - there);
+                const float covered = texels.coverage.at(coverage.value(pixel_at(coverage, x, y, result), alpha));
+                texel = texel * covered + texels.open * (1 - covered);
             }
             for (int c = 0; c < 3; ++c) {
                 is_reduced |= texel[c] > 1;

@@ -69,6 +69,7 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uin
 
 }  // namespace
 
+/// Attributes of a primitive, with its morph targets and skin.
 struct GltfMeshes::Vertices {
     struct Target {
         GltfElements offsets;
@@ -280,7 +281,8 @@ std::vector<GltfMeshes::TintedFaces> GltfMeshes::by_tint(const GltfValue& primit
         for (int c = 0; c < 3; ++c) result[c] = static_cast<float>(std::clamp(colour[c], 0.0, 1.0));
         return result;
     };
-    constexpr float steps = 16;  // steps of a channel's square root; colours of a group differ by up to 6% of white
+    // Number of steps of a channel's square root. Colours of a group differ by up to 6% of white.
+    constexpr float steps = 16;
     std::map<std::array<int, 3>, TintedFaces> groups;
     bool varies = false;
     for (std::size_t i = 0; i < indices.size(); i += 3) {
