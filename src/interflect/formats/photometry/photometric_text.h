@@ -32,7 +32,7 @@ class PhotometricText {
     std::vector<double> numbers(std::size_t count, const std::string& what);
     bool had_decimal_comma() const { return had_decimal_comma_; }
 
-    /// Accepts a decimal comma, unless commas are separators.
+    /// Parses a number. Accepts a decimal comma, unless commas are separators.
     double number_of(std::string_view word, const std::string& what);
 
     std::int64_t line_number() const { return line_; }  ///< Returns the line of the latest word.

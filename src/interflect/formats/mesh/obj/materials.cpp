@@ -113,7 +113,7 @@ void ObjMaterials::read_line(std::span<const std::string_view> words, Definition
     }
 }
 
-/// File names may contain spaces.
+/// Returns the path of a texture, which follows its options. File names may contain spaces.
 fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, const Location& where) {
     while (words.size() > 1 && words[0].starts_with('-')) {
         warn("texture-option", fmt::format("the option {} of texture maps is ignored", words[0]), where);
@@ -137,7 +137,7 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
 }
 
 std::uint32_t ObjMaterials::find(const std::string& name, const Location& where) {
-    // Names such as "Material #25" are more frequent than comments.
+    // Search the whole text first, because names such as "Material #25" are more frequent than comments
     auto entry = definitions_.find(name);
     if (entry == definitions_.end()) entry = definitions_.find(std::string(without_comment(name)));
     if (entry == definitions_.end()) {
