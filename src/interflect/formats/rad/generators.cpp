@@ -49,13 +49,14 @@ struct Box {
 /// Corners of each face, which are its name in genbox.
 constexpr std::array<std::string_view, 6> box_faces = {"1540", "4620", "2310", "3267", "5137", "6457"};
 
+/// Returns the axis perpendicular to a face, along which its corners agree.
 int face_axis(std::string_view corners) {
     int same = 7;
     for (const char corner : corners) same &= ~((corner - '0') ^ (corners[0] - '0'));
     return same == 1 ? 0 : same == 2 ? 1 : 2;
 }
 
-/// Flat pieces between the faces: one for each edge and each corner.
+/// Adds flat pieces between the faces: one for each edge and each corner.
 void add_bevels(const Box& box, const std::string& name, std::vector<GeneratedSurface>& result) {
     for (int axis = 0; axis < 3; ++axis) {
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -72,7 +73,7 @@ void add_bevels(const Box& box, const std::string& name, std::vector<GeneratedSu
                                  box.outward({box.point(corner, 0), box.point(corner, 1), box.point(corner, 2)})));
 }
 
-/// Whole cylinders and spheres, as genbox makes them.
+/// Adds whole cylinders and spheres, as genbox does.
 void add_rounds(const Box& box, const std::string& name, std::vector<GeneratedSurface>& result) {
     for (int corner = 0; corner < 8; ++corner) {
         const V3d a = box.point(corner, -1);

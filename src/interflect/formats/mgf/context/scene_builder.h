@@ -58,6 +58,7 @@ class MgfSceneBuilder {
   private:
     Rgb converted(const MgfColour& colour, double luminance, double largest, const Location& where);
     std::uint32_t texture(const MgfTexture& texture);
+    /// Requires that factors times textures are in range.
     void require_products(const Material& result, const MgfMaterial& material) const;
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 

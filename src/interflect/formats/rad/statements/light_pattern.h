@@ -25,7 +25,7 @@ struct RadLightPattern {
     std::vector<double> arguments;  ///< Factor; then the size of a box or cylinder [m].
     std::string data_file;
     std::vector<Coordinate> coordinates;
-    Imath::M44d to_file;  ///< From the luminaire's frame, as for PhotometricWeb.
+    Imath::M44d to_file;  ///< From the luminaire's frame, which is that of PhotometricWeb, to the file.
 };
 
 /// @return  nullopt for other patterns. @throws std::invalid_argument for missing arguments.
@@ -39,7 +39,7 @@ struct RadEmitter {
     Imath::Box3d bounds() const;
 };
 
-/// Intensity of the emitter for a radiance of 1 before the pattern, which is computed from its projected area.
+/// Computes the intensities of the emitter from its projected area, for a radiance of 1 before the pattern.
 /// The opening is a box, upright cylinder or ellipsoid around all surfaces.
 PhotometricWeb make_light_web(const RadLightPattern& pattern, const RadData& data, const RadEmitter& emitter);
 
