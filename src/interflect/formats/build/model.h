@@ -24,8 +24,8 @@ struct Mesh {
     std::uint32_t material = 0;
     bool back_emits = true;
 
-    /// Where a glTF file has it: the indices of the mesh and its primitive, and of each vertex in the primitive.
-    /// A primitive of several colours (COLOR_0) is several meshes.
+    /// Origin in a glTF file: the indices of the mesh and its primitive, and of each vertex in the primitive.
+    /// A primitive with several colours (COLOR_0) becomes several meshes.
     struct Source {
         std::uint32_t mesh = none, primitive = none;
         std::vector<std::uint32_t> vertices{};
@@ -44,6 +44,7 @@ struct PlacedLight {
     Imath::V3d position{0, 0, 0};  ///< World position [m].
 };
 
+/// Content of a file of meshes, before its conversion to a scene.
 struct Model {
     std::filesystem::path file;
     std::vector<Mesh> meshes;

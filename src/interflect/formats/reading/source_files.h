@@ -17,7 +17,7 @@ struct SourceFile {
 /// Reads each file once. Addresses are stable.
 class SourceFiles {
   public:
-    /// Returns the file as first added; whether it is new.
+    /// Returns the file as first added, and whether it is new.
     std::pair<const SourceFile&, bool> add(const std::filesystem::path& path, std::string&& text);
     /// @param name  Relative to `includer`. @throws std::invalid_argument
     std::pair<const SourceFile&, bool> find(std::string_view name, const SourceFile& includer);
