@@ -51,7 +51,7 @@ struct AuthoredCharts {
 /// property in Blender. LightmapOptions::densities take precedence over nodes, and nodes over materials.
 struct AuthoredDensities {
     std::map<std::uint32_t, float> nodes;
-    std::vector<TexelDensity> materials;  ///< With the names of materials as patterns.
+    std::vector<TexelDensity> materials;  ///< Their patterns are the names of materials.
 };
 /// @throws InputError for a density that is not a number from 0 up.
 AuthoredDensities authored_densities(const Json& file);

@@ -25,7 +25,7 @@ class LitMaterials {
     int set() const { return set_; }
     /// Leaves the materials of a primitive as they are; light() adds copies of them.
     void keep(const Json& primitive);
-    /// Replaces the material of a primitive, and those of its variants, by the ones lit by image `page`.
+    /// Replaces the materials of a primitive and of its variants by materials lit by image `page`.
     void light(Json& primitive, int page);
 
   private:

@@ -132,6 +132,7 @@ std::map<std::string, DracoAttribute> SourceGltf::decompressed(std::uint32_t mes
 GltfDocument SourceGltf::document() {
     Json json = Json::parse(parts_.json);
     remove_baked_light(json);
+    // Join the buffers
     std::string joined;
     std::vector<int> new_buffer;
     std::vector<std::size_t> offset;
@@ -155,6 +156,7 @@ GltfDocument SourceGltf::document() {
                 move_view(view["extensions"][meshopt], new_buffer, offset);
         }
     GltfDocument document(std::move(json), std::move(joined));
+    // Embed the images
     const std::vector<GltfValue> images = asset_.root().objects("images");
     for (std::size_t i = 0; i < images.size(); ++i) {
         const std::string uri = images[i].text("uri");

@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// Vertices of a primitive of a glTF file: those of the file, then copies of vertices at which charts meet.
+/// Vertices of a primitive of a glTF file: first the file's own, then copies of vertices at which charts meet.
 struct SplitVertices {
     /// Corner of a patch in a chart of the shape, which determines the lightmap coordinate of a vertex.
     struct Place {

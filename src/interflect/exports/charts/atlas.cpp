@@ -73,7 +73,7 @@ std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, 
 /// found.
 Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen, int gutter,
                      int max_size) {
-    constexpr std::size_t many_charts = 2000;
+    constexpr std::size_t many_charts = 2000;  // packing them takes minutes, so fewer widths are tried
     const int trials = chosen.size() > many_charts ? 6 : 96;
     std::optional<Packing> best;
     for (const bool lying : {true, false}) {

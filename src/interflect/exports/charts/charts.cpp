@@ -28,7 +28,7 @@ struct BorderEdge {
     V3f inwards;  // unit vector in the plane of the patch
 };
 
-/// Returns the joints of smooth surfaces, except those between objects.
+/// Returns the joints of smooth surfaces, except joints between objects.
 Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     Joints joints = smooth.seams;
     std::vector<EdgeIndex> first(smooth.edges.count);

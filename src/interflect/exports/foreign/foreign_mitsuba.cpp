@@ -189,7 +189,7 @@ V3f envmap_direction(float x, float y) {
 
 std::string mitsuba_description(ForeignScene& scene) {
     using namespace for_mitsuba;
-    // Shadow rays of the integrator 'path' end at masks; those of 'volpath' pass their holes.
+    // Shadow rays of the integrator 'path' end at masks. Shadow rays of 'volpath' pass their holes.
     const bool has_holes = std::any_of(scene.meshes.begin(), scene.meshes.end(),
                                        [&](const ForeignMesh& mesh) { return scene.is_cut_out(mesh); });
     std::string text = fmt::format(

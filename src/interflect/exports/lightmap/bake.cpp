@@ -45,7 +45,7 @@ class LightmapTexels {
         const std::vector<std::size_t> copied = copied_texels(places, static_cast<std::size_t>(columns));
         if (std::find_if(copied.begin(), copied.end(), [](std::size_t i) { return i != no_texel; }) == copied.end())
             return add_hidden(chart, places, columns);
-        std::vector<std::size_t> place_index(places.size());
+        std::vector<std::size_t> place_index(places.size());  // index in places_ of each evaluated texel
         PointGrid grid{columns, std::vector<std::uint32_t>(places.size(), none)};
         for (std::size_t i = 0; i < places.size(); ++i) {
             place_index[i] = places_.size();
@@ -156,7 +156,7 @@ void require_memory(double image_texels, double chart_texels, const LightmapOpti
                     std::size_t groups) {
     constexpr double encoded_bytes = 16;  // a texel has at most four channels in single precision
     constexpr double target_bytes = 24;   // size of two indices, a column and a row
-    // Each texel of an image is stored as two copies, one of them for the encoder, and once encoded.
+    // Memory per texel of an image: the texel, its copy for the encoder, and its encoded bytes.
     constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
     // A texel of a chart needs two copies of its place, its target, its light, and an entry in a tree (fill_hidden()).
     constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb) + sizeof(Boxed),

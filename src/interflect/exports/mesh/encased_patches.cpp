@@ -12,6 +12,7 @@ namespace interflect::detail {
 
 namespace {
 
+/// Number of rays that are traced from a patch.
 constexpr std::size_t rays_of_patch = 64;
 /// Number of rays that may leave a closed solid, because they start within the ray offset of an edge.
 constexpr std::size_t stray_rays = 2;
@@ -23,7 +24,7 @@ class Surroundings {
     Surroundings(const Scene& scene, const RayCaster& ray_caster, const std::vector<bool>& is_dark)
         : scene_(scene), ray_caster_(ray_caster), is_dark_(is_dark), diameter_(core_bounds(scene).size().length()) {}
 
-    /// Traces rays from a patch and counts long ones and those that reach a lit patch or escape.
+    /// Traces rays from a patch. Counts long rays, and rays that reach a lit patch or escape.
     bool is_encased(PatchIndex patch) const {
         PointBlock points;
         std::array<Ray, rays_of_patch> rays;

@@ -11,8 +11,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Maximum light of a dark patch, about that of a moonless night, and its maximum relative to the mean. Such patches
-/// look black beside lit rooms.
+/// Maximum light of a dark patch, as in a moonless night, and its maximum relative to the mean. Such patches look black
+/// beside lit rooms.
 constexpr double max_dark = 1e-3;  // [lm/m^2]
 constexpr double max_dark_of_mean = 1e-4;
 /// Maximum light inside solids, relative to the mean. It is invisible, but exceeds the light of stray rays at seams

@@ -69,6 +69,7 @@ std::array<Parameters, 2> sides_of(const PatchGeometry& patch, float spacing) {
     return {{{side(patch.shape().edge_u), 0}, {0, side(patch.shape().edge_v)}}};
 }
 
+/// Counts the triangles of shown leaves. Leaves with points on their edges become fans around their centres.
 double count_triangles(const Scene& scene, const ElementForest& forest, const std::vector<bool>& shown) {
     const ElementMesh mesh(scene, forest, std::vector<Rgb>(forest.size(), Rgb(0)));
     double triangles = 0;
