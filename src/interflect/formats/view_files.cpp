@@ -25,7 +25,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Members of a JSON object, each of which must be known to its reader.
+/// Members of a JSON object. Unknown members are faults.
 class Members {
   public:
     Members(const json& object, std::string where, const fs::path& file)

@@ -17,7 +17,7 @@ struct Chromaticity {
 /// @throws std::invalid_argument also if the luminance or X + Y + Z is 0.
 Chromaticity chromaticity_of_spectrum(double first, double last, std::span<const double> values);
 
-/// @param kelvin  At least 1000. @throws std::invalid_argument
+/// @param kelvin  Colour temperature, at least 1000. @throws std::invalid_argument
 Chromaticity chromaticity_of_black_body(double kelvin);
 
 struct MixedColour {

@@ -34,7 +34,7 @@ struct Mesh {
 
 struct MeshInstance {
     std::uint32_t mesh = 0;
-    Imath::M44d to_world;  ///< For row vectors; to metres. Mirroring keeps the front.
+    Imath::M44d to_world;  ///< Matrix for row vectors; scales to metres. Mirroring keeps the front.
     std::uint32_t object = 0;
     std::uint32_t node = none;  ///< Index in a glTF file.
 };
@@ -52,9 +52,9 @@ struct Model {
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<PlacedLight> lights;
-    std::vector<std::string> objects{""};  ///< As in Scene::objects.
-    std::vector<View> views;               ///< In the world [m].
-    std::vector<std::string> files;        ///< Files that were read; the model's own comes first.
+    std::vector<std::string> objects{""};  ///< Names, as in Scene::objects.
+    std::vector<View> views;               ///< Views in world coordinates [m].
+    std::vector<std::string> files;        ///< Files that were read; the first one is `file`.
     Warnings warnings;
 };
 

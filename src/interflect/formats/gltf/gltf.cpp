@@ -137,7 +137,7 @@ class SceneReader {
                 "max_patches");
     }
 
-    /// Returns the transforms of the copies of a node by EXT_mesh_gpu_instancing, otherwise that of the node.
+    /// Returns the transforms of the copies of a node (EXT_mesh_gpu_instancing), or the node's own transform.
     std::vector<M44d> places_of(const GltfNode& node, std::uint64_t faces) {
         const GltfValue extension = node.value->extension("EXT_mesh_gpu_instancing");
         if (!extension.exists()) {
@@ -202,7 +202,7 @@ class SceneReader {
     GltfLights lights_;
     std::vector<GltfValue> skins_;
     double faces_ = 0;
-    std::map<std::uint32_t, std::vector<M44d>> joints_;  // by skin
+    std::map<std::uint32_t, std::vector<M44d>> joints_;  // keys: skins
     std::map<std::string, std::uint32_t> object_index_{{"", 0}};
 };
 

@@ -56,7 +56,7 @@ class Vs3Words {
         while (result.empty() && next_line()) result = word();
         return result;
     }
-    std::int64_t line() const { return line_; }  ///< From 1.
+    std::int64_t line() const { return line_; }  ///< Number of the line, from 1.
 
   private:
     static bool is_separator(char c) { return c == ' ' || c == ',' || c == '\t' || c == '\r'; }
@@ -91,7 +91,7 @@ class Vs3Reader {
   private:
     [[noreturn]] void fail(const std::string& fault) const { throw InputError(path_, words_.line(), fault); }
 
-    /// @return  false for the end of the data.
+    /// Reads an entry. @return  false at the end of the data.
     bool read_line() {
         const std::string_view word = words_.word();
         if (word.empty()) return true;

@@ -36,7 +36,7 @@ struct OpenMgfFile {
 /// Transform of an open `xf` or include, with the current array copy.
 struct OpenMgfTransform {
     TransformSequence sequence;
-    Imath::M44d total;              // to the world
+    Imath::M44d total;              // matrix to the world
     Location opened;                // location of the `xf` or include
     std::vector<int> copy;          // number of the copy in each array; empty without arrays
     LineReader::Position body;      // start of each copy

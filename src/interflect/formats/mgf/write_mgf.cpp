@@ -277,7 +277,7 @@ class MgfWriter {
     std::ostream& out_;
     std::span<const std::string> textures_;                    // file names
     std::vector<std::string> names_;                           // names of materials
-    std::unordered_map<std::string, Definition> definitions_;  // by material name
+    std::unordered_map<std::string, Definition> definitions_;  // keys: names of materials
     std::unordered_map<const PhotometricWeb*, std::string> web_files_;
     std::unordered_map<const Texture*, std::string> map_files_;
     std::vector<bool> vertex_written_;

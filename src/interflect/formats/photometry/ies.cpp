@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Years of editions of LM-63: the first one, the last one with a ballast-lamp photometric factor, and the one that
+/// Years of LM-63: the first edition, the last edition with a ballast-lamp photometric factor, and the edition that
 /// reserves this number for future use.
 constexpr int first_year = 1986, last_year_of_factor = 1995, year_of_reserved = 2002;
 
@@ -73,8 +73,14 @@ LuminousOpening opening_of(const Dimensions& d, int year, bool& is_known) {
         if (size.x == 0 || size.y == 0) size.x = size.y = std::max(size.x, size.y);
         return {Shape::cylinder, size, 2};
     }
-    if (size.y == 0) return size.y = size.z, LuminousOpening{Shape::cylinder, size, 0};
-    if (size.x == 0) return size.x = size.z, LuminousOpening{Shape::cylinder, size, 1};
+    if (size.y == 0) {
+        size.y = size.z;
+        return {Shape::cylinder, size, 0};
+    }
+    if (size.x == 0) {
+        size.x = size.z;
+        return {Shape::cylinder, size, 1};
+    }
     is_known = false;
     return {Shape::box, size, 2};
 }
@@ -88,7 +94,7 @@ class IesReader {
     PhotometricWeb read();
 
   private:
-    enum Type { type_c = 1, type_b = 2, type_a = 3 };  // the numbers are those in LM-63 files
+    enum Type { type_c = 1, type_b = 2, type_a = 3 };  // the numbers in LM-63 files
 
     void read_labels();
     void read_version(std::string_view first_line);

@@ -162,7 +162,7 @@ void LdtReader::skip_lines(int count) {
 /// Reads the luminous opening, whose length is along C90 and whose width is along C0. A width of 0 means a round
 /// opening.
 void LdtReader::read_opening() {
-    constexpr double metres = 1e-3;  // per millimetre
+    constexpr double metres = 1e-3;  // metres per millimetre
     const double length = optional_line("the length of the luminous area", 0),
                  width = optional_line("the width of the luminous area", 0);
     double height = 0;

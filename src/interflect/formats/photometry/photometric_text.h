@@ -36,7 +36,7 @@ class PhotometricText {
     double number_of(std::string_view word, const std::string& what);
 
     std::int64_t line_number() const { return line_; }  ///< Returns the line of the latest word.
-    std::string where() const;                          ///< As "file:line".
+    std::string where() const;                          ///< Location, such as "room.ies:3".
     [[noreturn]] void refuse(const std::string& message, const std::string& setting = {}) const;
 
   private:

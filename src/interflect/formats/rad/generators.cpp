@@ -93,6 +93,7 @@ std::optional<GeneratedSurfaces> genbox(RadArguments arguments) {
     GeneratedSurfaces result;
     result.modifier = arguments.next("a material");
     const std::string name = arguments.next("a name");
+    // Read the options
     Box box{arguments.vector("one of three sizes")};
     bool is_inward = false, is_round = false;
     while (!arguments.is_at_end()) {
@@ -113,12 +114,14 @@ std::optional<GeneratedSurfaces> genbox(RadArguments arguments) {
     const double least = std::min({box.size.x, box.size.y, box.size.z});
     if (!(least > 0) || box.inset < 0 || 2 * box.inset > least)
         throw std::invalid_argument("genbox needs sizes above 0, and a bevel or rounding of at most half of each");
+    // Add the faces, then the edges and corners
     for (const std::string_view face : box_faces) {
         Points points;
         for (const char corner : face) points.push_back(box.point(corner - '0', face_axis(face)));
         if (2 * box.inset < least) result.surfaces.push_back(polygon(fmt::format("{}.{}", name, face), points));
     }
     if (box.inset > 0) is_round ? add_rounds(box, name, result.surfaces) : add_bevels(box, name, result.surfaces);
+    // Reverse polygons that face inwards
     for (GeneratedSurface& surface : result.surfaces) {
         if (!is_inward || surface.type != "polygon") continue;
         std::reverse(surface.numbers.begin(), surface.numbers.end());

@@ -60,7 +60,7 @@ class RadMaterials {
         std::uint32_t base = none;         // modifier of this one
         std::uint32_t material = none;     // index, once used
         std::uint32_t surface = none;      // this one or its first base that is a material
-        std::array<bool, 3> has_warned{};  // per Chain, for this one and all beyond
+        std::array<bool, 3> has_warned{};  // one per Chain; includes all modifiers beyond
     };
     /// Parts of a surface's chain of modifiers: up to its material, and beyond a material or light.
     enum Chain : std::uint8_t { to_material, behind_material, behind_light };

@@ -127,7 +127,7 @@ bool RadReader::run_pipeline(std::span<const std::vector<std::string>> commands,
         if (!xform || xform->files.empty() == (reads_files && xforms.empty())) return false;
         xforms.push_back(*xform);
     }
-    // Combine the transforms, of which the last one is the outermost
+    // Combine the transforms. The last command is the outermost.
     OpenFile inner = file;
     for (auto xform = xforms.rbegin(); xform != xforms.rend(); ++xform) {
         inner.copies = copies_of(*xform, inner.copies);

@@ -25,7 +25,7 @@ constexpr int cie_uniform = 5, cie_intermediate = 7, cie_clear = 12, cie_overcas
 
 struct SunPlace {
     double altitude = 0;  ///< [rad]
-    double azimuth = 0;   ///< From south to west [rad].
+    double azimuth = 0;   ///< Angle from south to west [rad].
 };
 
 /// Site and time of gensky and gendaylit, with their defaults.
@@ -79,7 +79,7 @@ SunPlace SolarTime::sun() const {
                         -cosine * std::sin(decline) - sine * std::cos(decline) * std::cos(angle))};
 }
 
-/// @return  nullopt for a named time zone.
+/// Reads a time of day [h]. @return  nullopt for a named time zone.
 std::optional<double> parse_hour(std::string_view text) {
     const auto colon = text.find(':');
     const auto hours = parse_number(text.substr(0, colon));
@@ -180,15 +180,15 @@ std::optional<Daylight> gensky(RadArguments arguments) {
     if (!is_overcast && sun.altitude <= 0) return std::nullopt;
     // Compute the illuminance by the sky
     const double sine = std::sin(sun.altitude), overcast_zenith = 8.6 * sine + .123;  // [kcd/m^2]
-    const double norm = type == cie_uniform ? 1
-                        : is_overcast       ? 7.0 / 9
-                                            : zenith_ratio(sun.altitude, type == cie_intermediate);
+    const double ratio = type == cie_uniform ? 1
+                         : is_overcast       ? 7.0 / 9
+                                             : zenith_ratio(sun.altitude, type == cie_intermediate);
     double zenith_luminance =
         is_overcast ? overcast_zenith : (1.376 * turbidity - 1.81) * std::tan(sun.altitude) + 0.38;
     if (type == cie_intermediate) zenith_luminance = (zenith_luminance + overcast_zenith) / 2;
     const double radiance = zenith.value_or(std::max(0.0, zenith_luminance) * 1000 / sky_efficacy);
     Daylight result;
-    result.cie_sky = {type, sky_irradiance.value_or(radiance * norm * pi) * rad_efficacy};
+    result.cie_sky = {type, sky_irradiance.value_or(radiance * ratio * pi) * rad_efficacy};
     result.ground_reflectance = std::clamp(ground, 0.0, 1.0);
     if (is_overcast) return result;
     // Compute the illuminance by the sun, facing it

@@ -27,7 +27,7 @@ struct Location {
         return part.empty() ? file->string() : fmt::format("{}: {}", file->string(), part);
     }
     std::string shown(const std::string& message) const { return is_foreign ? without_quotes(message) : message; }
-    /// @param setting  As in Fault.
+    /// @param setting  Fault::setting.
     InputError error(const std::string& message, const std::string& setting = {}) const {
         const std::string text = part.empty() ? shown(message) : fmt::format("{}: {}", part, shown(message));
         return InputError(Fault{text, std::string(part), setting, *file, line});

@@ -23,8 +23,8 @@ class SourceFiles {
     std::pair<const SourceFile&, bool> find(std::string_view name, const SourceFile& includer);
 
   private:
-    std::map<std::filesystem::path, SourceFile> sources_;                // by canonical path
-    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // by path as written
+    std::map<std::filesystem::path, SourceFile> sources_;                // keys: canonical paths
+    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // keys: paths as written
 };
 
 }  // namespace interflect::detail

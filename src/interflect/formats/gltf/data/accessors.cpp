@@ -58,6 +58,7 @@ std::size_t element_size(const GltfElements& elements) {
     return size_of(elements.component_type) * static_cast<std::size_t>(elements.components);
 }
 
+/// Returns the number and type of an accessor's elements, without their data.
 GltfElements shape_of(const GltfValue& owner) {
     GltfElements shape;
     shape.count = owner.integer("count");

@@ -32,7 +32,7 @@ class GltfBuffers {
     GltfAsset& asset_;
     const GltfParts& parts_;
     std::vector<GltfValue> buffers_, views_;
-    std::map<std::uint32_t, std::string> read_, decompressed_;  // by index of the buffer, and of the view
+    std::map<std::uint32_t, std::string> read_, decompressed_;  // keys: buffers, and views
 };
 
 }  // namespace interflect::detail

@@ -17,6 +17,7 @@ constexpr int repeat = 10497;  // glTF constant
 /// Limit of all decoded pixels, because each texture decodes its images again.
 constexpr std::uint64_t max_decoded = 32 * max_texels;
 
+/// Returns the linear values of 16-bit sRGB values.
 const std::vector<float>& decoded_srgb() {
     static const std::vector<float> table = [] {
         std::vector<float> values(1 << 16);
@@ -111,6 +112,7 @@ StoredImage GltfImages::decode(std::uint32_t image) {
 }
 
 Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
+    // Decode the images; the first one determines the size
     StoredImage colour, metallic, coverage;
     const StoredImage* shape = nullptr;  // image that determines the size
     std::string name;
@@ -126,6 +128,7 @@ Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
     load(texels.metallic, metallic);
     load(texels.coverage.image, coverage);
     Texture result{name, static_cast<std::uint32_t>(shape->width), static_cast<std::uint32_t>(shape->height), {}};
+    // Compute the texels
     constexpr int blue = 2, alpha = 3;
     result.texels.reserve(shape->pixel_count());
     for (std::uint32_t y = 0; y < result.height; ++y)

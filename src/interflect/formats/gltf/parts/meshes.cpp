@@ -19,7 +19,7 @@ namespace {
 using Imath::V3d;
 
 constexpr int float_component = 5126;
-constexpr const char* lightmap_set = "TEXCOORD_1";  // by convention
+constexpr const char* lightmap_set = "TEXCOORD_1";  // set of texture coordinates that lightmaps use by convention
 constexpr const char* normal_set = "NORMAL";
 /// Distance beyond 0 or 1 that counts as rounding.
 constexpr double lightmap_tolerance = 1e-4;
@@ -323,7 +323,7 @@ Mesh GltfMeshes::mesh_of(const GltfValue& primitive, const Vertices& vertices, c
         for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
     if (surface.mapping) {
-        const GltfElements& c = *vertices.texture_coordinates;  // which exist if there is a mapping
+        const GltfElements& c = *vertices.texture_coordinates;  // a mapping implies coordinates
         mesh.texture_coordinates.reserve(used.size());
         for (const std::uint32_t v : used) {
             const V2f coordinate = surface.mapping->apply(c.number(v, 0), c.number(v, 1));

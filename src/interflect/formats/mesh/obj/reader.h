@@ -53,14 +53,14 @@ class ObjReader {
     std::vector<Imath::V3d> positions_;
     std::vector<V2f> coordinates_;
     std::vector<Imath::V3d> normals_;
-    std::vector<Use> uses_;  // by position
+    std::vector<Use> uses_;  // one entry per position
     const LineReader* lines_ = nullptr;
     Counts preceding_;               // numbers of entries before the current line
     bool has_all_vertices_ = false;  // whether the vertices of later lines have been read
     std::string object_, group_;
     std::uint32_t material_ = 0;
     std::uint32_t mesh_ = none;                                                // current mesh, once it has faces
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // by object and material
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // keys: object and material
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };
 

@@ -213,7 +213,8 @@ class PlyReader {
         }
     }
 
-    /// Every vertex after the first two makes a triangle, whose orientation alternates; -1 begins a new strip.
+    /// Reads a triangle strip. Each vertex after the first two adds a triangle, whose orientation alternates; -1 begins
+    /// a new strip.
     void read_strip(const PlyProperty& property) {
         std::uint64_t length = 0;  // number of vertices in the current strip
         std::array<std::uint32_t, 2> last{};

@@ -66,9 +66,9 @@ class MgfSceneBuilder {
     SceneFaces faces_;
     VertexWeld weld_;
     std::unordered_map<std::string, std::uint32_t> material_index_, object_index_, texture_index_;
-    std::vector<Rgb> largest_texels_;  // per texture
+    std::vector<Rgb> largest_texels_;  // one per texture
     std::uint64_t texels_ = 0;
-    std::vector<MgfMaterial> used_materials_;  // per scene material
+    std::vector<MgfMaterial> used_materials_;  // one per material of the scene
 };
 
 }  // namespace interflect::detail

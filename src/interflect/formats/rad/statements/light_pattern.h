@@ -25,10 +25,10 @@ struct RadLightPattern {
     std::vector<double> arguments;  ///< Factor; then the size of a box or cylinder [m].
     std::string data_file;
     std::vector<Coordinate> coordinates;
-    Imath::M44d to_file;  ///< From the luminaire's frame, which is that of PhotometricWeb, to the file.
+    Imath::M44d to_file;  ///< Transform from the luminaire's frame (PhotometricWeb) to the file.
 };
 
-/// @return  nullopt for other patterns. @throws std::invalid_argument for missing arguments.
+/// Parses a pattern. @return  nullopt for other patterns. @throws std::invalid_argument for missing arguments.
 std::optional<RadLightPattern> parse_light_pattern(const RadPrimitive& primitive);
 
 /// Emitting surfaces in the luminaire's frame.

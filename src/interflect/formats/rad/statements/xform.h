@@ -26,7 +26,7 @@ struct RadXform {
 /// @return  nullopt for an empty command and for shell syntax beyond pipes and quotes.
 std::optional<std::vector<std::vector<std::string>>> parse_pipeline(std::string_view command);
 
-/// @param words  Command and arguments. @return  nullopt for other commands and for arguments in a file (-f).
+/// @param words  Command and arguments. @return  nullopt for commands other than xform, and for arguments in a file.
 /// @throws std::invalid_argument if xform would reject it.
 std::optional<RadXform> parse_xform(std::span<const std::string> words);
 
