@@ -88,7 +88,7 @@ const ExportFormat& require_export_format(const fs::path& path) {
         if (extension == format.extension) return format;
         known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", format.extension, format.name);
     }
-    for (const char* of_scene : scene_export_extensions) known += fmt::format(", {}", of_scene);
+    for (const char* scene_extension : scene_export_extensions) known += fmt::format(", {}", scene_extension);
     throw InputError(path, 0, "expected one of the extensions " + known);
 }
 
@@ -101,7 +101,7 @@ std::vector<fs::path> export_solution(const fs::path& path, const Scene& scene, 
     require_values_of_elements(*solution.forest, solution.irradiance.size(), "irradiance");
     if (options.lightmap && options.lightmap->groups && solution.groups.empty())
         throw InputError("lightmaps of light groups: the solution has no groups; solve the scene with light groups");
-    const PendingFile can_be_written(path);
+    const PendingFile can_be_written(path);  // throws before the computation if the path cannot be written
 
     return write_files(format.make(path, scene, solution, options));
 }

@@ -17,14 +17,15 @@ using namespace detail;
 
 namespace {
 
-constexpr double dark_share = 0.01;  // of the reflected light; see export_exposure()
+/// Share of the reflected light from the darkest surfaces, which the exposure ignores (export_exposure()).
+constexpr double dark_share = 0.01;
 
 struct LitSurface {
-    double exitance;
-    double area;
+    double exitance;  // reflected light [lm/m^2]
+    double area;      // [m^2]
 };
 
-/// Sorted by reflected light.
+/// Returns the leaves that reflect light, in ascending order of exitance.
 std::vector<LitSurface> lit_surfaces(const Scene& scene, const Solution& solution) {
     const ElementForest& forest = *solution.forest;
     Materials materials(scene);
@@ -49,6 +50,7 @@ std::vector<LitSurface>::const_iterator skip_dark(const std::vector<LitSurface>&
     });
 }
 
+/// Returns the exposure of the geometric mean of exitance, weighted by area [stops].
 float exposure_of_surfaces(const Scene& scene, const Solution& solution) {
     const std::vector<LitSurface> lit = lit_surfaces(scene, solution);
     double stops = 0, area = 0;

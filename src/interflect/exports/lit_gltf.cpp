@@ -22,6 +22,7 @@ std::unique_ptr<SourceGltf> kept_file(const Scene& scene, const std::filesystem:
     return source_of(scene, folder, options.warnings ? *options.warnings : ignored);
 }
 
+/// @param encode  GltfDocument::glb or GltfDocument::gltf.
 std::vector<ExportedFile> make(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                const ExportOptions& options, std::string (GltfDocument::*encode)() const) {
     GltfDocument document;
@@ -30,7 +31,7 @@ std::vector<ExportedFile> make(const std::filesystem::path& path, const Scene& s
         try {
             document = source->document();
             files = add_lightmap(document, *source, path, scene, solution, options);
-        } catch (const nlohmann::json::exception& fault) {  // in parts that the reader of scenes skips
+        } catch (const nlohmann::json::exception& fault) {  // a fault in a part that the scene reader skips
             throw InputError(scene.files.front(), 0, fmt::format("no valid glTF: {}", fault.what()));
         } catch (const GltfFault& fault) {
             throw InputError(scene.files.front(), 0, fault.what());

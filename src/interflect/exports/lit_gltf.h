@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Make a binary glTF 2.0 file with y up (docs/files/export.md).
+/// Makes a binary glTF 2.0 file with y up (docs/files/export.md).
 std::vector<ExportedFile> make_glb(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                                    const ExportOptions& options);
 /// Makes a glTF file in JSON, with embedded binary data.

@@ -8,9 +8,10 @@ namespace interflect::detail {
 
 namespace {
 
+/// Names of the real spherical harmonics of bands 0 to 2.
 constexpr std::array<const char*, 9> harmonics{"Y00", "Y1-1", "Y10", "Y11", "Y2-2", "Y2-1", "Y20", "Y21", "Y22"};
 
-ProbeGrid measured(const Scene& scene, const Solution& solution, const ExportOptions& options) {
+ProbeGrid measured_probes(const Scene& scene, const Solution& solution, const ExportOptions& options) {
     return irradiance_probes(scene, solution, RayCaster(scene), options.probes, options.monitor);
 }
 
@@ -38,7 +39,7 @@ Json description(const Scene& scene, const ProbeGrid& grid, const ExportOptions&
 
 std::vector<ExportedFile> make_probes_json(const std::filesystem::path& path, const Scene& scene,
                                            const Solution& solution, const ExportOptions& options) {
-    const ProbeGrid grid = measured(scene, solution, options);
+    const ProbeGrid grid = measured_probes(scene, solution, options);
     Json json = description(scene, grid, options);
     Json& all = json["coefficients"] = Json::array();
     for (const IrradianceProbe& probe : grid.probes) {
@@ -50,7 +51,7 @@ std::vector<ExportedFile> make_probes_json(const std::filesystem::path& path, co
 
 std::vector<ExportedFile> make_probes_exr(const std::filesystem::path& path, const Scene& scene,
                                           const Solution& solution, const ExportOptions& options) {
-    const ProbeGrid grid = measured(scene, solution, options);
+    const ProbeGrid grid = measured_probes(scene, solution, options);
     const auto layer = [&](std::size_t k) {
         std::vector<float> values;
         for (const IrradianceProbe& probe : grid.probes)
@@ -60,6 +61,7 @@ std::vector<ExportedFile> make_probes_exr(const std::filesystem::path& path, con
     std::vector<std::vector<float>> values;
     std::vector<ImageLayer> layers;
     for (std::size_t k = 1; k < harmonics.size(); ++k) values.push_back(layer(k));
+    // Layers refer to `values`, which must not grow any more.
     for (std::size_t k = 1; k < harmonics.size(); ++k) layers.push_back({harmonics[k], "RGB", values[k - 1]});
     Image image(grid.count[0], grid.count[1] * grid.count[2]);
     for (std::size_t i = 0; i < grid.probes.size(); ++i) image.pixels[i] = grid.probes[i].coefficients[0];

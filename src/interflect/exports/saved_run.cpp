@@ -25,7 +25,7 @@ void archive_options(StateArchive& archive, SolveOptions& options) {
         archive.by_value("options/max_elements", std::vector{options.refinement.max_elements}).at(0);
 }
 
-/// Calls write(scene, solution, state).
+/// Calls write(scene, solution, state) with the undimmed scene and the state of the run.
 template <class Write>
 void write_run(Run& run, Solution result, SolveOptions options, const Write& write) {
     result.dimming = run.state.light.solution.dimming;
@@ -39,7 +39,7 @@ void write_run(Run& run, Solution result, SolveOptions options, const Write& wri
 
 Solution detail::dark_solution(const Scene& scene) {
     Solution dark;
-    dark.options.method = default_method(false);  // a file must name a method
+    dark.options.method = default_method(/*has_views=*/false);  // a file must name a method
     dark.forest = std::make_shared<ElementForest>(scene, scene.patches.size());
     const std::size_t elements = dark.forest->size();
     dark.irradiance.assign(elements, Rgb(0));

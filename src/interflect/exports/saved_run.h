@@ -29,7 +29,7 @@ SolvedScene read_solution_image(std::span<const char> image);
 void write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                     const StateArchive* state);
 
-/// Makes a solution without light, whose file contains the scene.
+/// Makes a solution without light, with which a solution file can store a scene that is not solved.
 Solution dark_solution(const Scene& scene);
 
 /// Returns the bytes of a solution file without checksums.

@@ -30,7 +30,8 @@ using namespace detail;
 namespace {
 
 /// Versions of the format. Version 3 adds the origin, contacts and surfaces of patches; version 4 checksums, options
-/// and the result; version 5 all iterations; version 6 direct light.
+/// and the result; version 5 all iterations; version 6 direct light; version 7 the largest
+/// payload of iterations.
 constexpr int format_version = 7, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
               first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
@@ -50,6 +51,7 @@ std::vector<Vector> grouped(const std::vector<float>& numbers) {
     return v;
 }
 
+/// Four vertices, material, object, other side and, since version 3, surface.
 constexpr std::size_t numbers_per_patch = 8;
 
 std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
@@ -62,15 +64,15 @@ std::vector<std::uint32_t> patch_numbers(const Scene& scene) {
     return numbers;
 }
 
-PerPatch<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::size_t each) {
-    PerPatch<Patch> patches(numbers.size() / each);
+PerPatch<Patch> patches_of(const std::vector<std::uint32_t>& numbers, std::size_t columns) {
+    PerPatch<Patch> patches(numbers.size() / columns);
     for (std::size_t i = 0; i < patches.size(); ++i) {
-        const auto* n = &numbers[each * i];
+        const auto* n = &numbers[columns * i];
         std::copy_n(n, 4, patches[i].vertices.begin());
         patches[i].material = n[4];
         patches[i].object = n[5];
         patches[i].other_side = PatchIndex(n[6]);
-        if (each == numbers_per_patch) patches[i].surface = n[7];
+        if (columns == numbers_per_patch) patches[i].surface = n[7];
     }
     return patches;
 }
@@ -158,8 +160,8 @@ bool has_hdf5_signature(const std::filesystem::path& path, std::uint64_t offset)
 void read_scene_arrays(const Hdf5Reader& file, int version, Scene& scene) {
     scene.vertices = grouped<V3f>(file.read<float>("/scene/vertices", 3));
     const bool has_contacts = version >= first_with_contacts;
-    const std::size_t each = has_contacts ? numbers_per_patch : numbers_per_patch - 1;
-    scene.patches = patches_of(file.read<std::uint32_t>("/scene/patches", each), each);
+    const std::size_t columns = has_contacts ? numbers_per_patch : numbers_per_patch - 1;
+    scene.patches = patches_of(file.read<std::uint32_t>("/scene/patches", columns), columns);
     if (has_contacts) scene.contacts = contacts_of(grouped<V3f>(file.read<float>("/scene/contacts", 3)));
     read_textures(file, scene);
 }
@@ -233,6 +235,7 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
     if (version >= first_with_history) read_history(file, solution);
     IterationReport& last = solution.iterations.back();
     last.elements = solution.forest->size();
+    // Each subdivision adds four elements and replaces one leaf by four.
     last.leaves = last.elements - (last.elements - solution.forest->patch_count()) / 4;
 }
 
@@ -318,8 +321,8 @@ StateArchive read_state(const VerifiedFile& file) {
     for (const Json& array : index.at("arrays")) {
         const auto size = array.at(1).get<std::size_t>();
         if (size > left.size()) throw std::runtime_error("the state of the run is cut short");
-        const auto some = left.first(size);
-        arrays[array.at(0).get<std::string>()].assign(some.begin(), some.end());
+        const auto part = left.first(size);
+        arrays[array.at(0).get<std::string>()].assign(part.begin(), part.end());
         left = left.subspan(size);
     }
     return StateArchive(std::move(arrays));
@@ -365,8 +368,9 @@ auto read_or_refuse(const std::filesystem::path& path, const char* fault, const 
         throw InputError(path, 0, fmt::format("{}: {}", fault, e.what()));
     }
 }
-/// Searches the scene's files beside the solution if they are not where they were read: its paths are relative to the
-/// folder in which the scene was solved.
+
+/// Searches missing files of the scene beside the solution, because their paths are relative to the working folder of
+/// the solve.
 void find_scene_files(Scene& scene, const std::filesystem::path& folder) {
     const auto is_there = [](const std::filesystem::path& path) {
         std::error_code ignored;

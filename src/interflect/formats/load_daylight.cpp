@@ -17,6 +17,7 @@ using namespace detail;
 
 namespace {
 
+/// Types of skies in CIE S 011:2003; 16 is the traditional overcast sky.
 constexpr int last_overcast = 5, last_intermediate = 10, traditional_overcast = 16;
 bool is_overcast(int type) { return type <= last_overcast || type == traditional_overcast; }
 
@@ -33,8 +34,8 @@ class DaylightAdder {
         const Daylight::Sun* sun = placed_.sun ? &*placed_.sun : nullptr;
         if (sun) require_sun(*sun);
         const bool has_dome = placed_.perez_sky || placed_.cie_sky;
-        ModelledDaylight light = placed_.perez_sky ? of_perez(*placed_.perez_sky)
-                                 : placed_.cie_sky ? of_cie(*placed_.cie_sky)
+        ModelledDaylight light = placed_.perez_sky ? perez_light(*placed_.perez_sky)
+                                 : placed_.cie_sky ? cie_light(*placed_.cie_sky)
                                                    : ModelledDaylight{};
         if (sun && !has_dome) light.sun_illuminance = usual_sun_illuminance(clear_type, sun->altitude);
         if (sun) light.sun_illuminance = sun->illuminance.value_or(light.sun_illuminance);
@@ -58,11 +59,11 @@ class DaylightAdder {
         return placed_.sun->altitude;
     }
 
-    ModelledDaylight of_perez(const Daylight::PerezSky& sky) const {
+    ModelledDaylight perez_light(const Daylight::PerezSky& sky) const {
         return perez_daylight(sky.direct_normal, sky.diffuse_horizontal, altitude("by Perez"));
     }
 
-    ModelledDaylight of_cie(const Daylight::CieSky& sky) const {
+    ModelledDaylight cie_light(const Daylight::CieSky& sky) const {
         ModelledDaylight light{cie_standard_sky(sky.type)};
         if (light.model.depends_on_sun()) altitude(fmt::format("of CIE type {}", sky.type));
         const auto sun_altitude = placed_.sun ? std::optional(placed_.sun->altitude) : std::nullopt;
@@ -74,9 +75,9 @@ class DaylightAdder {
     SkyDome dome(const ModelledDaylight& light) const {
         SkyDome dome{light.model, white(light.sky_illuminance), frame_.zenith, frame_.zenith};
         if (placed_.sun) dome.sun = towards_sun(*placed_.sun);
-        const double of_sun = placed_.sun ? light.sun_illuminance * sine_of(placed_.sun->altitude) : 0;
+        const double sun_on_ground = placed_.sun ? light.sun_illuminance * sine_of(placed_.sun->altitude) : 0;
         if (light.sky_illuminance > 0)
-            dome.ground = static_cast<float>(placed_.ground_reflectance * (1 + of_sun / light.sky_illuminance));
+            dome.ground = static_cast<float>(placed_.ground_reflectance * (1 + sun_on_ground / light.sky_illuminance));
         return dome;
     }
 
@@ -116,8 +117,8 @@ class DaylightAdder {
 }  // namespace
 
 double usual_sky_illuminance(int cie_type, std::optional<double> sun_altitude) {
-    constexpr double of_overcast = 10'000;
-    if (!sun_altitude) return of_overcast;
+    constexpr double without_sun = 10'000;
+    if (!sun_altitude) return without_sun;
     const double sine = sine_of(*sun_altitude);
     if (is_overcast(cie_type)) return 300 + 21'000 * sine;
     return cie_type <= last_intermediate ? 300 + 45'000 * sine : 800 + 15'500 * std::sqrt(sine);

@@ -25,6 +25,7 @@ namespace {
 
 using nlohmann::json;
 
+/// Members of a JSON object. Unknown members are faults.
 class Members {
   public:
     Members(const json& object, std::string where, const fs::path& file)
@@ -35,7 +36,7 @@ class Members {
     [[noreturn]] void fail(const std::string& message) const { throw InputError(file_, 0, where_ + ": " + message); }
 
     const json* find(const std::string& key) {
-        asked_for_.insert(key);
+        known_keys_.insert(key);
         const auto member = object_.find(key);
         return member == object_.end() ? nullptr : &*member;
     }
@@ -55,15 +56,15 @@ class Members {
     }
     void reject_others() const {
         for (const auto& [key, value] : object_.items())
-            if (!asked_for_.contains(key))
-                fail(fmt::format("unknown key '{}'; there are {}", key, fmt::join(asked_for_, ", ")));
+            if (!known_keys_.contains(key))
+                fail(fmt::format("unknown key '{}'; there are {}", key, fmt::join(known_keys_, ", ")));
     }
 
   private:
     const json& object_;
     std::string where_;
     const fs::path& file_;
-    std::set<std::string> asked_for_;
+    std::set<std::string> known_keys_;
 };
 
 View parse_view(const json& value, std::size_t index, const fs::path& path) {
@@ -81,10 +82,11 @@ View parse_view(const json& value, std::size_t index, const fs::path& path) {
     return view;
 }
 
+/// View in the options of Radiance's programs.
 class RadianceView {
   public:
-    /// Returns the remaining words.
-    std::span<const std::string_view> take(std::span<const std::string_view> words);
+    /// Reads an option of rvu with its arguments. Returns the remaining words.
+    std::span<const std::string_view> read_option(std::span<const std::string_view> words);
     View view() const {
         View view;
         view.eye = eye_;
@@ -100,7 +102,7 @@ class RadianceView {
     double vertical_ = 45;
 };
 
-std::span<const std::string_view> RadianceView::take(std::span<const std::string_view> words) {
+std::span<const std::string_view> RadianceView::read_option(std::span<const std::string_view> words) {
     const std::string_view option = words[0];
     const auto number = [&](std::size_t i) {
         const auto value = i < words.size() ? parse_number(words[i]) : std::nullopt;
@@ -169,9 +171,9 @@ View read_radiance_view(const fs::path& path) {
     bool found = false;
     while (lines.next()) try {
             std::span<const std::string_view> words = lines.words();
-            // Program name, such as rvu, or VIEW=.
+            // A line may begin with a program name, such as rvu, or with VIEW=.
             if (starts_a_view(words[0])) words = words.subspan(1);
-            for (found |= !words.empty(); !words.empty();) words = radiance_view.take(words);
+            for (found |= !words.empty(); !words.empty();) words = radiance_view.read_option(words);
         } catch (const std::invalid_argument& fault) {
             throw InputError(path, lines.line(), fault.what());
         }

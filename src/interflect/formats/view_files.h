@@ -12,7 +12,7 @@ namespace interflect::detail {
 /// @throws InputError for invalid or unknown members, and duplicate names.
 std::vector<View> read_view_list(const std::filesystem::path& path);
 
-/// Omits `extent`. @param views  With unique names. @throws std::runtime_error
+/// Writes views without `extent`. @param views  Views with unique names. @throws std::runtime_error
 void write_view_list(std::span<const View> views, const std::filesystem::path& path);
 
 }  // namespace interflect::detail

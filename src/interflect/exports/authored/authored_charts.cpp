@@ -27,7 +27,7 @@ V3d to_world(const V3d& x, const M44d& matrix) {
     return result;
 }
 
-/// Scalar products of the images of the axes. Equal ones mean the same shape, turned or mirrored.
+/// Returns scalar products of the transformed axes. Transforms with equal products differ by a rotation or reflection.
 std::array<double, 6> metric_of(const M44d& m) {
     const V3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
     return {x.dot(x), y.dot(y), z.dot(z), x.dot(y), y.dot(z), z.dot(x)};
@@ -65,7 +65,7 @@ void add_triangles(const Model& model, std::uint32_t index, const M44d& matrix, 
         patch.other_side = PatchIndex(none);
         const V3f& a = scene.vertices[patch.vertices[0]];
         const V3f u = scene.vertices[patch.vertices[1]] - a, v = scene.vertices[patch.vertices[2]] - a;
-        constexpr float thin = 1e-6f;  // height over length, at which single precision knows no plane
+        constexpr float thin = 1e-6f;  // relative height below which rounding determines the plane
         if (!(u.cross(v).length() > thin * std::max({u.length2(), v.length2(), (v - u).length2()}))) continue;
         scene.patches.push_back(patch);
         shape.triangles.push_back({index, first});
@@ -74,8 +74,9 @@ void add_triangles(const Model& model, std::uint32_t index, const M44d& matrix, 
 
 constexpr const char* density_property = "texels_per_metre";
 
+/// Numbers the connected components of the patches.
 PerPatch<std::uint32_t> parts_of(const Scene& scene) {
-    Scene points;  // the vertices without normals and coordinates
+    Scene points;  // vertices that are joined in spite of different normals and coordinates
     VertexWeld weld(points);
     std::vector<std::uint32_t> point_of;
     point_of.reserve(scene.vertices.size());
@@ -122,18 +123,18 @@ struct ShownMesh {
 
 std::vector<ShownMesh> shown_meshes(const Model& model, Warnings& warnings) {
     std::vector<ShownMesh> shown;
-    std::map<std::uint32_t, int> places;
+    std::map<std::uint32_t, int> place_count;  // number of places of each node
     for (const MeshInstance& instance : model.instances) {
         const bool continues = !shown.empty() && shown.back().first->node == instance.node &&
                                shown.back().first->to_world == instance.to_world;
         if (!continues) {
             shown.push_back({&instance, {}});
-            ++places[instance.node];
+            ++place_count[instance.node];
         }
         shown.back().meshes.push_back(instance.mesh);
     }
     std::erase_if(shown, [&](const ShownMesh& one) {
-        const bool is_copied = places[one.first->node] > 1;
+        const bool is_copied = place_count[one.first->node] > 1;
         if (is_copied)
             warnings.add("lightmap-instances",
                          "copies by EXT_mesh_gpu_instancing get no lightmap: they have one set of coordinates",
@@ -185,29 +186,31 @@ AuthoredDensities authored_densities(const Json& file) {
 AuthoredCharts authored_charts(Model model, const AuthoredDensities& densities, const LightmapOptions& options,
                                Warnings& warnings) {
     AuthoredCharts result;
-    const auto with = [&](const std::vector<TexelDensity>& further) {
+    const auto options_with = [&](const std::vector<TexelDensity>& further) {
         LightmapOptions chosen = options;
         chosen.densities.insert(chosen.densities.end(), further.begin(), further.end());
         return chosen;
     };
-    const LightmapOptions of_materials = with(densities.materials);
+    const LightmapOptions material_options = options_with(densities.materials);
     Scene scene;
     scene.materials = model.materials;
-    using Sizes = std::vector<std::pair<std::array<double, 6>, std::uint32_t>>;  // metric and shape
-    std::map<std::tuple<std::vector<std::uint32_t>, std::vector<bool>, std::optional<float>>, Sizes> known;
+    // Nodes share a shape if their meshes, densities and metrics are equal
+    using ShapesByMetric = std::vector<std::pair<std::array<double, 6>, std::uint32_t>>;  // metric and shape
+    std::map<std::tuple<std::vector<std::uint32_t>, std::vector<bool>, std::optional<float>>, ShapesByMetric> shapes;
     for (const auto& [instance, meshes] : shown_meshes(model, warnings)) {
         const std::array<double, 6> metric = metric_of(instance->to_world);
         const std::string& object = model.objects[instance->object];
         const auto own = densities.nodes.find(instance->node);
         const auto density = own == densities.nodes.end() ? std::nullopt : std::optional(own->second);
-        Sizes& sizes = known[{meshes, matching_densities(object, options), density}];
-        const auto same = [&](const auto& size) { return are_alike(metric, size.first); };
-        auto found = std::find_if(sizes.begin(), sizes.end(), same);
-        if (found == sizes.end()) {
-            sizes.emplace_back(metric, static_cast<std::uint32_t>(result.shapes.size()));
-            found = std::prev(sizes.end());
+        ShapesByMetric& alike = shapes[{meshes, matching_densities(object, options), density}];
+        const auto is_same = [&](const auto& shape) { return are_alike(metric, shape.first); };
+        auto found = std::find_if(alike.begin(), alike.end(), is_same);
+        if (found == alike.end()) {
+            alike.emplace_back(metric, static_cast<std::uint32_t>(result.shapes.size()));
+            found = std::prev(alike.end());
             result.shapes.push_back(shape_of(model, meshes, instance->to_world, object,
-                                             density ? with({{"*", *density}}) : of_materials, scene, warnings));
+                                             density ? options_with({{"*", *density}}) : material_options, scene,
+                                             warnings));
         }
         const std::vector<LightmapChart>& charts = result.shapes[found->second].charts;
         result.objects.push_back({instance->node, found->second, instance->object,

@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-/// The mesh of a node, in the size in which the node shows it. Each triangle of the file is a patch.
+/// The mesh of a node, scaled as in the node. Each triangle of the file is a patch.
 struct AuthoredShape {
     /// Place of a patch in the file.
     struct Triangle {
@@ -31,7 +31,7 @@ struct AuthoredShape {
 struct AuthoredObject {
     std::uint32_t node, shape;
     std::uint32_t object;       ///< Index into Model::objects.
-    std::uint32_t first_chart;  ///< Index of its first chart; the order is that of its shape's charts.
+    std::uint32_t first_chart;  ///< Index of its first chart; the others follow in the order of its shape.
     Imath::M44d to_world;
 };
 
@@ -51,7 +51,7 @@ struct AuthoredCharts {
 /// property in Blender. LightmapOptions::densities take precedence over nodes, and nodes over materials.
 struct AuthoredDensities {
     std::map<std::uint32_t, float> nodes;
-    std::vector<TexelDensity> materials;  ///< With the names of materials as patterns.
+    std::vector<TexelDensity> materials;  ///< Their patterns are the names of materials.
 };
 /// @throws InputError for a density that is not a number from 0 up.
 AuthoredDensities authored_densities(const Json& file);

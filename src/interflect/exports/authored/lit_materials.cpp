@@ -24,7 +24,7 @@ bool has_extension(const Json& json, const char* name) {
     return json.contains("extensions") && json["extensions"].contains(name);
 }
 
-/// Returns the highest set of texture coordinates that a material uses, at any depth, but for lightmaps of before.
+/// Returns the highest set of texture coordinates that a material uses at any depth, except for earlier lightmaps.
 int highest_set(const Json& json) {
     int highest = 0;
     if (!json.is_structured()) return highest;
@@ -46,7 +46,7 @@ bool is_diffuse(const Json& material) {
     return surface.value("metallicFactor", 1.0) <= mostly || surface.contains("metallicRoughnessTexture");
 }
 
-/// The material that the reader of scenes gives primitives without one.
+/// Returns the material of primitives without one, as in the scene reader.
 Json unnamed_material() {
     return {{"name", "default"},
             {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}, {"metallicFactor", 0}}}};

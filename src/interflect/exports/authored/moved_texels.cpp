@@ -16,7 +16,7 @@ namespace {
 
 using Imath::V3d;
 
-/// Returns parameters (a, b) with a edge_u + b edge_v nearest to a vector in the plane of the patch.
+/// Returns the parameters (a, b) for which a edge_u + b edge_v is nearest to a vector.
 Parameters along(const PatchGeometry::Shape& shape, const V3d& vector) {
     const V3d u(shape.edge_u), v(shape.edge_v);
     const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), determinant = uu * vv - uv * uv;
@@ -24,6 +24,7 @@ Parameters along(const PatchGeometry::Shape& shape, const V3d& vector) {
     return {static_cast<float>((x * vv - y * uv) / determinant), static_cast<float>((y * uu - x * uv) / determinant)};
 }
 
+/// Returns the number of a face, which is the smaller index of its patches.
 std::uint32_t face_of(std::uint32_t index, const Patch& patch) { return std::min(index, patch.other_side.value); }
 
 bool is_inside(const PatchGeometry& geometry, Parameters p) {
@@ -32,7 +33,7 @@ bool is_inside(const PatchGeometry& geometry, Parameters p) {
     return std::min(p.u, p.v) > margin && most < 1 - margin;
 }
 
-/// Distance that rounding of positions may move a face, and merging of triangles that are nearly in one plane [m].
+/// Returns the distance by which rounding of positions or merging of nearly coplanar triangles may move a face [m].
 float rounding_of(const Scene& scene) {
     constexpr float relative = 1e-5f;
     float largest = 0;
@@ -135,14 +136,17 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
                 if (places[i].is_near) use(i);
         });
     };
+    // Find the patches at each texel
     for_each_near([&](std::size_t i) {
         const auto& [u, v, x] = surface_of(object, places[i].patch, places[i].at);
         faces[i] = find(x, front_of(object, u, v), object.object);
     });
+    // Choose the side whose light the chart shows
     const auto count = [&](const auto& is_counted) { return std::count_if(faces.begin(), faces.end(), is_counted); };
     const auto fronts = count([&](const Faces& f) { return shows(f.front); });
     const auto backs = count([&](const Faces& f) { return shows(f.back); });
     const bool takes_back = backs > 0 && (fronts == 0 || is_inverted_[chart]), is_unlit = fronts == 0 && backs == 0;
+    // Move the texels to the patches of this side
     for_each_near([&](std::size_t i) {
         TexelPlace& place = places[i];
         const auto& [u, v, x] = surface_of(object, place.patch, place.at);

@@ -13,12 +13,12 @@
 namespace interflect::detail {
 
 /// Moves texels from the triangles of a file to the patches of the solved scene, which contacts have cut into pieces.
-/// A texel gets the light of the front, or of the back in charts whose fronts are unlit, and on solids that are turned
-/// inside out. Texels that are hidden, between two objects, or unlit where another face touches theirs, lose
-/// TexelPlace::is_near: they copy the light beside them.
+/// A texel gets the light of the front, or of the back in charts with unlit fronts and on solids turned inside out.
+/// Texels that are hidden, between two objects, or unlit where another face touches theirs, lose TexelPlace::is_near:
+/// they copy the light beside them.
 class TexelMover {
   public:
-    /// Refers to its arguments. @param visibility  Of the patches of the solved scene.
+    /// Refers to its arguments. @param visibility  Visibility of the patches of `solved`.
     TexelMover(const AuthoredCharts& authored, const Scene& solved, const PatchVisibility& visibility);
 
     void move(std::size_t chart, std::span<TexelPlace> places);
@@ -31,14 +31,14 @@ class TexelMover {
     struct Faces {
         PatchIndex front, back;
         bool touches;                  ///< Whether another face touches this one at the point.
-        bool meets_front, meets_back;  ///< Whether the front of another object's face faces this side, at distance 0.
+        bool meets_front, meets_back;  ///< Whether the front of a touching face of another object faces this side.
     };
-    /// Edges of a triangle, and a point on it from Scene::origin [m].
+    /// Edges of a triangle, and a point on it relative to Scene::origin [m].
     struct Surface {
         Imath::V3d u, v;
         V3f x;
     };
-    /// Numbers of texels.
+    /// Numbers of texels with a lit front, and with both sides lit.
     struct LitSides {
         std::uint64_t front = 0, both = 0;
     };
@@ -54,9 +54,9 @@ class TexelMover {
     std::vector<std::uint32_t> object_of_chart_;
     std::vector<PatchGeometry> geometries_;
     std::vector<Boxed> tree_;
-    float reach_ = 0;                // [m]
-    std::vector<bool> is_inverted_;  // of each chart: whether the fronts of its part are inside a solid
-    std::vector<LitSides> sides_;    // of each object
+    float reach_ = 0;                // tolerance of positions [m]
+    std::vector<bool> is_inverted_;  // for each chart, whether the fronts of its part are inside a solid
+    std::vector<LitSides> sides_;    // one entry per object
 };
 
 }  // namespace interflect::detail

@@ -23,7 +23,7 @@ namespace {
 
 constexpr const char* khr_draco = "KHR_draco_mesh_compression";
 
-// Unsigned types of components; the signed ones are one less. Others have 4 bytes.
+// Component types of glTF accessors. Signed types are one less than unsigned ones; the other types have 4 bytes.
 constexpr int unsigned_byte = 5121, unsigned_short = 5123, single_precision = 5126;
 
 std::size_t component_bytes(int component_type) {
@@ -61,7 +61,7 @@ class LitMeshes {
             if (!is_lit[primitive]) light(mesh["primitives"][primitive], object, primitive);
             is_lit[primitive] = true;
         }
-        if (is_taken_.insert(number).second)
+        if (taken_meshes_.insert(number).second)
             document_.json["meshes"][number] = std::move(mesh);
         else
             document_.json["nodes"][object.node]["mesh"] = document_.add("meshes", std::move(mesh));
@@ -70,7 +70,7 @@ class LitMeshes {
   private:
     using Key = std::pair<std::uint32_t, std::uint32_t>;  // shape and primitive
 
-    /// Marks the meshes of nodes without a lightmap, and the materials of primitives without one, as not to be changed.
+    /// Protects the meshes of nodes without a lightmap, and the materials of primitives without one, from changes.
     void keep_unlit() {
         std::set<std::pair<std::uint32_t, std::uint32_t>> lit;  // mesh and primitive of the file
         for (const AuthoredShape& shape : authored_.shapes)
@@ -85,10 +85,10 @@ class LitMeshes {
         const Json& nodes = document_.json["nodes"];
         for (std::uint32_t i = 0; i < nodes.size(); ++i)
             if (nodes[i].contains("mesh") && !lit_nodes.contains(i))
-                is_taken_.insert(nodes[i]["mesh"].get<std::uint32_t>());
+                taken_meshes_.insert(nodes[i]["mesh"].get<std::uint32_t>());
         for (std::uint32_t m = 0; m < meshes_.size(); ++m)
             for (std::uint32_t k = 0; k < meshes_[m]["primitives"].size(); ++k)
-                if (is_taken_.contains(m) || !lit.contains({m, k})) materials_.keep(meshes_[m]["primitives"][k]);
+                if (taken_meshes_.contains(m) || !lit.contains({m, k})) materials_.keep(meshes_[m]["primitives"][k]);
     }
 
     void light(Json& primitive, const AuthoredObject& object, std::uint32_t number) {
@@ -162,7 +162,7 @@ class LitMeshes {
     }
 
     /// Adds an accessor with further copies of some elements.
-    /// @param described  Accessor that has the other properties.
+    /// @param described  Index of the accessor with the other properties.
     int with_copies(const GltfElements& elements, std::uint32_t described, const SplitVertices& vertices) {
         const std::vector<std::uint32_t>& copied = vertices.copied;
         const std::size_t count = vertices.places.size() - copied.size();
@@ -191,13 +191,13 @@ class LitMeshes {
     const AuthoredCharts& authored_;
     const BakedImages& baked_;
     LitMaterials& materials_;
-    const Json meshes_;                 // of the file
-    std::set<std::uint32_t> is_taken_;  // meshes that a node shows as they are in the document
+    const Json meshes_;                     // meshes of the file before changes
+    std::set<std::uint32_t> taken_meshes_;  // meshes that must not change, because a node already uses them
     std::map<Key, SplitVertices> vertices_;
     std::map<Key, Json> split_primitives_;
 };
 
-/// Warns of objects whose lightmap has the light of one side although the other can be seen and is lit.
+/// Warns about objects whose lightmap contains one side although the other one is visible and lit.
 void warn_of_backs(const Json& file, const AuthoredCharts& authored, const TexelMover& mover, Warnings& warnings) {
     const auto shows_back = [&](std::uint32_t mesh) {
         const auto& [number, primitive, vertices] = authored.model.meshes[mesh].source;
@@ -213,7 +213,8 @@ void warn_of_backs(const Json& file, const AuthoredCharts& authored, const Texel
     }
 }
 
-void stop_use(Json& file, const char* extension) {
+/// Removes an extension from the lists of used and required ones.
+void unlist_extension(Json& file, const char* extension) {
     for (const char* list : {"extensionsUsed", "extensionsRequired"}) {
         if (!file.contains(list)) continue;
         Json& names = file[list];
@@ -227,7 +228,7 @@ void remove_lights(Json& file) {
         remove_extension(file, name);
         if (file.contains("nodes"))
             for (Json& node : file["nodes"]) remove_extension(node, name);
-        stop_use(file, name);
+        unlist_extension(file, name);
     }
 }
 
@@ -261,7 +262,7 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& sourc
     LitMaterials materials(document, images);
     LitMeshes meshes(document, source, authored, baked, materials);
     for (const AuthoredObject& object : authored.objects) meshes.light(object);
-    if (!uses_draco(document.json)) stop_use(document.json, khr_draco);
+    if (!uses_draco(document.json)) unlist_extension(document.json, khr_draco);
     if (!chosen.keep_lights) remove_lights(document.json);
     return std::move(images.files);
 }

@@ -30,11 +30,11 @@ nlohmann::json authored_json(std::string_view text, const fs::path& path) {
 }
 
 void pad(std::string& bytes) {
-    constexpr std::size_t alignment = 8;  // of every type of an accessor
+    constexpr std::size_t alignment = 8;  // multiple of the alignments of all types of accessors
     bytes.resize((bytes.size() + alignment - 1) / alignment * alignment, '\0');
 }
 
-/// Returns the depth of nested lists and objects. Writing JSON takes stack for each level.
+/// Returns the depth of nested lists and objects. The JSON writer needs stack for each level.
 int nesting_of(std::string_view json) {
     int depth = 0, deepest = 0;
     bool in_text = false;
@@ -73,7 +73,7 @@ bool has_bounds(const Scene& scene, const Imath::Box3d& bounds) {
     return (own.min - bounds.min).length() <= most && (own.max - bounds.max).length() <= most;
 }
 
-/// Returns the type that the first bytes of an image tell.
+/// Returns the type of an image by its first bytes.
 const char* mime_type_of(std::string_view bytes) {
     if (bytes.starts_with("\x89PNG")) return "image/png";
     if (bytes.starts_with("\xabKTX 20")) return "image/ktx2";
@@ -132,6 +132,7 @@ std::map<std::string, DracoAttribute> SourceGltf::decompressed(std::uint32_t mes
 GltfDocument SourceGltf::document() {
     Json json = Json::parse(parts_.json);
     remove_baked_light(json);
+    // Join the buffers
     std::string joined;
     std::vector<int> new_buffer;
     std::vector<std::size_t> offset;
@@ -145,7 +146,7 @@ GltfDocument SourceGltf::document() {
         new_buffer.push_back(has_data ? 0 : static_cast<int>(buffers.size()));
         if (has_uri) joined += asset_.read_uri(described[i].text("uri"), described[i]);
         if (is_chunk) joined += parts_.binary.substr(0, described[i].integer("byteLength"));
-        if (!has_data) buffers.push_back(json["buffers"][i]);  // of views that an extension replaces
+        if (!has_data) buffers.push_back(json["buffers"][i]);  // placeholder for views of extensions
     }
     if (json.contains("buffers")) json["buffers"] = std::move(buffers);
     if (json.contains("bufferViews"))
@@ -155,6 +156,7 @@ GltfDocument SourceGltf::document() {
                 move_view(view["extensions"][meshopt], new_buffer, offset);
         }
     GltfDocument document(std::move(json), std::move(joined));
+    // Embed the images
     const std::vector<GltfValue> images = asset_.root().objects("images");
     for (std::size_t i = 0; i < images.size(); ++i) {
         const std::string uri = images[i].text("uri");

@@ -21,7 +21,7 @@ class SourceGltf {
     SourceGltf(const std::filesystem::path& path, std::string bytes, const ReadOptions& options = {});
 
     const Model& model() const { return model_; }
-    /// Returns the file with all buffers joined into the first one, and images of other files in it.
+    /// Returns the file with its buffers and the images of other files joined into the first buffer.
     GltfDocument document();
     /// Returns the values of an accessor of vertices.
     GltfElements elements(std::uint32_t accessor);
@@ -39,9 +39,9 @@ class SourceGltf {
     GltfAccessors accessors_;
 };
 
-/// Returns the glTF file of a scene, at its place or in another folder. Null, with a warning that says why, if the file
-/// has changed since, is gone or was read in another unit or with another up axis; null without one for scenes of other
-/// formats.
+/// Returns the glTF file of a scene, at its path or else in `folder`. Null, with a warning about the reason, if the
+/// file has changed since, is missing or was read in another unit or with another up axis; null without one for scenes
+/// of other formats.
 std::unique_ptr<SourceGltf> source_of(const Scene& scene, const std::filesystem::path& folder, Warnings& warnings);
 
 }  // namespace interflect::detail

@@ -37,7 +37,7 @@ SplitVertices split_vertices(const Model& model, const AuthoredShape& shape, std
     const auto triangles = places_of_triangles(shape);
     SplitVertices result;
     result.places.resize(vertex_count);
-    std::vector<std::vector<std::uint32_t>> copies(vertex_count);  // of each vertex
+    std::vector<std::vector<std::uint32_t>> copies(vertex_count);  // copies of each vertex
     const auto vertex_at = [&](std::uint32_t vertex, const Place& place) {
         if (place.chart == none) return vertex;
         if (result.places[vertex].chart == none) result.places[vertex] = place;

@@ -8,19 +8,19 @@
 
 namespace interflect::detail {
 
-/// Vertices of a primitive of a glTF file: those of the file, then copies of vertices at which charts meet.
+/// Vertices of a primitive of a glTF file: first the file's own, then copies of vertices at which charts meet.
 struct SplitVertices {
-    /// Corner of a patch in a chart of the shape, at which a vertex has its coordinate.
+    /// Corner of a patch in a chart of the shape, which determines the lightmap coordinate of a vertex.
     struct Place {
         std::uint32_t chart = none, patch = 0, corner = 0;  ///< LightmapChart::patches[patch].corners[corner].
     };
 
     std::vector<Place> places;           ///< Place of each vertex; its chart is `none` if no triangle uses it.
-    std::vector<std::uint32_t> copied;   ///< Vertices of the file that follow the file's own.
+    std::vector<std::uint32_t> copied;   ///< For each copy, the vertex of the file.
     std::vector<std::uint32_t> corners;  ///< Vertex of each corner, three per triangle.
 };
 
-/// @param primitive  Index in the mesh of the file. @param vertex_count  In the file.
+/// @param primitive  Index in the mesh of the file. @param vertex_count  Number of vertices in the file.
 SplitVertices split_vertices(const Model& model, const AuthoredShape& shape, std::uint32_t primitive,
                              std::uint32_t vertex_count);
 

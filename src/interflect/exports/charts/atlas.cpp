@@ -57,6 +57,7 @@ Packing pack(std::vector<stbrp_rect> rectangles, int width, int height) {
     return packing;
 }
 
+/// @param lying  Whether the longer sides are horizontal.
 std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen,
                                       int gutter, bool lying) {
     std::vector<stbrp_rect> rectangles;
@@ -72,7 +73,7 @@ std::vector<stbrp_rect> rectangles_of(const std::vector<LightmapChart>& charts, 
 /// found.
 Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector<int>& chosen, int gutter,
                      int max_size) {
-    constexpr std::size_t many_charts = 2000;
+    constexpr std::size_t many_charts = 2000;  // packing them takes minutes, so fewer widths are tried
     const int trials = chosen.size() > many_charts ? 6 : 96;
     std::optional<Packing> best;
     for (const bool lying : {true, false}) {
@@ -83,6 +84,7 @@ Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector
             area += static_cast<double>(r.w) * r.h;
             widest = std::max(widest, r.w);
         }
+        // Try widths of images from about half as wide as high to twice as wide as high
         const double narrowest = std::max<double>(widest, std::sqrt(area / 2));
         const double broadest = std::max(narrowest, std::min<double>(max_size, std::sqrt(2 * area)));
         for (int i = 0; i <= trials; ++i) {
@@ -97,14 +99,15 @@ Packing best_packing(const std::vector<LightmapChart>& charts, const std::vector
     return lying.packed_area >= standing.packed_area ? lying : standing;
 }
 
-void turn(LightmapChart& chart) {
+/// Rotates a chart by 90 degrees.
+void rotate(LightmapChart& chart) {
     for (FlatPatch& flat : chart.patches)
         for (Imath::V2d& corner : flat.corners) corner = {corner.y, chart.size.x - corner.x};
     std::swap(chart.size.x, chart.size.y);
     std::swap(chart.columns, chart.rows);
 }
 
-std::vector<int> from_to(std::size_t begin, std::size_t end) {
+std::vector<int> index_range(std::size_t begin, std::size_t end) {
     std::vector<int> numbers;
     for (std::size_t i = begin; i < end; ++i) numbers.push_back(static_cast<int>(i));
     return numbers;
@@ -112,19 +115,19 @@ std::vector<int> from_to(std::size_t begin, std::size_t end) {
 
 /// Moves charts to their places in image `page`. Returns the charts that were not packed.
 std::vector<int> place(const Packing& packing, int page, int gutter, std::vector<LightmapChart>& charts) {
-    std::vector<int> left;
+    std::vector<int> remaining;
     for (const stbrp_rect& r : packing.rectangles) {
         if (!r.was_packed) {
-            left.push_back(r.id);
+            remaining.push_back(r.id);
             continue;
         }
         LightmapChart& chart = charts[static_cast<std::size_t>(r.id)];
-        if (chart.columns + 2 * gutter != r.w) turn(chart);
+        if (chart.columns + 2 * gutter != r.w) rotate(chart);
         chart.page = page;
         chart.left = r.x + gutter;
         chart.top = r.y + gutter;
     }
-    return left;
+    return remaining;
 }
 
 /// Halves the resolution of a chart. Returns whether it changed.
@@ -139,10 +142,10 @@ bool halve(LightmapChart& chart) {
 
 std::vector<Imath::V2i> pack_charts(std::vector<LightmapChart>& charts, int gutter, int max_size) {
     std::vector<Imath::V2i> sizes;
-    std::vector<int> left = from_to(0, charts.size());
-    while (!left.empty()) {
-        const Packing packing = best_packing(charts, left, gutter, max_size);
-        left = place(packing, static_cast<int>(sizes.size()), gutter, charts);
+    std::vector<int> remaining = index_range(0, charts.size());
+    while (!remaining.empty()) {
+        const Packing packing = best_packing(charts, remaining, gutter, max_size);
+        remaining = place(packing, static_cast<int>(sizes.size()), gutter, charts);
         sizes.push_back(packing.size);
     }
     return sizes;
@@ -155,9 +158,9 @@ std::vector<Imath::V2i> pack_groups(std::vector<LightmapChart>& charts, const st
     std::size_t next = 0;
     while (next < first.size()) {
         const auto packed_to = [&](std::size_t end) {
-            return best_packing(charts, from_to(begin_of(next), begin_of(end)), gutter, max_size);
+            return best_packing(charts, index_range(begin_of(next), begin_of(end)), gutter, max_size);
         };
-        // The largest number of groups that fit, by bisection.
+        // Find the largest number of groups that fits into an image, by bisection
         std::size_t end = first.size();
         Packing packing = packed_to(end);
         if (!packing.is_complete) {
@@ -173,9 +176,10 @@ std::vector<Imath::V2i> pack_groups(std::vector<LightmapChart>& charts, const st
                 packing = std::move(tried);
             }
         }
+        // Halve the resolution of a group that is too large
         if (end == next) {
             bool is_smaller = false;
-            for (const int i : from_to(begin_of(next), begin_of(next + 1)))
+            for (const int i : index_range(begin_of(next), begin_of(next + 1)))
                 is_smaller |= halve(charts[static_cast<std::size_t>(i)]);
             if (!is_smaller)
                 throw InputError(

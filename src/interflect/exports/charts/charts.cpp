@@ -28,7 +28,7 @@ struct BorderEdge {
     V3f inwards;  // unit vector in the plane of the patch
 };
 
-/// Returns the joints of smooth surfaces, except those between objects.
+/// Returns the joints of smooth surfaces, except joints between objects.
 Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     Joints joints = smooth.seams;
     std::vector<EdgeIndex> first(smooth.edges.count);
@@ -47,6 +47,7 @@ Joints joints_of(const Scene& scene, const SmoothSurfaces& smooth) {
     return joints;
 }
 
+/// Neighbours of each patch on the same flat surface, and the border edges of these surfaces.
 class Neighbourhood {
   public:
     Neighbourhood(const Scene& scene, const Joints& joints)
@@ -66,6 +67,7 @@ class Neighbourhood {
             }
     }
 
+    /// Returns a number that identifies a side of a flat surface.
     std::uint64_t surface_side(PatchIndex p) const {
         const bool is_back = scene_.patches[p].other_side < p;
         return std::uint64_t{surface_[p]} << 1 | static_cast<std::uint64_t>(is_back);
@@ -76,6 +78,7 @@ class Neighbourhood {
   private:
     using Intervals = std::vector<std::pair<float, float>>;
 
+    /// Adds the parts of an edge outside the intervals that it shares with neighbours.
     void add_border(EdgeIndex edge, Intervals shared) {
         constexpr float rounding = 1e-5f;
         const Patch& patch = scene_.patches[edge.patch()];
@@ -153,6 +156,7 @@ ChartConflicts find_conflicts(const Scene& scene, const Neighbourhood& neighbour
     return conflicts;
 }
 
+/// Grows connected pieces of flat surfaces, breadth-first, from patches without conflicts.
 std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>& shown,
                                      const Neighbourhood& neighbourhood, const ChartConflicts& conflicts) {
     std::vector<std::uint32_t> piece_of(scene.patches.size(), none);

@@ -16,12 +16,13 @@ constexpr std::size_t max_patches_unfolded = 4096;
 
 /// Maximum relative change of edge lengths.
 constexpr double max_stretch = 0.1;
-/// Maximum relative change of areas at corners.
+/// Maximum relative change of the parallelogram of the two edges at a corner.
 constexpr double max_shear = 0.2;
 
 /// Relative tolerance for rounding errors.
 constexpr double flat_rounding = 1e-4;
 
+/// Rotation about `from`, then translation of `from` to `to`.
 struct RigidMotion {
     Imath::V2d from, to, cos_sin;
 
@@ -49,6 +50,7 @@ std::optional<RigidMotion> best_motion(std::span<const PointPair> pairs) {
     return motion;
 }
 
+/// Returns whether edge lengths and parallelograms at corners differ by at most `stretch` and `shear`.
 bool is_alike(const FlatPatch& a, const FlatPatch& b, double stretch, double shear) {
     const std::size_t count = a.outline().size();
     const auto is_within = [](double x, double y, double share) { return std::abs(x - y) <= share * std::abs(x); };
@@ -89,6 +91,7 @@ class Unfolding {
     }
 
   private:
+    /// Adds adjacent pieces to layout `number`, breadth-first.
     FlatPatches grow(std::uint32_t seed, std::uint32_t number) {
         layout_.clear();
         boxes_.clear();
@@ -119,6 +122,7 @@ class Unfolding {
         }
     }
 
+    /// Returns a piece moved to the current layout; nullopt if it conflicts, deforms too much or overlaps.
     std::optional<FlatPatches> place(std::uint32_t piece, std::uint32_t number) const {
         if (has_conflict(piece, number)) return std::nullopt;
         bool has_seams = false;
@@ -150,6 +154,8 @@ class Unfolding {
         });
     }
 
+    /// Returns the points that a piece shares with the layout, before and after the motion.
+    /// @param has_seams  Set if the piece shares parts of edges.
     std::vector<PointPair> common_points(std::uint32_t piece, std::uint32_t number, bool& has_seams) const {
         std::vector<PointPair> pairs;
         for (const FlatPatch& flat : pieces_[piece])
@@ -204,14 +210,14 @@ class Unfolding {
     const ChartConflicts& conflicts_;
     std::vector<FlatPatches> pieces_;
     double gap_;
-    std::vector<std::uint32_t> piece_of_;
-    std::vector<std::uint32_t> layout_of_;
-    std::vector<std::vector<std::uint32_t>> joints_of_;
+    std::vector<std::uint32_t> piece_of_;                // piece of each patch
+    std::vector<std::uint32_t> layout_of_;               // layout of each piece
+    std::vector<std::vector<std::uint32_t>> joints_of_;  // joints of each piece
 
     // The current layout:
     FlatPatches layout_;
     std::vector<Imath::Box2d> boxes_;
-    std::unordered_map<std::uint32_t, Imath::V2d> position_;
+    std::unordered_map<std::uint32_t, Imath::V2d> position_;  // position of each group of joined corners
     std::unordered_map<std::uint32_t, std::size_t> place_in_layout_;
 };
 

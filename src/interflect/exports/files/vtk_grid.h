@@ -20,6 +20,7 @@ struct VtkArray {
         numbers;
 };
 
+/// The leaves of a solution as an unstructured grid of VTK.
 class VtkGrid {
   public:
     using Sink = std::function<void(const VtkArray&)>;

@@ -20,7 +20,7 @@ namespace {
 
 std::string text_of_colour(const Rgb& colour) { return fmt::format("{} {} {}", colour.x, colour.y, colour.z); }
 
-/// Encodes opacity as PNG. Readers of MTL take its greys as linear, so decoded values cancel the sRGB encoding of PNG.
+/// Encodes opacity as PNG. Readers of MTL treat its greys as linear, so decoded values cancel the sRGB encoding of PNG.
 std::string opacity_png(const Texture& opacity) {
     Image image(static_cast<int>(opacity.width), static_cast<int>(opacity.height));
     for (std::size_t i = 0; i < opacity.texels.size(); ++i) image.pixels[i] = Rgb(srgb_decode(opacity.texels[i].x));

@@ -1,4 +1,4 @@
-// Blender 2.93 or later: https://docs.blender.org/api
+// Scenes as Python programs for Blender 2.93 or later (https://docs.blender.org/api).
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Mitsuba 3: https://mitsuba.readthedocs.io, 'Plugins'.
+// Scenes for Mitsuba 3 (https://mitsuba.readthedocs.io, 'Plugins').
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -58,9 +58,9 @@ std::string sensor_text(const ForeignScene& scene, const View& view) {
     std::string lens =
         fmt::format("    <string name=\"fov_axis\" value=\"y\"/>\n    <float name=\"fov\" value=\"{}\"/>\n", view.fov);
     if (view.extent > 0) {  // orthographic sensors cover [-1, 1] horizontally
-        const float half =
+        const float half_width =
             view.extent / 2 * static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
-        transform = fmt::format("<scale x=\"{0}\" y=\"{0}\"/>", half) + transform;
+        transform = fmt::format("<scale x=\"{0}\" y=\"{0}\"/>", half_width) + transform;
         lens.clear();
     }
     return fmt::format(
@@ -74,24 +74,24 @@ std::string sensor_text(const ForeignScene& scene, const View& view) {
         scene.options.height);
 }
 
-/// Whether something covers the face so closely that hardly any of its light leaves the gap, also after reflections.
+/// Returns whether other faces are so close that hardly any light of the face leaves the gap, even after reflections.
 /// @param widest  Largest width of a gap [m].
 bool faces_narrow_gap(const RayCaster& ray_caster, const ForeignMesh& mesh, std::size_t face, float widest) {
-    constexpr std::uint64_t count = 64;
+    constexpr std::uint64_t ray_count = 64;
     constexpr int most_free = 3;            // rays that may leave the gap
-    constexpr float share_of_side = 0.02f;  // width of a gap that reflected light hardly leaves
+    constexpr float share_of_side = 0.02f;  // ratio of gap to face size, at which reflected light hardly leaves
     const auto& corners = mesh.faces[face];
     const bool is_triangle = corners[3] == none;
     const auto at = [&](std::size_t k) { return mesh.positions[corners[k]]; };
     const V3f cross = (at(1) - at(0)).cross(at(is_triangle ? 2 : 3) - at(0)), normal = cross.normalized();
     const float gap = std::min(widest, share_of_side * std::sqrt(cross.length()));
     std::vector<Ray> rays;
-    for (std::uint64_t i = 0; i < count; ++i) {
+    for (std::uint64_t i = 0; i < ray_count; ++i) {
         const auto places = random_words(face, 2 * i), directions = random_words(face, 2 * i + 1);
         float u = unit_float(places[0]), v = unit_float(places[1]);
         if (u + v > 1) std::tie(u, v) = std::pair(1 - u, 1 - v);
-        const std::size_t half = is_triangle ? 0 : i % 2;  // of a quadrilateral
-        const V3f origin = at(0) + u * (at(1 + half) - at(0)) + v * (at(2 + half) - at(0));
+        const std::size_t triangle = is_triangle ? 0 : i % 2;  // triangle of a quadrilateral
+        const V3f origin = at(0) + u * (at(1 + triangle) - at(0)) + v * (at(2 + triangle) - at(0));
         rays.push_back({origin, cosine_direction(normal, unit_float(directions[0]), unit_float(directions[1]))});
     }
     std::vector<Hit> hits(rays.size());
@@ -101,7 +101,7 @@ bool faces_narrow_gap(const RayCaster& ray_caster, const ForeignMesh& mesh, std:
 }
 
 /// Returns the mesh without faces whose light stays in narrow gaps, as between the sheets of a thin lamp. Mitsuba would
-/// let it out, because its shadow rays do not test the last part of their length.
+/// leak this light, because its shadow rays do not test the last part of their length.
 ForeignMesh without_narrow_gaps(const ForeignScene& scene, const RayCaster& ray_caster, ForeignMesh mesh) {
     constexpr float shadow_epsilon = 1e-3f;  // share of the length of a shadow ray that is not tested
     const float widest = shadow_epsilon * 2 * scene.size;
@@ -112,7 +112,7 @@ ForeignMesh without_narrow_gaps(const ForeignScene& scene, const RayCaster& ray_
     return mesh;
 }
 
-/// @param ray_caster  Of the scene; made when the first mesh needs it.
+/// @param ray_caster  Ray caster of the scene, constructed at its first use.
 std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh, std::optional<RayCaster>& ray_caster) {
     const Material& m = scene.material(mesh);
     const std::string bsdf = bsdf_text(scene, mesh.material);
@@ -189,7 +189,7 @@ V3f envmap_direction(float x, float y) {
 
 std::string mitsuba_description(ForeignScene& scene) {
     using namespace for_mitsuba;
-    // Shadow rays of the integrator 'path' end at masks; those of 'volpath' pass their holes.
+    // Shadow rays of the integrator 'path' end at masks. Shadow rays of 'volpath' pass their holes.
     const bool has_holes = std::any_of(scene.meshes.begin(), scene.meshes.end(),
                                        [&](const ForeignMesh& mesh) { return scene.is_cut_out(mesh); });
     std::string text = fmt::format(

@@ -1,4 +1,4 @@
-// pbrt-v4: https://pbrt.org/fileformat-v4
+// Scenes for pbrt-v4 (https://pbrt.org/fileformat-v4).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -26,10 +26,11 @@ std::string camera_text(const ForeignScene& scene, const View& view) {
                                    triple(V3f(view.look_at)), triple(view.up));
     if (!(view.extent > 0))
         return text + fmt::format("Camera \"perspective\" \"float fov\" [ {} ]\n", shorter_fov(scene, view.fov));
-    const float half = view.extent / 2;
-    const float across = half * static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
-    return text + fmt::format("Camera \"orthographic\" \"float screenwindow\" [ {} {} {} {} ]\n", -across, across,
-                              -half, half);
+    const float half_height = view.extent / 2;
+    const float half_width =
+        half_height * static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
+    return text + fmt::format("Camera \"orthographic\" \"float screenwindow\" [ {} {} {} {} ]\n", -half_width,
+                              half_width, -half_height, half_height);
 }
 
 std::string shape_text(ForeignScene& scene, const ForeignMesh& mesh) {

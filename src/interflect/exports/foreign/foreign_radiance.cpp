@@ -23,6 +23,7 @@ constexpr float pi = std::numbers::pi_v<float>;
 constexpr float efficacy = 179;        // [lm/W]
 constexpr float lamp_radius = 0.005f;  // radius of spheres that represent point lights [m]
 
+/// Formats three numbers after their count.
 std::string numbers(const V3f& v) { return "3 " + triple(v); }
 
 /// Encodes a texture with an additional edge of repeated texels, so that Radiance interpolates across the border of the
@@ -68,6 +69,7 @@ std::string picture_coordinate(const std::string& pixel, std::uint32_t size, std
     return fmt::format("{}*{:.9g}", pixel, last / (size - 1));
 }
 
+/// Returns the expressions of the column and row of a triangle's points in a tile.
 std::string place_in(const Tile& tile, const std::array<V3f, 3>& corners, const std::array<V2f, 3>& coordinates) {
     const auto along = [&](int k, std::uint32_t size, std::uint32_t other_side) {
         const std::string place = affine(corners, {coordinates[0][k], coordinates[1][k], coordinates[2][k]});
@@ -193,7 +195,7 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire, cons
     return "";
 }
 
-/// SkyModel as functions of Radiance of the cosines of the angles to the zenith and to the sun.
+/// SkyModel in Radiance's language, as functions of the cosines of the angles to the zenith and to the sun.
 constexpr const char* sky_functions =
     R"({ Luminance of a CIE general sky (CIE S 011:2003), or of Perez's, over a uniform ground.
   A1, A2, A3: zenith    A4, A5, A6: towards the sun    arg(7) to arg(12): a, b, c, d, e, g    arg(13): ground }
@@ -250,9 +252,9 @@ std::string sky_text(ForeignScene& scene) {
 /// Describes a view. The options -vh and -vv are full angles, or sizes of orthographic views.
 std::string view_text(const ForeignScene& scene, const View& view) {
     const float aspect = static_cast<float>(scene.options.width) / static_cast<float>(scene.options.height);
-    const float half = std::tan(view.fov / 360 * pi);
+    const float tangent = std::tan(view.fov / 360 * pi);
     const float vertical = view.extent > 0 ? view.extent : view.fov;
-    const float horizontal = view.extent > 0 ? aspect * view.extent : 360 / pi * std::atan(aspect * half);
+    const float horizontal = view.extent > 0 ? aspect * view.extent : 360 / pi * std::atan(aspect * tangent);
     return fmt::format("rvu -vt{} -vp {} -vd {} -vu {} -vh {} -vv {}\n", view.extent > 0 ? 'l' : 'v',
                        triple(V3f(view.eye)), triple(V3f(view.look_at - view.eye)), triple(view.up), horizontal,
                        vertical);

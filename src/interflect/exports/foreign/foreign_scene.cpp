@@ -25,6 +25,7 @@ Backs backs_of(const Scene& scene, const Patch& patch) {
     return scene.materials[scene.patches[patch.other_side].material].exitance == Rgb(0) ? Backs::reflect : Backs::emit;
 }
 
+/// Groups faces by material and backs.
 class Meshes {
   public:
     explicit Meshes(const Scene& scene) : scene_(scene), names_(material_names(scene)) {}
@@ -189,7 +190,7 @@ Texture ForeignScene::sky_image(int aspect, const std::function<V3f(float, float
         }
     const Skies skies(scene);
     const std::uint32_t columns = static_cast<std::uint32_t>(aspect) * rows;
-    const auto place = [&](std::uint32_t i, std::uint32_t sample, std::uint32_t count) {
+    const auto sample_coordinate = [&](std::uint32_t i, std::uint32_t sample, std::uint32_t count) {
         return (static_cast<float>(i) + (static_cast<float>(sample) + 0.5f) / static_cast<float>(samples)) /
                static_cast<float>(count);
     };
@@ -201,7 +202,8 @@ Texture ForeignScene::sky_image(int aspect, const std::function<V3f(float, float
             Rgb sum(0);
             for (std::uint32_t down = 0; down < samples; ++down)
                 for (std::uint32_t across = 0; across < samples; ++across)
-                    sum += skies.radiance(direction(place(x, across, columns), place(y, down, rows)));
+                    sum += skies.radiance(
+                        direction(sample_coordinate(x, across, columns), sample_coordinate(y, down, rows)));
             image.texels[i] = sum / static_cast<float>(samples * samples);
         }
     });

@@ -12,7 +12,7 @@
 
 namespace interflect::detail {
 
-/// What the backs of faces do with light.
+/// Effect of the backs of faces on light.
 enum class Backs {
     pass,     ///< Transmit it, as one-sided faces do.
     reflect,  ///< Reflect it.
@@ -38,11 +38,11 @@ struct ForeignMesh {
 /// A scene to be described for another renderer, with the files of the description.
 struct ForeignScene {
     const Scene& scene;
-    std::filesystem::path path;
+    std::filesystem::path path;  ///< Path of the description.
     SceneExportOptions options;
-    std::string (*escape)(std::string_view file_name);
-    std::vector<std::string> materials;
-    std::vector<std::string> luminaires;
+    std::string (*escape)(std::string_view file_name);  ///< Escapes a file name for the description.
+    std::vector<std::string> materials;                 ///< Unique names.
+    std::vector<std::string> luminaires;                ///< Unique names.
     std::vector<ForeignMesh> meshes;
     std::vector<View> views;  ///< At least one, relative to Scene::origin.
     V3f centre;               ///< Centre of the bounding box [m].
@@ -63,8 +63,8 @@ struct ForeignScene {
     std::string add_opacity_image(std::uint32_t material);
     std::string add_opaque_reflectance_image(std::uint32_t material);
     bool has_sky() const;
-    /// Returns the mean radiance of all skies in each texel. The width is `aspect` times the height.
-    /// @param direction  Maps image coordinates in [0, 1], y downwards.
+    /// Returns the total radiance of the skies, averaged over each texel. The width is `aspect` times the height.
+    /// @param direction  Maps image coordinates in [0, 1], with y downwards, to directions.
     Texture sky_image(int aspect, const std::function<V3f(float x, float y)>& direction) const;
     /// Adds the image of the skies. Returns its escaped name, or "" without skies.
     std::string add_sky_image(int aspect, const std::function<V3f(float x, float y)>& direction);
@@ -78,6 +78,7 @@ struct ForeignScene {
     /// Returns the distance between the two sides of an emitting face [m].
     float distance_of_backs() const;
 
+    /// Materials that the other renderer supports.
     enum class Support { all, without_glass, without_glass_and_backs };
     /// Warns about mirrors, and about panes and one-sided faces that are opaque in the other renderer.
     void warn_of_materials(Support support);

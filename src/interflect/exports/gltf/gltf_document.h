@@ -13,7 +13,7 @@
 
 namespace interflect::detail {
 
-/// A glTF file in the making: its JSON and its binary buffer.
+/// A glTF file under construction: its JSON and its binary buffer.
 class GltfDocument {
   public:
     GltfDocument();
@@ -27,12 +27,13 @@ class GltfDocument {
     int add(const char* array, Json object);
     void use_extension(const char* name);
 
-    /// These functions add data of vertices and return the index of the accessor.
+    /// The following functions add vertex data and return the index of the accessor.
     int add_positions(std::span<const V3f> values);  ///< Also adds bounds, which glTF requires.
     int add_attribute(std::span<const Rgb> values);
     int add_attribute(std::span<const V2f> values);
     int add_indices(std::span<const std::uint32_t> values);
-    /// @param accessor  Its JSON without the place of its data. @param stride  From element to element [bytes].
+    /// @param accessor  JSON of the accessor without the position of its data.
+    /// @param stride    Distance from element to element [bytes].
     int add_elements(Json accessor, std::string_view bytes, std::size_t stride);
     int add_buffer_view(std::string_view bytes);
 

@@ -25,6 +25,7 @@ struct MappedVertex {
 };
 
 using MappedPrimitive = WeldedVertices<MappedVertex>;
+/// Primitives by object, material and page.
 using MappedPrimitives = std::map<std::tuple<std::uint32_t, std::uint32_t, int>, MappedPrimitive>;
 
 MappedPrimitives primitives_of(const Scene& scene, const Lightmap& lightmap, ElementMesh& mesh) {

@@ -54,9 +54,9 @@ Json camera_of(const View& view, double scene_size) {
 void add_nodes(GltfDocument& document, const Scene& scene, const GltfPrimitives& primitives, const V3f& up) {
     const std::string name = escaped(std::filesystem::path(scene.name).stem().string());
     Json children = Json::array();
-    for (const auto& [object, of_object] : primitives) {
+    for (const auto& [object, object_primitives] : primitives) {
         const std::string object_name = scene.objects[object].empty() ? name : escaped(scene.objects[object]);
-        const int mesh = document.add("meshes", {{"name", object_name}, {"primitives", of_object}});
+        const int mesh = document.add("meshes", {{"name", object_name}, {"primitives", object_primitives}});
         children.push_back(document.add("nodes", {{"name", object_name}, {"mesh", mesh}}));
     }
     const double scene_size = size_of(scene);

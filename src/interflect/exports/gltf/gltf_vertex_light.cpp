@@ -16,7 +16,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns whether the file contains the reflectance texture, and vertices the factor by which it is multiplied.
+/// Returns whether the file contains the reflectance texture, which viewers multiply by the colours of vertices.
 bool keeps_texture(const Material& material) {
     return material.reflectance_texture != none && !(channel_sum(material.exitance) > 0);
 }
@@ -59,7 +59,7 @@ class VertexColours {
   private:
     const Scene& scene_;
     float scale_;
-    std::vector<Rgb> brightest_;
+    std::vector<Rgb> brightest_;  // reflectance of the brightest texel of each material
 };
 
 using LitPrimitive = WeldedVertices<LitVertex>;

@@ -56,7 +56,7 @@ void add_irradiance(GltfDocument& document, const Image& image, const std::strin
         const float over = largest_channel(texel);
         const float byte = over > 1 ? std::ceil(std::log2(over) / images.stops * 255) : 0;
         encoded.pixels[i] = within_display_range(texel / std::exp2(images.stops * byte / 255));
-        gains.pixels[i] = Rgb(srgb_decode(byte / 255));  // the codec's inverse: the image contains the byte
+        gains.pixels[i] = Rgb(srgb_decode(byte / 255));  // cancels the sRGB encoding of the codec
         has_gain |= byte > 0;
     }
     images.textures.push_back(document.add_texture(encoded, name, false));

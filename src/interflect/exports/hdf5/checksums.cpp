@@ -21,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view signature = "interflect checksums\n";
+/// Name of ranges between arrays, which contain the structure of the HDF5 file.
 constexpr const char* structure = "structure";
 /// The checksum of the block itself, at its end, has eight hexadecimal digits and a line break.
 constexpr std::size_t own_checksum_length = 9, checked_length = checksum_block_size - own_checksum_length;
@@ -43,13 +44,14 @@ std::optional<std::uint32_t> checksum_of(std::ifstream& file, const FileRange& r
     return checksum;
 }
 
+/// Returns the common name of numbered arrays, such as "/groups" for "/groups/3".
 std::string_view checked_name(std::string_view name) {
     const std::size_t last = name.find_last_not_of("0123456789");
     const bool is_numbered = last + 1 < name.size() && name[last] == '/';
     return is_numbered ? name.substr(0, last) : name;
 }
 
-/// Joins the ranges of numbered arrays, because the block has limited room.
+/// Joins the ranges of numbered arrays, because the size of the block is limited.
 std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges) {
     std::vector<FileRange> joined;
     for (const FileRange& range : ranges) {
@@ -62,6 +64,7 @@ std::vector<FileRange> with_numbered_joined(const std::vector<FileRange>& ranges
     return joined;
 }
 
+/// Sorts the ranges, joins numbered arrays, and fills gaps outside the block.
 std::vector<FileRange> partition(std::vector<FileRange> ranges, std::uint64_t size) {
     std::sort(ranges.begin(), ranges.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
     ranges = with_numbered_joined(ranges);

@@ -78,6 +78,7 @@ void set_compressed_chunks(hid_t properties, std::span<const hsize_t> size) {
     require(H5Pset_deflate(properties, deflate_level), "cannot compress an array");
 }
 
+/// @param compressed_size  Dimensions of a compressed array; empty without compression.
 Hdf5Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
                        std::span<const hsize_t> compressed_size = {}) {
     const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, no_properties);
@@ -133,8 +134,8 @@ void write_attribute_of_type(hid_t file, const std::string& group, const char* n
 herr_t refuse_other_files(const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) { return -1; }
 
 /// Refuses external and virtual storage, which could refer to any file.
-void require_stored_here(hid_t set, const std::string& name) {
-    const Hdf5Handle properties(H5Dget_create_plist(set), H5Pclose, "an array has no properties");
+void require_stored_here(hid_t dataset, const std::string& name) {
+    const Hdf5Handle properties(H5Dget_create_plist(dataset), H5Pclose, "an array has no properties");
     if (H5Pget_external_count(properties) != 0 || H5Pget_layout(properties) == H5D_VIRTUAL)
         throw std::runtime_error("array '" + name + "' is in another file, which is not allowed");
 }
@@ -166,11 +167,11 @@ bool Hdf5Reader::has(const std::string& name) const { return H5Lexists(file_, na
 
 template <class T>
 std::vector<T> Hdf5Reader::read(const std::string& name, std::size_t columns) const {
-    const Hdf5Handle set(H5Dopen2(file_, name.c_str(), links_), H5Dclose, "an array is missing");
-    require_stored_here(set, name);
-    const Hdf5Handle space(H5Dget_space(set), H5Sclose, "an array has no size");
+    const Hdf5Handle dataset(H5Dopen2(file_, name.c_str(), links_), H5Dclose, "an array is missing");
+    require_stored_here(dataset, name);
+    const Hdf5Handle space(H5Dget_space(dataset), H5Sclose, "an array has no size");
     // Check type and size before reading, because the file could state any size to allocate.
-    const Hdf5Handle type(H5Dget_type(set), H5Tclose, "an array has no type");
+    const Hdf5Handle type(H5Dget_type(dataset), H5Tclose, "an array has no type");
     if (H5Tget_size(type) != sizeof(T)) throw std::runtime_error("array '" + name + "' has the wrong type");
     std::array<hsize_t, 2> size{0, 1};
     const int rank = H5Sget_simple_extent_ndims(space);
@@ -179,11 +180,11 @@ std::vector<T> Hdf5Reader::read(const std::string& name, std::size_t columns) co
     hsize_t file_size = 0;
     require(H5Fget_filesize(file_, &file_size), "cannot tell the file's size");
     if (size[1] != columns || size[0] > largest_array / columns ||
-        size[0] * columns * sizeof(T) > std::min(H5Dget_storage_size(set), file_size))
+        size[0] * columns * sizeof(T) > std::min(H5Dget_storage_size(dataset), file_size))
         throw std::runtime_error("array '" + name + "' has an unexpected size");
     std::vector<T> data(size[0] * columns);
     if (!data.empty())
-        require(H5Dread(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()),
+        require(H5Dread(dataset, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()),
                 "cannot read '" + name + "'");
     return data;
 }
@@ -204,11 +205,11 @@ FileRange Hdf5Writer::write(const std::string& name, std::span<const T> numbers,
     const std::array<hsize_t, 2> size{numbers.size() / columns, columns};
     const Hdf5Handle space(H5Screate_simple(columns == 1 ? 1 : 2, size.data(), nullptr), H5Sclose,
                            "cannot size an array");
-    const Hdf5Handle set = new_dataset(file_, name, native_type<T>(), space);
+    const Hdf5Handle dataset = new_dataset(file_, name, native_type<T>(), space);
     if (numbers.empty()) return {name, checksum_block_size, 0};
-    require(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
+    require(H5Dwrite(dataset, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
             "cannot write '" + name + "'");
-    return {name, H5Dget_offset(set), H5Dget_storage_size(set)};
+    return {name, H5Dget_offset(dataset), H5Dget_storage_size(dataset)};
 }
 
 template FileRange Hdf5Writer::write(const std::string&, std::span<const float>, std::size_t);
@@ -227,9 +228,9 @@ void Hdf5Writer::write_compressed(const std::string& name, std::span<const T> nu
     const std::array<hsize_t, 2> size{numbers.size() / columns, columns};
     const int rank = columns == 1 ? 1 : 2;
     const Hdf5Handle space(H5Screate_simple(rank, size.data(), nullptr), H5Sclose, "cannot size an array");
-    const std::span<const hsize_t> used(size.data(), static_cast<std::size_t>(rank));
-    const Hdf5Handle set = new_dataset(file_, name, native_type<T>(), space, used);
-    require(H5Dwrite(set, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
+    const std::span<const hsize_t> dimensions(size.data(), static_cast<std::size_t>(rank));
+    const Hdf5Handle dataset = new_dataset(file_, name, native_type<T>(), space, dimensions);
+    require(H5Dwrite(dataset, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()),
             "cannot write '" + name + "'");
 }
 
@@ -257,18 +258,18 @@ FileRange Hdf5Writer::write_joined(const std::string& name, const std::vector<st
     hsize_t size = 0;
     for (const auto& part : parts) size += part.size();
     const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose, "cannot size an array");
-    const Hdf5Handle set = new_dataset(file_, name, native_type<std::byte>(), space);
+    const Hdf5Handle dataset = new_dataset(file_, name, native_type<std::byte>(), space);
     hsize_t begin = 0;
     for (const auto& part : parts) {
         const hsize_t count = part.size();
         if (count == 0) continue;
         const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose, "cannot size an array");
         H5Sselect_hyperslab(space, H5S_SELECT_SET, &begin, nullptr, &count, nullptr);
-        require(H5Dwrite(set, native_type<std::byte>(), memory, space, H5P_DEFAULT, part.data()),
+        require(H5Dwrite(dataset, native_type<std::byte>(), memory, space, H5P_DEFAULT, part.data()),
                 "cannot write '" + name + "'");
         begin += count;
     }
-    return {name, H5Dget_offset(set), H5Dget_storage_size(set)};
+    return {name, H5Dget_offset(dataset), H5Dget_storage_size(dataset)};
 }
 
 void Hdf5Writer::flush() { require(H5Fflush(file_, H5F_SCOPE_LOCAL), "cannot write the file"); }

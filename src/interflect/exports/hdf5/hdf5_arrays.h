@@ -77,6 +77,7 @@ class Hdf5Writer {
     void write_compressed(const std::string& name, std::span<const T> numbers, std::size_t columns = 1);
     void write_attribute(const std::string& group, const char* name, std::span<const std::int64_t> numbers);
     void write_attribute(const std::string& group, const char* name, std::string_view text);
+    /// Writes the concatenated parts as one array.
     FileRange write_joined(const std::string& name, const std::vector<std::span<const std::byte>>& parts);
     /// Completes the file. Either flush() or image() must be the last call.
     void flush();

@@ -26,7 +26,7 @@ namespace interflect::detail {
 namespace {
 
 /// Noise of 3% a texel is 0.5% after the filter, in a furnished room with a window; 6% left visible grain on its walls.
-constexpr DirectSampling texel_sampling{&DefaultSamples::texel, 0.03, /*is_tested=*/false};
+constexpr DirectSampling texel_sampling{&DefaultSamples::texel, 0.03, /*needs_direct=*/false};
 
 Rgb content_of(const Scene& scene, const BakedPoint& place, const Rgb& irradiance, LightmapContent content) {
     if (content == LightmapContent::irradiance) return irradiance;
@@ -45,7 +45,7 @@ class LightmapTexels {
         const std::vector<std::size_t> copied = copied_texels(places, static_cast<std::size_t>(columns));
         if (std::find_if(copied.begin(), copied.end(), [](std::size_t i) { return i != no_texel; }) == copied.end())
             return add_hidden(chart, places, columns);
-        std::vector<std::size_t> place_index(places.size());
+        std::vector<std::size_t> place_index(places.size());  // index in places_ of each evaluated texel
         PointGrid grid{columns, std::vector<std::uint32_t>(places.size(), none)};
         for (std::size_t i = 0; i < places.size(); ++i) {
             place_index[i] = places_.size();
@@ -91,6 +91,7 @@ class LightmapTexels {
     std::int64_t count_inside() const { return texels_inside_; }
 
   private:
+    /// Texel of an image, and the index in places_ of the point whose light it shows.
     struct Target {
         std::size_t page, place;
         int column, row;
@@ -113,7 +114,7 @@ class LightmapTexels {
     std::vector<BakedPoint> places_;
     std::vector<PointGrid> grids_;  // one for each chart
     std::vector<Target> targets_;
-    std::vector<std::pair<Target, BakedPoint>> hidden_;  // texels of charts without any other texels
+    std::vector<std::pair<Target, BakedPoint>> hidden_;  // texels of charts whose texels are all hidden
     std::int64_t texels_inside_ = 0;
 };
 
@@ -155,10 +156,9 @@ void require_memory(double image_texels, double chart_texels, const LightmapOpti
                     std::size_t groups) {
     constexpr double encoded_bytes = 16;  // a texel has at most four channels in single precision
     constexpr double target_bytes = 24;   // size of two indices, a column and a row
-    // Each texel of an image is stored twice, the second time to be encoded, and once encoded.
+    // Memory per texel of an image: the texel, its copy for the encoder, and its encoded bytes.
     constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
-    // A texel of a chart needs two copies of its place, its target and its light.
-    // Its light may be searched from hidden texels.
+    // A texel of a chart needs two copies of its place, its target, its light, and an entry in a tree (fill_hidden()).
     constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb) + sizeof(Boxed),
                      hybrid_bytes = sizeof(SurfacePoint) + sizeof(Gauge) + sizeof(GaugeLight) + sizeof(Rgb),
                      gathered_bytes =

@@ -25,7 +25,7 @@ SampledLight no_light(int width, int height) {
     return {Image(width, height), Image(width, height), std::vector<float>(count), std::vector<float>(count)};
 }
 
-/// A grid of a picture that shows several.
+/// A grid and its position in a picture of several grids [texels].
 struct PlacedGrid {
     const PointGrid* points;
     int left = 0, top = 0;
@@ -66,7 +66,7 @@ std::vector<PlacedGrid> side_by_side(std::span<const PointGrid> grids) {
     return placed;
 }
 
-/// A picture of grids; only direct light has noise.
+/// Returns grids as a picture for the denoiser, in which only direct light has noise.
 PictureLayers layers_of(std::span<const PlacedGrid> grids, std::span<const Gauge> gauges,
                         std::span<const GaugeLight> light) {
     int width = 0, height = 0;
@@ -114,7 +114,7 @@ void filter(std::span<const PointGrid> grids, std::span<const Gauge> gauges, std
             grid.visit_points([&](std::uint32_t point, int x, int y) { irradiance[point] = filtered.at(x, y); });
     };
     const std::vector<PlacedGrid> placed = side_by_side(grids);
-    // A learned filter needs a large picture; the start of each takes longer than most grids.
+    // A learned filter gets one large picture, because starting it takes longer than filtering most grids.
     if (available_denoiser(denoiser) == Denoiser::oidn) return filter_picture(placed);
     for (const PlacedGrid& grid : placed) filter_picture(std::array{PlacedGrid{grid.points}});
 }
@@ -129,10 +129,10 @@ BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeO
       sampling_(sampling),
       vertices_(scene, *solution.forest),
       smooth_(*solution.forest, vertices_, solution.irradiance),
-      known_{*solution.forest, solution.irradiance, true} {
+      known_{*solution.forest, solution.irradiance, /*is_interpolated=*/true} {
     if (options.shading == Shading::smooth) return;
     ray_caster_.emplace(scene);
-    if (options.shading == Shading::hybrid || sampling.is_tested) traced_.emplace(scene, *ray_caster_);
+    if (options.shading == Shading::hybrid || sampling.needs_direct) traced_.emplace(scene, *ray_caster_);
 }
 
 std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids,
@@ -209,10 +209,11 @@ std::vector<Rgb> BakedLight::gathered(std::span<const BakedPoint> points, float 
     const MeasuringOptions options{.samples = path_options().samples, .seed = options_.seed};
     const std::vector<MeasuredIrradiance> measured =
         measure_irradiance(scene_, &solution_, *ray_caster_, measuring, options, monitor);
-    const auto lit =
+    const auto measured_count =
         std::count_if(measured.begin(), measured.end(), [](const MeasuredIrradiance& m) { return m.is_measured(); });
-    if (static_cast<std::size_t>(lit) < measured.size())
-        throw Stopped(fmt::format("stopped when {} of {} texels or vertices had light", lit, measured.size()));
+    if (static_cast<std::size_t>(measured_count) < measured.size())
+        throw Stopped(
+            fmt::format("stopped when {} of {} texels or vertices had light", measured_count, measured.size()));
     std::vector<Rgb> values;
     values.reserve(measured.size());
     for (const MeasuredIrradiance& m : measured) values.push_back(m.sum());

@@ -25,9 +25,9 @@ struct BakedPoint {
 
 /// Sampling of direct light in hybrid shading.
 struct DirectSampling {
-    LightUse use;      ///< Selects the default number of samples.
-    double max_noise;  ///< Estimated relative error below which fewer samples suffice.
-    bool is_tested;    ///< Whether BakedLight::direct() will be called.
+    LightUse use;       ///< Selects the default number of samples.
+    double max_noise;   ///< Estimated relative error below which fewer samples suffice.
+    bool needs_direct;  ///< Whether BakedLight::direct() will be called.
 };
 
 /// Grid of neighbouring points on a surface: their indices, row by row; `none` outside the surface.
@@ -45,10 +45,10 @@ class BakedLight {
 
     /// @param grids    Grids in which the noise of hybrid shading is filtered.
     /// @param spacing  Distance between the points; rays start a twentieth of it inside their patch [m].
-    /// @return         One value per point [as H]. @throws Stopped
+    /// @return         One value per point [unit of H]. @throws Stopped
     std::vector<Rgb> irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids, float spacing,
                                 const Monitor& monitor) const;
-    /// Returns the direct light of hybrid shading. Requires DirectSampling::is_tested and a shading other than smooth.
+    /// Returns the direct light of hybrid shading. Requires needs_direct and a shading other than smooth.
     std::vector<SampledIrradiance> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
                                           const Monitor& monitor) const;
     /// Returns the interpolated irradiance of the solution (SmoothField).

@@ -11,7 +11,7 @@ namespace interflect::detail {
 struct Lightmap : BakedImages {
     std::vector<LightmapChart> charts;
     std::vector<std::uint32_t> chart_of_patch;  ///< Chart of each patch; `none` if it is hidden.
-    std::vector<std::uint32_t> index_in_chart;
+    std::vector<std::uint32_t> index_in_chart;  ///< Index of each patch in LightmapChart::patches.
 
     /// Returns the coordinate of a point in its image; (0, 0) is the upper left corner.
     V2f coordinate(PatchIndex patch, Parameters at) const;

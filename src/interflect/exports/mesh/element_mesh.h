@@ -44,11 +44,11 @@ class ElementMesh {
 
     const ElementForest& forest_;
     ElementVertices vertices_;
-    std::vector<Rgb> values_;
+    std::vector<Rgb> values_;  // irradiance of each vertex
     std::vector<V3f> points_;
-    std::vector<std::array<std::uint32_t, 4>> corners_;
-    std::vector<Boxed> tree_;
-    float tolerance_;  // [m]
+    std::vector<std::array<std::uint32_t, 4>> corners_;  // point of each corner of each leaf
+    std::vector<Boxed> tree_;                            // the joined points
+    float tolerance_;                                    // [m]
 };
 
 }  // namespace interflect::detail

@@ -43,11 +43,12 @@ FlatPatches projected(const Scene& scene, std::span<const PatchIndex> patches) {
 }
 
 double separation(const FlatPatch& a, const FlatPatch& b) {
+    // Separating axes: the outward normals of all edges.
     double largest = std::numeric_limits<double>::lowest();
-    const auto try_edges = [&](const FlatPatch& of, const FlatPatch& other) {
-        const double orientation = of.signed_area() < 0 ? -1 : 1;
-        for (std::size_t c = 0; c < of.outline().size(); ++c) {
-            const Imath::V2d start = of.corners[c], edge = of.corners[(c + 1) % of.outline().size()] - start;
+    const auto try_edges = [&](const FlatPatch& owner, const FlatPatch& other) {
+        const double orientation = owner.signed_area() < 0 ? -1 : 1;
+        for (std::size_t c = 0; c < owner.outline().size(); ++c) {
+            const Imath::V2d start = owner.corners[c], edge = owner.corners[(c + 1) % owner.outline().size()] - start;
             if (!(edge.length() > 0)) continue;
             const Imath::V2d outwards = Imath::V2d(edge.y, -edge.x) * (orientation / edge.length());
             double nearest = std::numeric_limits<double>::max();

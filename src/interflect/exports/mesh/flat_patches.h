@@ -17,7 +17,7 @@ namespace interflect::detail {
 struct FlatPatch {
     PatchIndex patch;
     int count;                            ///< Number of corners, 3 or 4.
-    std::array<Imath::V2d, 4> corners{};  ///< In the patch's vertex order.
+    std::array<Imath::V2d, 4> corners{};  ///< Corners in the patch's vertex order.
 
     std::span<const Imath::V2d> outline() const { return {corners.data(), static_cast<std::size_t>(count)}; }
     Imath::V2d point(Parameters p) const;

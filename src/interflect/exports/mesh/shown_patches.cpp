@@ -11,22 +11,22 @@ namespace interflect::detail {
 
 namespace {
 
-/// Maximum light of a dark patch, and its maximum relative to the mean. It looks black beside lit rooms; a moonless
-/// night has about this light.
+/// Maximum light of a dark patch, as in a moonless night, and its maximum relative to the mean. Such patches look black
+/// beside lit rooms.
 constexpr double max_dark = 1e-3;  // [lm/m^2]
 constexpr double max_dark_of_mean = 1e-4;
 /// Maximum light inside solids, relative to the mean. It is invisible, but exceeds the light of stray rays at seams
 /// (2e-4 in a room with 5 million rays).
 constexpr double max_stray_of_mean = 1e-3;
-/// Maximum light inside solids, relative to the other side of the same face: bright surroundings leave more.
+/// Maximum light inside solids, relative to the other side of the same face, because bright surroundings leak more.
 constexpr float max_stray_of_outside = 0.02f;
 
 double mean_of(const Scene& scene, const std::vector<float>& light) {
     double sum = 0, area = 0;
     for (std::size_t p = 0; p < light.size(); ++p) {
-        const double own = PatchGeometry(scene, scene.patches[p]).area();
-        sum += own * static_cast<double>(light[p]);
-        area += own;
+        const double patch_area = PatchGeometry(scene, scene.patches[p]).area();
+        sum += patch_area * static_cast<double>(light[p]);
+        area += patch_area;
     }
     return area > 0 ? sum / area : 0;
 }

@@ -24,6 +24,7 @@ class WeldedVertices {
         indices_.push_back(entry->second);
     }
 
+    /// Returns value(vertex) of each stored vertex.
     template <class Value>
     auto values(const Value& value) const {
         std::vector<decltype(value(std::declval<const Vertex&>()))> result;

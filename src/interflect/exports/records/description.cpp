@@ -14,6 +14,7 @@ namespace interflect::detail {
 
 namespace {
 
+// Versions of the format that introduced options and the history of iterations.
 constexpr int first_with_options = 4;
 constexpr int first_with_history = 5;
 
@@ -95,6 +96,7 @@ void read_result(const Json& json, int format_version, Solution& solution) {
 }  // namespace
 
 std::string describe(const Scene& scene, const Solution& solution, int format_version) {
+    // Convert lists
     Json views = Json::array();
     for (const View& v : scene.views) views.push_back(json_of(v));
     Json luminaires = Json::array();
@@ -142,7 +144,7 @@ bool read_description(std::string_view text, int oldest_format_version, int newe
     solved.format_version = json.at("format_version").get<int>();
     if (solved.format_version < oldest_format_version || solved.format_version > newest_format_version)
         throw std::runtime_error("it was written by another version of Interflect");
-    if (solved.format_version >= first_with_options) json = parse_json_text(text);
+    if (solved.format_version >= first_with_options) json = parse_json_text(text);  // texts are escaped
     if (json.contains("version")) solved.interflect_version = json.at("version").get<std::string>();
     read_scene(json, solved.format_version, solved.scene);
     Solution& solution = solved.solution;

@@ -27,6 +27,7 @@ constexpr Choices<RefinementCriterion, 3> criteria{{{"variance", RefinementCrite
 constexpr Choices<ImportanceUse, 3> uses_of_importance{
     {{"off", ImportanceUse::off}, {"direct", ImportanceUse::direct}, {"full", ImportanceUse::full}}};
 
+/// Writes the values of for_each_option() or for_each_number() as JSON.
 struct Writer {
     Json& json;
 
@@ -66,6 +67,7 @@ Value number_of(const Json& json, const char* name, bool may_be_negative = false
     return json.get<Value>();
 }
 
+/// Inverse of Writer.
 struct Reader {
     const Json& json;
     bool may_be_negative = false;  // whether the caller checks the sign of real numbers
@@ -91,6 +93,7 @@ struct Reader {
     }
 };
 
+/// Appends the values of for_each_number() to a row of numbers, and their names.
 struct RowWriter {
     std::vector<std::string>& names;
     std::vector<double>& row;
@@ -108,8 +111,9 @@ struct RowWriter {
     }
 };
 
+/// Inverse of RowWriter.
 struct RowReader {
-    std::span<const double>& left;
+    std::span<const double>& left;  // numbers that are not read yet
 
     double next(const char* name) const {
         const double number = left.front();
@@ -171,6 +175,7 @@ void for_each_option(Options& options, const Access& access) {
     access.field("beta", o.beta);
 }
 
+/// Replaces the former names and values of options, and adds missing options.
 Json with_present_names(Json json) {
     if (!json.contains("keep_direct")) json["keep_direct"] = false;
     if (!json.contains("clusters")) json["clusters"] = false;
@@ -189,6 +194,7 @@ Json with_present_names(Json json) {
 constexpr std::array<std::pair<const char*, const char*>, 2> renamed_numbers{
     {{"largest_quantum", "largest_payload"}, {"high_quantum", "high_payload"}}};
 
+/// Calls `access` with the name and value of each number of a report.
 template <class Report, class Access>
 void for_each_number(Report& r, const Access& access) {
     access.field("iteration", r.iteration);

@@ -15,6 +15,7 @@ Json json_of(const std::vector<Texture>& textures);
 /// Returns textures without texels. @throws Json::exception
 std::vector<Texture> textures_of(const Json& json);
 
+/// Adds the indices of a material's textures to its JSON.
 void add_textures(const Material& material, Json& json);
 /// Reads the indices of a material's textures. @throws Json::exception
 void read_textures(const Json& json, Material& material);

@@ -28,6 +28,7 @@ struct VertexHash {
     }
 };
 
+/// Collects polygons, whose equal corners share a vertex.
 class Polygons {
   public:
     explicit Polygons(const Scene& scene) : scene_(scene) {}

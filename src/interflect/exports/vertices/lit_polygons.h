@@ -16,9 +16,9 @@ namespace interflect::detail {
 /// Leaves as convex polygons or triangles, without T-junctions (ElementMesh). Equal corners share a vertex.
 struct LitPolygons {
     struct Vertex {
-        std::uint32_t point;
-        Rgb irradiance;  ///< Irradiance H [lm/m^2 or W/m^2].
-        Rgb radiosity;   ///< Radiosity B = M + rho H, with textures [unit of H].
+        std::uint32_t point;  ///< Index into `points`.
+        Rgb irradiance;       ///< Irradiance H [lm/m^2 or W/m^2].
+        Rgb radiosity;        ///< Radiosity B = M + rho H, with textures [unit of H].
         bool operator==(const Vertex&) const = default;
     };
 
@@ -27,7 +27,7 @@ struct LitPolygons {
     std::vector<ElementIndex> leaves;    ///< Leaf of each polygon.
     std::vector<std::uint32_t> ends;     ///< End of each polygon in `corners`.
     std::vector<std::uint32_t> corners;  ///< Indices of `vertices`, counter-clockwise as seen from the lit side.
-    std::vector<Parameters> parameters;
+    std::vector<Parameters> parameters;  ///< Position of each corner on its patch.
 
     std::size_t size() const { return leaves.size(); }
     std::uint32_t begin(std::size_t polygon) const { return polygon == 0 ? 0 : ends[polygon - 1]; }
@@ -46,6 +46,7 @@ std::array<std::uint8_t, 3> display_colour(const Rgb& radiosity, float exposure)
 /// Formats world coordinates [m] with the smallest number of digits that identify them.
 std::string position_text(const Scene& scene, const V3f& point);
 
+/// Appends a number in little-endian byte order.
 template <class Number>
 void append_bytes(std::string& bytes, Number number) {
     static_assert(std::endian::native == std::endian::little);

@@ -47,7 +47,7 @@ float longest_edge(const PatchGeometry& patch) {
     return longest;
 }
 
-/// Returns the mean irradiance of the shown leaves, weighted by area, mean of the channels [as H].
+/// Returns the mean irradiance of the shown leaves, weighted by area, mean of the channels [unit of H].
 double mean_irradiance(const Solution& solution, const std::vector<bool>& shown) {
     const ElementForest& forest = *solution.forest;
     double sum = 0, area = 0;
@@ -59,7 +59,7 @@ double mean_irradiance(const Solution& solution, const std::vector<bool>& shown)
     return area > 0 ? sum / area : 0;
 }
 
-/// Returns the distance between points over which light is averaged [m]. It does not increase with longer edges.
+/// Returns the nominal distance of vertices [m], over which light is averaged. It is at most the default of min_edge.
 float spacing_of(const VertexOptions& options) { return std::min(options.min_edge, VertexOptions().min_edge); }
 
 /// Returns the sides of the area over which a vertex averages direct light, in the patch's parameters. They have the
@@ -69,6 +69,7 @@ std::array<Parameters, 2> sides_of(const PatchGeometry& patch, float spacing) {
     return {{{side(patch.shape().edge_u), 0}, {0, side(patch.shape().edge_v)}}};
 }
 
+/// Counts the triangles of shown leaves. Leaves with points on their edges become fans around their centres.
 double count_triangles(const Scene& scene, const ElementForest& forest, const std::vector<bool>& shown) {
     const ElementMesh mesh(scene, forest, std::vector<Rgb>(forest.size(), Rgb(0)));
     double triangles = 0;
@@ -98,6 +99,7 @@ class Division {
 
     std::shared_ptr<const ElementForest> run(const Monitor& monitor) {
         std::vector<ElementIndex> leaves = divide_long_edges();
+        // Each round reports half of the remaining progress
         for (double fraction = 0; !leaves.empty(); fraction = (1 + fraction) / 2)
             leaves = divide_badly_interpolated(leaves, monitor_section(monitor, fraction, (1 + fraction) / 2));
         forest_->put_in_order(forest_->patch_count());
@@ -116,6 +118,7 @@ class Division {
         }
     };
 
+    /// Returns a bound of the number of added elements: four per division, which adds at least six triangles.
     static std::size_t capacity(const VertexOptions& options) {
         return 2 * static_cast<std::size_t>(options.max_triangles) + 4;
     }
@@ -125,7 +128,7 @@ class Division {
 
     /// Returns the first child, or `none` at the limit of triangles or elements.
     ElementIndex divide(ElementIndex e, double max_triangles) {
-        // Number of additional triangles, with those of fans in neighbours; measured in furnished rooms.
+        // Mean number of added triangles, including fans in neighbours, measured in furnished rooms
         const double added = is_triangle(e) ? 6 : 9.5;
         if (triangles_ + added > max_triangles) return no_element;
         const ElementIndex child = forest_->subdivide(e);
@@ -135,7 +138,8 @@ class Division {
 
     /// Divides elements with long edges, the longest first. Returns the leaves of shown patches.
     std::vector<ElementIndex> divide_long_edges() {
-        const double half_of_all = options_.max_triangles / 2.0;
+        // The other half is for badly interpolated elements
+        const double half_of_triangles = options_.max_triangles / 2.0;
         std::priority_queue<std::pair<float, ElementIndex>> longest;
         const auto add = [&](ElementIndex e) {
             if (edge(e) > options_.max_edge) longest.emplace(edge(e), e);
@@ -143,7 +147,7 @@ class Division {
         for (PatchIndex p{0}; p < forest_->patch_count(); ++p)
             if (shown_[p]) add(p);
         while (!longest.empty()) {
-            const ElementIndex child = divide(longest.top().second, half_of_all);
+            const ElementIndex child = divide(longest.top().second, half_of_triangles);
             if (child == none) break;
             longest.pop();
             for (std::uint32_t k = 0; k < 4; ++k) add(child + k);
@@ -159,7 +163,7 @@ class Division {
         std::vector<ElementIndex> tested;
         for (const ElementIndex e : leaves)
             if (edge(e) > options_.min_edge) tested.push_back(e);
-        // Few samples find the leaves that may be interpolated badly, many distinguish light from noise.
+        // Few samples preselect leaves that may be interpolated badly. Many samples separate errors from noise.
         constexpr int few = 16, many = 64;
         constexpr double deviations = 2;
         find_direct_light(tested, few, monitor_section(monitor, 0, 0.5));
@@ -218,9 +222,9 @@ class Division {
             const Rgb error = middle.irradiance - 0.5f * (a.irradiance + b.irradiance);
             const double size = (std::abs(error.x) + std::abs(error.y) + std::abs(error.z)) / 3.0;
             const double noise = std::sqrt(middle.squared_error + 0.25 * (a.squared_error + b.squared_error));
-            const double all =
+            const double total =
                 mean_channel(light_.interpolated({forest_->patch(e), forest_->cell(e).at(at.u, at.v), {}}));
-            const double scale = std::max({all, mean_channel(middle.irradiance), mean_});
+            const double scale = std::max({total, mean_channel(middle.irradiance), mean_});
             if (scale > 0) largest = std::max(largest, (size - deviations * noise) / scale);
         }
         return largest;
@@ -274,7 +278,7 @@ VertexLight make_vertex_light(const Scene& scene, const Solution& solution, cons
     std::vector<bool> shown = shown_patches(scene, solution);
     if (options.bake.shading == Shading::smooth)
         return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance), std::move(shown)};
-    constexpr DirectSampling vertex_sampling{&DefaultSamples::vertex, 1e-3, /*is_tested=*/true};
+    constexpr DirectSampling vertex_sampling{&DefaultSamples::vertex, 1e-3, /*needs_direct=*/true};
     const BakedLight light(scene, solution, options.bake, vertex_sampling);
     constexpr double share_of_division = 0.4;  // rough share of the time, for progress reports
     Division division(scene, light, shown, mean_irradiance(solution, shown), options.vertices);

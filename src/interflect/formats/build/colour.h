@@ -17,7 +17,7 @@ struct Chromaticity {
 /// @throws std::invalid_argument also if the luminance or X + Y + Z is 0.
 Chromaticity chromaticity_of_spectrum(double first, double last, std::span<const double> values);
 
-/// @param kelvin  At least 1000. @throws std::invalid_argument
+/// @param kelvin  Colour temperature, at least 1000. @throws std::invalid_argument
 Chromaticity chromaticity_of_black_body(double kelvin);
 
 struct MixedColour {
@@ -25,7 +25,7 @@ struct MixedColour {
     Chromaticity colour;
 };
 
-/// @throws std::invalid_argument unless the sum of weights is positive.
+/// Mixes colours by luminance. @throws std::invalid_argument unless the sum of weights is positive.
 Chromaticity mix(std::span<const MixedColour> parts);
 
 /// Largest reflectance. It is below 1, where interreflection would not end.
@@ -34,13 +34,13 @@ inline constexpr double largest_reflectance = 0.99;
 struct Rec709Colour {
     Rgb rgb{0, 0, 0};
     bool out_of_gamut = false;  ///< Whether the colour was outside the gamut, and is desaturated.
-    bool too_bright = false;    ///< Desaturated or darkened to `largest`.
+    bool too_bright = false;    ///< Whether the colour is desaturated or darkened to `largest`.
 };
 
 /// Converts to linear Rec. 709 with white D65 (0.3127, 0.3290). The linear Bradford transform (Lam 1985) at Y = 1 makes
 /// illuminant E neutral: XYZ' = B^-1 diag(B W_D65 / B W_E) B XYZ, W_E = (1, 1, 1).
 /// Mixes colours outside [0, largest] with neutral, so luminance(rgb) == min(luminance, largest).
-/// @param luminance  rd, or ed [lm/m^2]; >= 0.
+/// @param luminance  Reflectance, or exitance [lm/m^2]; >= 0.
 /// @param largest  largest_reflectance; infinite for exitances.
 Rec709Colour to_rec709(const Chromaticity& colour, double luminance, double largest);
 

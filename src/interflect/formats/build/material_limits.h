@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Whether a reflection counts as a mirror's. @param roughness  Root mean square of the microfacets' slopes.
+/// Returns whether a reflection counts as a mirror. @param roughness  Root mean square of the microfacets' slopes.
 inline bool is_mirror(double specular_reflectance, double roughness) {
     constexpr double roughest = 0.02;
     return specular_reflectance > 0 && roughness <= roughest;
@@ -32,7 +32,7 @@ inline bool limit_sum(Material& material) {
     const float straight = largest_channel(Rgb(material.transmittance + material.specular_reflectance));
     const float rest = 1 - largest_channel(material.reflectance);
     if (straight <= rest) return false;
-    constexpr float above_rounding = 1 - 0x1p-20f;
+    constexpr float above_rounding = 1 - 0x1p-20f;  // keeps the rounded sum at most 1
     material.transmittance *= rest / straight * above_rounding;
     material.specular_reflectance *= rest / straight * above_rounding;
     return true;

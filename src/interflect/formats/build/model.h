@@ -24,8 +24,8 @@ struct Mesh {
     std::uint32_t material = 0;
     bool back_emits = true;
 
-    /// Where a glTF file has it: the indices of the mesh and its primitive, and of each vertex in the primitive.
-    /// A primitive of several colours (COLOR_0) is several meshes.
+    /// Origin in a glTF file: the indices of the mesh and its primitive, and of each vertex in the primitive.
+    /// A primitive with several colours (COLOR_0) becomes several meshes.
     struct Source {
         std::uint32_t mesh = none, primitive = none;
         std::vector<std::uint32_t> vertices{};
@@ -34,7 +34,7 @@ struct Mesh {
 
 struct MeshInstance {
     std::uint32_t mesh = 0;
-    Imath::M44d to_world;  ///< For row vectors; to metres. Mirroring keeps the front.
+    Imath::M44d to_world;  ///< Matrix for row vectors; scales to metres. Mirroring keeps the front.
     std::uint32_t object = 0;
     std::uint32_t node = none;  ///< Index in a glTF file.
 };
@@ -44,6 +44,7 @@ struct PlacedLight {
     Imath::V3d position{0, 0, 0};  ///< World position [m].
 };
 
+/// Content of a file of meshes, before its conversion to a scene.
 struct Model {
     std::filesystem::path file;
     std::vector<Mesh> meshes;
@@ -51,9 +52,9 @@ struct Model {
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<PlacedLight> lights;
-    std::vector<std::string> objects{""};  ///< As in Scene::objects.
-    std::vector<View> views;               ///< In the world [m].
-    std::vector<std::string> files;        ///< Files that were read; the model's own comes first.
+    std::vector<std::string> objects{""};  ///< Names, as in Scene::objects.
+    std::vector<View> views;               ///< Views in world coordinates [m].
+    std::vector<std::string> files;        ///< Files that were read; the first one is `file`.
     Warnings warnings;
 };
 

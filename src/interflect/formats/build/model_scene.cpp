@@ -69,7 +69,7 @@ void require_valid(const Model& model, const ReadOptions& options) {
             throw InputError(model.file, 0, "an instance shows a mesh or an object that does not exist");
         faces += static_cast<double>(face_count(model.meshes[instance.mesh]));
     }
-    // Two triangles may merge into one face, whose two sides are two patches.
+    // Two triangles may merge into one face, whose sides are two patches, so each triangle gives at least one patch.
     if (faces > static_cast<double>(options.max_patches))
         throw Location{&model.file}.error(
             fmt::format("{:.0f} faces, its instances counted each, would give more than {} patches "
@@ -78,6 +78,7 @@ void require_valid(const Model& model, const ReadOptions& options) {
             "max_patches");
 }
 
+/// Returns which objects keep their lightmap coordinates.
 std::vector<bool> objects_with_layouts(Model& model) {
     std::vector<const MeshInstance*> first(model.objects.size(), nullptr);
     std::vector<bool> has_layout(model.objects.size(), true);
@@ -182,7 +183,7 @@ class InstanceAdder {
         faces_.add({&face_, 1}, mesh.material, instance.object, true, where);
     }
 
-    /// Removes the emission of the backs from patch `first` to the last one.
+    /// Removes the emission of backs, which are every second patch from `first` + 1.
     void darken_backs(std::size_t first) {
         if (first == scene_.patches.size()) return;
         const Material& material = scene_.materials[scene_.patches[first].material];

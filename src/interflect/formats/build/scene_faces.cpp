@@ -13,7 +13,7 @@ namespace {
 /// Faces affect the origin if their doubled area / size^2 is at least this number.
 constexpr double min_shape = 1e-6;
 
-/// Width that rounding may remove, relative to the scene's reach, because narrower slivers are common.
+/// Largest width of a face that rounding may remove, relative to the scene's reach. Narrower slivers are common.
 constexpr double largest_lost_width = 0x1p-16;
 
 }  // namespace
@@ -80,7 +80,7 @@ void SceneFaces::require_precision() const {
                     lost_.width, x.x, x.y, x.z, (x - middle).length(), middle.x, middle.y, middle.z));
 }
 
-/// Compares with the unrounded faces if rounding removed all faces.
+/// Uses the size of the unrounded faces if rounding removed all faces.
 void SceneFaces::require_width() const {
     double width = scene_width(scene_);
     if (scene_.patches.empty()) {

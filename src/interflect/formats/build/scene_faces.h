@@ -19,19 +19,19 @@ class SceneFaces {
     /// @param scene  It must have its name and origin.
     SceneFaces(Scene& scene, const ReadOptions& options) : scene_(scene), max_patches_(options.max_patches) {}
 
-    /// Counts omitted faces, too. @throws ReadFault if the scene has no room for `patches` more patches.
+    /// @throws ReadFault if the scene, with its omitted faces, has no room for `patches` more patches.
     void require_room(double patches) const;
-    /// @return  Relative to the scene's origin [m].
+    /// Returns a position relative to the scene's origin [m].
     V3f position(const Imath::V3d& world) const;
     /// Sets the unrounded outline of the next face.
     void place(std::span<const Imath::V3d> outline);
-    /// Omits faces without area; see add_polygon().
+    /// Adds the face unless it has no area; see add_polygon().
     void add(std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material, std::uint32_t object,
              bool two_sided, const Location& where);
     void leave_out(const std::string& message, const Location& where);
 
     Imath::V3d suitable_origin() const { return origin_for(core_of(sample_.faces())); }
-    /// @throws InputError without faces, if rounding removed a large one, or for a size or brightness out of range.
+    /// @throws InputError for no faces, a large face that rounding removed, or a size or brightness out of range.
     void require_usable() const;
 
   private:
@@ -51,7 +51,7 @@ class SceneFaces {
     Scene& scene_;
     std::uint64_t max_patches_;
     FaceSample sample_;
-    LostFace placed_;  // next face
+    LostFace placed_;  // the next face
     LostFace lost_;    // widest face that rounding removed
     LeftOut first_left_out_;
     std::uint64_t left_out_ = 0;

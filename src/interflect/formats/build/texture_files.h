@@ -9,7 +9,7 @@
 
 namespace interflect::detail {
 
-/// Reads .png or .jpg (sRGB), .exr or .hdr (linear). @param most  Texel limit. @throws InputError
+/// Reads .png or .jpg (sRGB), .exr or .hdr (linear). @param most  Maximum number of texels. @throws InputError
 Texture read_texture(const std::filesystem::path& path, std::uint64_t most = max_texels);
 
 /// Reads radiances from .exr or .hdr. @throws InputError

@@ -66,9 +66,9 @@ std::optional<std::uint64_t> take_variant(Json& primitive, std::uint64_t variant
 }
 
 template <class Json>
-class BakedLight {
+class BakedLightRemover {
   public:
-    explicit BakedLight(Json& root)
+    explicit BakedLightRemover(Json& root)
         : root_(root), lit_(find_variant(root, lit_variant)), authored_(find_variant(root, authored_variant)) {
         const Json* stops = find(root, {"asset", "extras", "interflect", "exposure"});
         if (stops && stops->is_number()) gain_ = std::exp2(stops->template get<double>());
@@ -99,10 +99,10 @@ class BakedLight {
                            : number((*materials)[material], {"extensions", lightmap_extension, "texCoord"});
     }
 
-    /// Emission is scaled by the exposure of the file.
+    /// Removes lightmaps from a material, and the file's exposure from its emission.
     void remove_from_material(Json& material) {
-        forget_texture(number(material, {"extensions", lightmap_extension, "index"}));
-        forget_texture(number(material, {"extensions", lightmap_extension, "extras", "gain", "index"}));
+        mark_texture(number(material, {"extensions", lightmap_extension, "index"}));
+        mark_texture(number(material, {"extensions", lightmap_extension, "extras", "gain", "index"}));
         if (Json* strength = find(material, {"extensions", khr_emissive_strength, "emissiveStrength"});
             strength && strength->is_number())
             *strength = strength->template get<double>() / gain_;
@@ -127,14 +127,15 @@ class BakedLight {
         if (entries && entries->empty()) root_.erase(name);
     }
 
-    void forget_lit_material(std::uint64_t material) {
+    /// Marks a material and its lightmap for removal.
+    void mark_lit_material(std::uint64_t material) {
         materials_.insert(material);
         Json* materials = list(root_, {"materials"});
         if (materials && material < materials->size())
-            forget_texture(number((*materials)[material], {"pbrMetallicRoughness", "baseColorTexture", "index"}));
+            mark_texture(number((*materials)[material], {"pbrMetallicRoughness", "baseColorTexture", "index"}));
     }
 
-    void forget_texture(std::optional<std::uint64_t> texture) {
+    void mark_texture(std::optional<std::uint64_t> texture) {
         if (!texture) return;
         textures_.insert(*texture);
         Json* textures = list(root_, {"textures"});
@@ -148,7 +149,7 @@ class BakedLight {
         if (lit_ && authored_)
             if (const auto lit = take_variant(primitive, *lit_)) {
                 set = lightmap_set(*lit, true);
-                forget_lit_material(*lit);
+                mark_lit_material(*lit);
                 if (const auto authored = take_variant(primitive, *authored_)) primitive["material"] = *authored;
                 if (list(primitive, {"extensions", khr_variants, "mappings"})->empty())
                     primitive["extensions"].erase(khr_variants);
@@ -158,9 +159,9 @@ class BakedLight {
     }
 
     Json& root_;
-    double gain_ = 1;  // of the exposure
+    double gain_ = 1;  // factor of emission by the file's exposure
     std::optional<std::uint64_t> lit_, authored_;
-    std::set<std::uint64_t> materials_, textures_, images_;  // of the lightmaps
+    std::set<std::uint64_t> materials_, textures_, images_;  // indices of entries that only lightmaps use
 };
 
 }  // namespace
@@ -168,7 +169,7 @@ class BakedLight {
 template <class Json>
 bool remove_baked_light(Json& root) {
     if (!find(root, {"asset", "extras", "interflect"})) return false;
-    BakedLight(root).remove();
+    BakedLightRemover(root).remove();
     return true;
 }
 

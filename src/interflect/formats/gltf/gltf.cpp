@@ -49,7 +49,7 @@ constexpr std::string_view known_extensions[] = {
     "MSFT_texture_dds",
 };
 
-/// Extensions without which a file that requires them has the same surfaces, base colours and lights.
+/// Extensions that do not affect surfaces, base colours and lights, so that files may require them.
 constexpr std::string_view ignorable_extensions[] = {
     "AGI_articulations",      "CESIUM_primitive_outline",
     "EXT_feature_metadata",   "EXT_instance_features",
@@ -101,7 +101,7 @@ class SceneReader {
             if (mesh != none) show(node, mesh, object);
             lights_.add(node, object);
         }
-        materials_.warn_of_lost();
+        materials_.warn_of_lost_reflection();
     }
 
   private:
@@ -137,6 +137,7 @@ class SceneReader {
                 "max_patches");
     }
 
+    /// Returns the transforms of the copies of a node (EXT_mesh_gpu_instancing), or the node's own transform.
     std::vector<M44d> places_of(const GltfNode& node, std::uint64_t faces) {
         const GltfValue extension = node.value->extension("EXT_mesh_gpu_instancing");
         if (!extension.exists()) {
@@ -201,7 +202,7 @@ class SceneReader {
     GltfLights lights_;
     std::vector<GltfValue> skins_;
     double faces_ = 0;
-    std::map<std::uint32_t, std::vector<M44d>> joints_;  // by skin
+    std::map<std::uint32_t, std::vector<M44d>> joints_;  // keys: skins
     std::map<std::string, std::uint32_t> object_index_{{"", 0}};
 };
 

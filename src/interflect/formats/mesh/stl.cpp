@@ -30,7 +30,7 @@ namespace {
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 constexpr std::size_t stl_header = 80, stl_triangle = 50;  // [bytes]
 
-/// Blanks and a byte order mark may precede `solid`, in letters of any case.
+/// Returns whether the file is text that begins with `solid` in any case, after blanks and a byte order mark.
 bool is_ascii_stl(std::string_view bytes) {
     constexpr std::string_view blanks = " \t\r\n", keyword = "solid";
     constexpr std::size_t sample = 1 << 10;  // [bytes]; binary coordinates contain zero bytes
@@ -39,14 +39,14 @@ bool is_ascii_stl(std::string_view bytes) {
     return lower_case(bytes.substr(0, keyword.size())) == keyword && bytes.substr(0, sample).find('\0') == bytes.npos;
 }
 
-/// Number of triangles that the header counts. Returns nullopt for a file that is shorter.
+/// Returns the number of triangles in the header of a binary file, or nullopt if the file is shorter.
 /// A count of 0, which streaming exporters leave, stands for all triangles in the file.
 std::optional<std::size_t> binary_triangles(std::string_view bytes) {
     if (bytes.size() < stl_header + 4) return std::nullopt;
     const std::size_t count = number_of<std::uint32_t>(bytes.substr(stl_header), std::endian::little);
-    const std::size_t there = (bytes.size() - stl_header - 4) / stl_triangle;
-    if (count > there) return std::nullopt;
-    return count > 0 ? count : there;
+    const std::size_t available = (bytes.size() - stl_header - 4) / stl_triangle;
+    if (count > available) return std::nullopt;
+    return count > 0 ? count : available;
 }
 
 Mesh& add_solid(Model& model, const std::string& name, const ReadOptions& options) {
@@ -72,7 +72,7 @@ void read_binary_stl(std::string_view bytes, std::size_t count, Model& model, co
     mesh.positions.reserve(3 * count);
     mesh.indices.reserve(3 * count);
     for (std::size_t triangle = 0; triangle < count; ++triangle) {
-        // Normal, three vertices, two bytes of attributes.
+        // A record consists of a normal, three vertices and two bytes of attributes.
         const std::string_view record = bytes.substr(stl_header + 4 + triangle * stl_triangle, stl_triangle);
         for (std::size_t v = 1; v <= 3; ++v) {
             V3d x;
@@ -87,7 +87,7 @@ void read_binary_stl(std::string_view bytes, std::size_t count, Model& model, co
     }
 }
 
-/// Ignores normals.
+/// Reads the triangles of a text. Ignores normals.
 void read_ascii_stl(std::string_view text, Model& model, const ReadOptions& options) {
     Mesh* solid = nullptr;
     std::size_t vertices = 0;

@@ -34,7 +34,7 @@ class Vs3Words {
   public:
     explicit Vs3Words(std::string_view text) : text_(text) {}
 
-    /// Goes to the next line. @return  false at the end of the file.
+    /// Moves to the next line. @return  false at the end of the file.
     bool next_line() {
         if (is_started_) position_ = std::min(text_.find('\n', position_), text_.size() - 1) + 1;
         line_ += is_started_ || line_ == 0;
@@ -56,7 +56,7 @@ class Vs3Words {
         while (result.empty() && next_line()) result = word();
         return result;
     }
-    std::int64_t line() const { return line_; }  ///< From 1.
+    std::int64_t line() const { return line_; }  ///< Number of the line, from 1.
 
   private:
     static bool is_separator(char c) { return c == ' ' || c == ',' || c == '\t' || c == '\r'; }
@@ -68,7 +68,7 @@ class Vs3Words {
 };
 
 struct Vs3Surface {
-    char type = 'S';  // S, M, N or O
+    char type = 'S';  // S: radiating, M: mask, N: null surface, O: obstruction
     std::int64_t line = 0;
     std::vector<V3d> corners;
     int combined_with = 0;  // number of the surface with which this one is combined, or 0
@@ -91,7 +91,7 @@ class Vs3Reader {
   private:
     [[noreturn]] void fail(const std::string& fault) const { throw InputError(path_, words_.line(), fault); }
 
-    /// @return  false for the end of the data.
+    /// Reads an entry. @return  false at the end of the data.
     bool read_line() {
         const std::string_view word = words_.word();
         if (word.empty()) return true;
@@ -285,6 +285,7 @@ class Vs3Reader {
         return static_cast<std::uint32_t>(model.objects.size() - 1);
     }
 
+    /// Removes the backs and makes the fronts one-sided.
     static void keep_fronts(Scene& scene) {
         PerPatch<Patch> fronts;
         for (std::size_t p = 0; p < scene.patches.size(); ++p)
@@ -300,7 +301,7 @@ class Vs3Reader {
         model.warnings = warnings_;
         model.materials.emplace_back();  // black: obstructions and null surfaces
         const double distance = mask_distance();
-        std::vector<std::uint32_t> objects;  // by surface
+        std::vector<std::uint32_t> objects;  // object of each surface
         for (std::size_t i = 0; i < surfaces_.size(); ++i) {
             const Vs3Surface& surface = surfaces_[i];
             const bool radiates = surface.type == 'S' || surface.type == 'M';

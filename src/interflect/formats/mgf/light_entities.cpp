@@ -1,4 +1,4 @@
-// `ies` and `light` (docs/files/mgf-extensions.md).
+// The entities `ies` and `light` (docs/files/mgf-extensions.md).
 #include <fmt/format.h>
 
 #include <cctype>
@@ -66,7 +66,7 @@ void MgfReader::light(MgfWords words) {
     scene_.add_light(std::move(luminaire), name);
 }
 
-/// Transforms change neither flux nor size.
+/// Reads `ies`. Its transforms change neither flux nor size.
 void MgfReader::luminaire(MgfWords words) {
     const std::string_view file = words[0];
     words = words.subspan(1);

@@ -11,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 using Imath::V3d;
 
-/// Reads a file. A scene far from the origin is read twice, because the first time finds a suitable origin.
+/// Reads a file. A scene far from the origin is read twice, because the first pass determines a suitable origin.
 Scene read_about_middle(const fs::path& path, const ReadOptions& options, const std::string& text) {
     V3d origin(0);
     {

@@ -16,7 +16,7 @@ namespace interflect::detail {
 /// * `rd` is limited to 0.99; `ts` ignores roughness. `rs` is a mirror for the camera if its roughness is at most 0.02.
 /// * `o` and array copies ("a0", "a1") name objects, joined by dots.
 ///
-/// Time is linear in the text with arrays expanded.
+/// The time is proportional to the length of the text with its arrays expanded.
 /// @throws InputError for invalid input. Errors in colours and materials count only if used by a face.
 Scene read_mgf(const std::filesystem::path& path, const ReadOptions& options = {});
 

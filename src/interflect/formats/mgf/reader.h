@@ -29,23 +29,23 @@ namespace interflect::detail {
 struct OpenMgfFile {
     const SourceFile& source;
     LineReader lines;
-    std::size_t outer_transforms, outer_objects;
+    std::size_t outer_transforms, outer_objects;  // numbers of open transforms and objects of includers
     const OpenMgfFile* includer;
 };
 
 /// Transform of an open `xf` or include, with the current array copy.
 struct OpenMgfTransform {
     TransformSequence sequence;
-    Imath::M44d total;  // to the world
-    Location opened;
-    std::vector<int> copy;  // number of the copy in each array; empty without arrays
-    LineReader::Position body;
-    double copies_together = 1;  // product of the copies of this and outer arrays
-    std::uint64_t first_patch = 0;
-    bool repeating = false;
+    Imath::M44d total;              // matrix to the world
+    Location opened;                // location of the `xf` or include
+    std::vector<int> copy;          // number of the copy in each array; empty without arrays
+    LineReader::Position body;      // start of each copy
+    double copies_together = 1;     // product of the copies of this and outer arrays
+    std::uint64_t first_patch = 0;  // number of patches before the first copy
+    bool repeating = false;         // whether copies after the first one are being read
 };
 
-/// Entity handlers are in mgf_*_entities.cpp.
+/// Reads MGF. The handlers of entities are in *_entities.cpp.
 class MgfReader {
   public:
     MgfReader(const std::filesystem::path& path, const ReadOptions& options, const Imath::V3d& origin);
@@ -142,8 +142,8 @@ class MgfReader {
     ContextTable<MgfVertex> vertices_;
     std::vector<OpenMgfTransform> transforms_;
     std::vector<std::vector<std::uint32_t>> loops_;
-    std::vector<Imath::V3d> outline_;  // latest loop, in world coordinates
-    std::string unknown_entity_, unused_fault_;
+    std::vector<Imath::V3d> outline_;            // latest loop, in world coordinates
+    std::string unknown_entity_, unused_fault_;  // texts of warnings
     std::unordered_map<std::string, std::shared_ptr<const PhotometricWeb>> webs_;
     std::unordered_map<std::string, std::shared_ptr<const Texture>> environments_;
     MgfSceneBuilder scene_;

@@ -1,4 +1,4 @@
-// `light sky NAME` and `light environment` (docs/light/skies.md).
+// The entities `light sky NAME` and `light environment` (docs/light/skies.md).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,18 +32,18 @@ void MgfReader::sky(MgfWords words) {
     SkyDome dome;
     dome.zenith = turned({0, 0, 1});
     dome.sun = dome.zenith;
-    const auto take_illuminance = [&](std::string_view word) {
+    const auto read_illuminance = [&](std::string_view word) {
         dome.irradiance = scene_.emitted(colours_.current(), non_negative_argument(word), here());
     };
-    const auto take_ground = [&](std::string_view word) {
+    const auto read_ground = [&](std::string_view word) {
         dome.ground = static_cast<float>(non_negative_argument(word));
     };
     if (words[0] == "model") {
         constexpr std::size_t all = 10, first_parameter = 4;
         require_arguments(words, all, all, "vertex illuminance ground a b c d e g");
         dome.sun = -direction_of(words[1]);
-        take_illuminance(words[2]);
-        take_ground(words[3]);
+        read_illuminance(words[2]);
+        read_ground(words[3]);
         for (std::size_t i = 0; i < model_parameters.size(); ++i)
             dome.model.*model_parameters[i] = static_cast<float>(number_argument(words[first_parameter + i]));
     } else {
@@ -58,8 +58,8 @@ void MgfReader::sky(MgfWords words) {
         const std::size_t illuminance = has_sun ? 2 : 1, ground = illuminance + 1;
         require_arguments(words, ground, ground + 1, has_sun ? "vertex illuminance [ground]" : "illuminance [ground]");
         if (has_sun) dome.sun = -direction_of(words[1]);
-        take_illuminance(words[illuminance]);
-        if (words.size() > ground) take_ground(words[ground]);
+        read_illuminance(words[illuminance]);
+        if (words.size() > ground) read_ground(words[ground]);
     }
     scene_.add_light({"", objects_.current(), dome}, "sky-dome");
 }

@@ -57,8 +57,8 @@ bool MgfReader::close_transform() {
 }
 
 void MgfReader::place_copy(OpenMgfTransform& transform) {
-    const M44d& around = transforms_.size() > 1 ? transforms_[transforms_.size() - 2].total : file_to_world_;
-    transform.total = transform.sequence.matrix(transform.copy) * around;
+    const M44d& outer = transforms_.size() > 1 ? transforms_[transforms_.size() - 2].total : file_to_world_;
+    transform.total = transform.sequence.matrix(transform.copy) * outer;
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite(transform.total[i / 4][i % 4])) throw MgfFault("the transform is not finite");
     if (transform.sequence.is_array()) objects_.open(fmt::format("a{}", fmt::join(transform.copy, ".")), true, here());

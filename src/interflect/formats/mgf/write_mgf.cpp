@@ -245,6 +245,7 @@ class MgfWriter {
         });
     }
 
+    /// Writes a light inside a transform that rotates the axes to the frame.
     template <class Put>
     void add_turned(const Frame& frame, const Put& put_light) {
         const Turns turns = turns_of(frame);
@@ -254,7 +255,7 @@ class MgfWriter {
         if (is_turned) put("xf\n");
     }
 
-    /// `ies` refers to the colour by name.
+    /// Writes `ies`, which refers to the colour by name.
     void add_measured(const MeasuredLight& light, const Chromaticity& chromaticity, double multiplier) {
         const Turns turns = turns_of(frame_of(light));
         const Imath::V3d world = scene_.origin + Imath::V3d(light.position);
@@ -275,8 +276,8 @@ class MgfWriter {
     const Scene& scene_;
     std::ostream& out_;
     std::span<const std::string> textures_;                    // file names
-    std::vector<std::string> names_;                           // of materials
-    std::unordered_map<std::string, Definition> definitions_;  // by material name
+    std::vector<std::string> names_;                           // names of materials
+    std::unordered_map<std::string, Definition> definitions_;  // keys: names of materials
     std::unordered_map<const PhotometricWeb*, std::string> web_files_;
     std::unordered_map<const Texture*, std::string> map_files_;
     std::vector<bool> vertex_written_;

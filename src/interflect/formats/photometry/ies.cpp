@@ -22,6 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Years of LM-63: the first edition, the last edition with a ballast-lamp photometric factor, and the edition that
+/// reserves this number for future use.
 constexpr int first_year = 1986, last_year_of_factor = 1995, year_of_reserved = 2002;
 
 /// Sizes of the luminous opening [m]. The length is along C0; sizes across a round section are negative.
@@ -48,31 +50,37 @@ std::optional<std::string_view> tilt_of(std::string_view line) {
     return line.starts_with('=') ? std::optional(trimmed(line.substr(1))) : std::nullopt;
 }
 
-/// Three negative sizes mean an ellipsoid, two a cylinder along the third axis. Until LM-63-1995, one negative size
-/// means a circle if another is 0, a negative height and one other negative size an ellipsoid, or a sphere if the third
-/// is 0.
+/// Returns the shape of an opening. Three negative sizes mean an ellipsoid, two a cylinder along the third axis. Until
+/// LM-63-1995, one negative size means a circle if another is 0, a negative height and one other negative size an
+/// ellipsoid, or a sphere if the third is 0.
 LuminousOpening opening_of(const Dimensions& d, int year, bool& is_known) {
     using Shape = LuminousOpening::Shape;
     const bool round[3] = {d.length < 0, d.width < 0, d.height < 0};
-    const int count = round[0] + round[1] + round[2];
+    const int round_count = round[0] + round[1] + round[2];
     V3f size(static_cast<float>(std::abs(d.length)), static_cast<float>(std::abs(d.width)),
              static_cast<float>(std::abs(d.height)));
     is_known = true;
-    if (count == 0) return {Shape::box, size, 2};
-    if (count == 3) return {Shape::ellipsoid, size, 2};
-    if (count == 2 && round[2]) {
+    if (round_count == 0) return {Shape::box, size, 2};
+    if (round_count == 3) return {Shape::ellipsoid, size, 2};
+    if (round_count == 2 && round[2]) {
         float& third = round[0] ? size.y : size.x;
         const bool is_sphere = third == 0;
         if (is_sphere) third = round[0] ? size.x : size.y;
         if (is_sphere || year <= last_year_of_factor) return {Shape::ellipsoid, size, 2};
     }
-    if (count == 2) return {Shape::cylinder, size, round[0] ? (round[1] ? 2 : 1) : 0};
+    if (round_count == 2) return {Shape::cylinder, size, round[0] ? (round[1] ? 2 : 1) : 0};
     if (!round[2]) {
         if (size.x == 0 || size.y == 0) size.x = size.y = std::max(size.x, size.y);
         return {Shape::cylinder, size, 2};
     }
-    if (size.y == 0) return size.y = size.z, LuminousOpening{Shape::cylinder, size, 0};
-    if (size.x == 0) return size.x = size.z, LuminousOpening{Shape::cylinder, size, 1};
+    if (size.y == 0) {
+        size.y = size.z;
+        return {Shape::cylinder, size, 0};
+    }
+    if (size.x == 0) {
+        size.x = size.z;
+        return {Shape::cylinder, size, 1};
+    }
     is_known = false;
     return {Shape::box, size, 2};
 }
@@ -86,7 +94,7 @@ class IesReader {
     PhotometricWeb read();
 
   private:
-    enum Type { type_c = 1, type_b = 2, type_a = 3 };  // the numbers are those in LM-63 files
+    enum Type { type_c = 1, type_b = 2, type_a = 3 };  // the numbers in LM-63 files
 
     void read_labels();
     void read_version(std::string_view first_line);
@@ -99,16 +107,16 @@ class IesReader {
     std::vector<float> angles(std::size_t count, const char* kind, float low, float high);
     void read_type_c(std::vector<float> vertical, std::vector<float> horizontal);
     void read_type_a_or_b(std::vector<float> vertical, std::vector<float> horizontal, Type type);
-    PhotometricPlanes planes(std::vector<float> horizontal, std::size_t height);
+    PhotometricPlanes planes(std::vector<float> horizontal, std::size_t vertical_count);
     void warn(const char* kind, const std::string& message) { warnings_.add(kind, message, text_.where()); }
 
     const fs::path& path_;
-    const fs::path& folder_;  // of the TILT file
+    const fs::path& folder_;  // folder of the TILT file
     const ReadOptions& options_;
     Warnings& warnings_;
     PhotometricText text_;
     int year_ = first_year;
-    double factor_ = 1;
+    double factor_ = 1;  // factor of intensities
     PhotometricWeb web_;
 };
 
@@ -130,7 +138,7 @@ void IesReader::read_labels() {
     }
 }
 
-/// Accepts "IESNA91", "IESNA:LM-63-1995", "IES:LM-63-2019". Files of 1986 begin with labels.
+/// Accepts versions such as "IESNA91", "IESNA:LM-63-1995", "IES:LM-63-2019". Files of 1986 begin with labels.
 void IesReader::read_version(std::string_view first_line) {
     const std::string line = upper_case(first_line);
     if (!line.starts_with("IES")) return;
@@ -221,20 +229,21 @@ void IesReader::read_photometry() {
         warn("ies-reserved", "a number that IES LM-63-2002 reserves for future use is not 1; it is ignored");
     text_.number("the input power");
     const bool is_c = type == type_c;
-    constexpr auto half = static_cast<float>(half_turn);
+    constexpr auto half_circle = static_cast<float>(half_turn);
+    // Read the angles, whose limits depend on the type
     auto vertical = angles(vertical_count, "vertical",
                            is_c             ? 0
                            : type == type_a ? -right_angle
-                                            : -half,
-                           is_c             ? half
+                                            : -half_circle,
+                           is_c             ? half_circle
                            : type == type_a ? right_angle
-                                            : half);
+                                            : half_circle);
     auto horizontal = angles(horizontal_count, "horizontal",
-                             is_c             ? -2 * half
-                             : type == type_a ? -half
+                             is_c             ? -2 * half_circle
+                             : type == type_a ? -half_circle
                                               : -right_angle,
-                             is_c             ? 2 * half
-                             : type == type_a ? half
+                             is_c             ? 2 * half_circle
+                             : type == type_a ? half_circle
                                               : right_angle);
     if (is_c)
         read_type_c(std::move(vertical), std::move(horizontal));
@@ -250,7 +259,7 @@ void IesReader::read_opening(double metres) {
     warn_of_unit({sizes[0], sizes[1], sizes[2]}, metres);
 }
 
-/// Warns of sizes too large for luminaires, and of feet where width and length fit metric ceiling grids.
+/// Warns about sizes too large for luminaires, and about feet if width and length match metric ceiling grids.
 void IesReader::warn_of_unit(const Dimensions& d, double metres) {
     constexpr double largest = 10;  // [m]
     const double longest = std::max({std::abs(d.width), std::abs(d.length), std::abs(d.height)});
@@ -258,6 +267,7 @@ void IesReader::warn_of_unit(const Dimensions& d, double metres) {
         warn("ies-unit",
              fmt::format("the luminous opening is {:g} m long: the file may be in another unit", longest * metres));
     const auto is_module = [](double size) {
+        // Least and largest sizes of luminaires in ceiling grids [m]
         constexpr std::pair<double, double> modules[] = {{0.295, 0.3}, {0.595, 0.6}, {0.62, 0.625}, {1.195, 1.2}};
         constexpr double rounding = 1e-6;
         return std::any_of(std::begin(modules), std::end(modules), [&](const auto& module) {
@@ -272,7 +282,7 @@ void IesReader::warn_of_unit(const Dimensions& d, double metres) {
                         d.width, d.length));
 }
 
-/// Reads angles. Moves them to multiples of 90 degrees that are close, for exact tests of symmetry.
+/// Reads angles. Rounds angles close to a multiple of 90 degrees, for exact tests of symmetry.
 std::vector<float> IesReader::angles(std::size_t count, const char* kind, float low, float high) {
     constexpr float tolerance = 0.01f;  // [degrees]
     std::vector<float> result;
@@ -289,9 +299,9 @@ std::vector<float> IesReader::angles(std::size_t count, const char* kind, float 
     return result;
 }
 
-PhotometricPlanes IesReader::planes(std::vector<float> horizontal, std::size_t height) {
+PhotometricPlanes IesReader::planes(std::vector<float> horizontal, std::size_t vertical_count) {
     std::vector<float> intensities;
-    for (std::size_t i = 0; i < horizontal.size() * height; ++i) {
+    for (std::size_t i = 0; i < horizontal.size() * vertical_count; ++i) {
         const double candela = text_.number("an intensity");
         if (candela < 0) warn("ies-negative", "a negative intensity is read as 0");
         intensities.push_back(static_cast<float>(std::max(0.0, candela) * factor_));
@@ -301,24 +311,25 @@ PhotometricPlanes IesReader::planes(std::vector<float> horizontal, std::size_t h
 
 /// Reads intensities of type C. Mirrors ranges of 90 and 180 degrees.
 void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> horizontal) {
-    constexpr auto half = static_cast<float>(half_turn), turn = static_cast<float>(full_turn);
+    constexpr auto half_circle = static_cast<float>(half_turn), turn = static_cast<float>(full_turn);
     const bool is_complete = (vertical.front() == 0 || vertical.front() == right_angle) &&
-                             (vertical.back() == right_angle || vertical.back() == half);
+                             (vertical.back() == right_angle || vertical.back() == half_circle);
     if (!is_complete)
         warn("ies-angles", "vertical angles do not reach 0, 90 or 180; beyond them the luminaire emits no light");
     const float first = horizontal.front(), span = horizontal.back() - first;
     const float step = horizontal.size() > 1 ? span / static_cast<float>(horizontal.size() - 1) : 0;
-    const bool is_open = span > half && span < turn && span + 1.5f * step > turn;
+    // The last plane of an open range is about one step before a full turn.
+    const bool is_open = span > half_circle && span < turn && span + 1.5f * step > turn;
     const bool is_single = horizontal.size() == 1;
     if (!is_single && !is_open &&
-        (std::fmod(first, right_angle) != 0 || std::fmod(span, right_angle) != 0 || span == half + right_angle ||
+        (std::fmod(first, right_angle) != 0 || std::fmod(span, right_angle) != 0 || span == half_circle + right_angle ||
          span > turn))
         text_.refuse(fmt::format("horizontal angles from {} to {}; expected 0, or 0 to 90, 180 or 360, or 90 to 270",
                                  first, horizontal.back()));
     PhotometricPlanes all = planes(std::move(horizontal), vertical.size());
     if (is_open) warn("ies-angles", "horizontal angles end before 360; there the first plane is repeated");
     if (span == right_angle) all.mirror_at_last();
-    if (all.span() == half) all.mirror_at_last();
+    if (all.span() == half_circle) all.mirror_at_last();
     if (is_single || is_open) all.close();
     web_.polar = std::move(vertical);
     web_.azimuth = all.angles();
@@ -326,7 +337,7 @@ void IesReader::read_type_c(std::vector<float> vertical, std::vector<float> hori
 }
 
 /// Reads intensities of type A or B. Mirrors ranges that begin at 0. Type A has clockwise angles and its pole at the
-/// nadir, type B has its pole at y.
+/// nadir; type B has its pole at C90.
 void IesReader::read_type_a_or_b(std::vector<float> vertical, std::vector<float> horizontal, Type type) {
     if (horizontal.size() < 2) text_.refuse("a single horizontal angle; expected at least two of types A and B");
     if (std::abs(vertical.back()) < right_angle || std::abs(horizontal.back()) < right_angle)

@@ -29,7 +29,7 @@ class LdtReader {
     PhotometricWeb read();
 
   private:
-    /// Isym
+    /// Values of Isym.
     enum Symmetry { none_at_all = 0, rotation = 1, c0_plane = 2, c90_plane = 3, both_planes = 4 };
 
     std::string_view line(const char* what);
@@ -52,7 +52,7 @@ class LdtReader {
     const ReadOptions& options_;
     Warnings& warnings_;
     PhotometricText text_;
-    double factor_ = 1;
+    double factor_ = 1;  // factor of intensities
     PhotometricWeb web_;
 };
 
@@ -63,7 +63,7 @@ PhotometricWeb LdtReader::read() {
     const std::size_t most = options_.max_photometric_values;
     const std::size_t plane_count = count_line("the number of C planes", 1, most);
     line("the distance between C planes");
-    const std::size_t height = count_line("the number of intensities in a C plane", 2, most / plane_count);
+    const std::size_t gamma_count = count_line("the number of intensities in a C plane", 2, most / plane_count);
     line("the distance between intensities");
     skip_lines(8);  // report, name, number, file, date; size of the housing
     read_opening();
@@ -78,12 +78,12 @@ PhotometricWeb LdtReader::read() {
     if (symmetry > rotation && plane_count % (symmetry == c0_plane ? 2 : 4) != 0)
         text_.refuse(fmt::format("{} C planes do not have the symmetry {}", plane_count, int{symmetry}));
     const std::vector<float> all_planes = angles(plane_count, "C", full_turn);
-    web_.polar = angles(height, "gamma", half_turn);
+    web_.polar = angles(gamma_count, "gamma", half_turn);
     if (std::fmod(web_.polar.front(), right_angle) != 0 || std::fmod(web_.polar.back(), right_angle) != 0)
         warn("ldt-angles", "gamma angles do not reach 0, 90 or 180; beyond them the luminaire emits no light");
     const std::vector<float> measured = planes_of(all_planes, symmetry);
     std::vector<float> intensities;
-    for (std::size_t i = 0; i < measured.size() * height; ++i) {
+    for (std::size_t i = 0; i < measured.size() * gamma_count; ++i) {
         const double intensity = next_number("an intensity");
         if (intensity < 0) warn("ldt-negative", "a negative intensity is read as 0");
         intensities.push_back(static_cast<float>(std::max(0.0, intensity) * factor_));
@@ -106,7 +106,7 @@ std::string_view LdtReader::line(const char* what) {
 
 double LdtReader::number_line(const char* what) { return number_in(line(what), what); }
 
-/// Words may follow the number, such as its unit.
+/// Reads a number. Words such as its unit may follow.
 double LdtReader::number_in(std::string_view text, const char* what) {
     const std::size_t blank = text.find_first_of(" \t");
     if (const auto rest = text.find_first_not_of(" \t", std::min(blank, text.size())); rest != text.npos) {
@@ -125,7 +125,7 @@ double LdtReader::optional_line(const char* what, double empty) {
     return empty;
 }
 
-/// Words may follow the last number of a line.
+/// Reads the next number. Words may follow the last number of a line.
 double LdtReader::next_number(const std::string& what) {
     const std::int64_t line_before = text_.line_number();
     std::optional<std::string_view> word = text_.word();
@@ -137,7 +137,7 @@ double LdtReader::next_number(const std::string& what) {
     return text_.number_of(*word, what);
 }
 
-/// The ten direct ratios are not needed. They may be empty, or several on a line.
+/// Skips the ten direct ratios. Their lines may be empty or contain several ratios.
 void LdtReader::skip_ratios() {
     for (std::size_t left = 10; left > 0;) {
         const std::string_view text = line("a direct ratio");
@@ -162,7 +162,7 @@ void LdtReader::skip_lines(int count) {
 /// Reads the luminous opening, whose length is along C90 and whose width is along C0. A width of 0 means a round
 /// opening.
 void LdtReader::read_opening() {
-    constexpr double metres = 1e-3;  // per millimetre
+    constexpr double metres = 1e-3;  // metres per millimetre
     const double length = optional_line("the length of the luminous area", 0),
                  width = optional_line("the width of the luminous area", 0);
     double height = 0;
@@ -175,7 +175,7 @@ void LdtReader::read_opening() {
                     millimetres * static_cast<float>(metres), 2};
 }
 
-/// Reads number, type, flux, colour, colour rendering, power. Negative numbers mean absolute photometry.
+/// Reads number, type, flux, colour, colour rendering, power of lamps. A negative number means absolute photometry.
 void LdtReader::read_lamps() {
     constexpr std::size_t max_sets = 20;
     const std::size_t sets = count_line("the number of sets of lamps", 1, max_sets);
@@ -206,7 +206,7 @@ std::vector<float> LdtReader::angles(std::size_t count, const char* kind, double
     return result;
 }
 
-/// Isym 3 stores C270 to C90.
+/// Returns the angles of the stored planes. Isym 3 stores C270 to C90.
 std::vector<float> LdtReader::planes_of(const std::vector<float>& all, Symmetry symmetry) const {
     const std::size_t count = all.size();
     const auto part = [&](std::size_t first, std::size_t end) {
@@ -229,6 +229,7 @@ std::vector<float> LdtReader::planes_of(const std::vector<float>& all, Symmetry 
     }
 }
 
+/// Mirrors the stored planes up to a full turn.
 void LdtReader::complete(PhotometricPlanes& planes, Symmetry symmetry) const {
     const auto expected = static_cast<float>(symmetry == both_planes                         ? right_angle
                                              : symmetry == c0_plane || symmetry == c90_plane ? half_turn

@@ -5,7 +5,7 @@
 
 namespace interflect::detail {
 
-/// Half planes of a photometric file.
+/// Intensities of a photometric file in half planes.
 class PhotometricPlanes {
   public:
     /// @param angles  Azimuths [degrees], ascending.
@@ -14,10 +14,12 @@ class PhotometricPlanes {
 
     std::size_t count() const { return angles_.size(); }
     float span() const { return angles_.back() - angles_.front(); }  ///< [degrees]
+    /// Adds mirror images of all planes beyond the last one.
     void mirror_at_last();
     void mirror_at_first();
     /// Repeats the first plane after a full turn.
     void close();
+    /// Negates the angles and reverses the order of planes.
     void reverse();
 
     const std::vector<float>& angles() const { return angles_; }
@@ -29,7 +31,7 @@ class PhotometricPlanes {
     void append(std::size_t plane, float angle);
 
     std::vector<float> angles_, intensities_;
-    std::size_t height_;  // per plane
+    std::size_t height_;  // number of intensities per plane
 };
 
 }  // namespace interflect::detail

@@ -26,7 +26,7 @@ std::string read_photometric_text(const std::filesystem::path& path, const ReadO
     std::string text = read_bytes(path, options.max_photometric_bytes);
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
-    constexpr char end_of_file = 0x1a;  // of MS-DOS
+    constexpr char end_of_file = 0x1a;  // end mark of MS-DOS
     while (!text.empty() && (text.back() == end_of_file || is_white_space(text.back()))) text.pop_back();
     require_text(text, path);
     return text;
@@ -36,7 +36,7 @@ bool PhotometricText::is_separator(char c) const {
     return is_white_space(c) || separators_.find(c) != separators_.npos;
 }
 
-/// Counts line breaks.
+/// Moves to `end` and counts line breaks.
 void PhotometricText::skip(std::size_t end) {
     for (; next_ < end; ++next_)
         if (text_[next_] == '\n' || (text_[next_] == '\r' && !text_.substr(next_ + 1).starts_with('\n'))) ++next_line_;

@@ -32,11 +32,11 @@ class PhotometricText {
     std::vector<double> numbers(std::size_t count, const std::string& what);
     bool had_decimal_comma() const { return had_decimal_comma_; }
 
-    /// Accepts a decimal comma, unless commas are separators.
+    /// Parses a number. Accepts a decimal comma, unless commas are separators.
     double number_of(std::string_view word, const std::string& what);
 
     std::int64_t line_number() const { return line_; }  ///< Returns the line of the latest word.
-    std::string where() const;                          ///< As "file:line".
+    std::string where() const;                          ///< Location, such as "room.ies:3".
     [[noreturn]] void refuse(const std::string& message, const std::string& setting = {}) const;
 
   private:

@@ -23,7 +23,7 @@ Column column_of(const PhotometricWeb& web, std::size_t i) {
     return {web.at_azimuth(i), web.at_azimuth(i) + web.polar.size()};
 }
 
-/// Adds planes at 0 and 360.
+/// Returns the planes from 0 to 360 degrees. Interpolates the plane at 0 if it is missing.
 PhotometricPlanes all_around(const PhotometricWeb& web) {
     constexpr auto turn = static_cast<float>(full_turn);
     std::map<float, Column> columns;
@@ -33,11 +33,11 @@ PhotometricPlanes all_around(const PhotometricWeb& web) {
         columns.emplace(angle, column_of(web, i));
     }
     if (columns.begin()->first > 0) {
-        const auto& [right, above] = *columns.begin();
-        const auto& [left, below] = *columns.rbegin();
-        Column between = below;
-        const float share = (turn - left) / (turn - left + right);
-        for (std::size_t j = 0; j < between.size(); ++j) between[j] += (above[j] - below[j]) * share;
+        const auto& [first_angle, first] = *columns.begin();
+        const auto& [last_angle, last] = *columns.rbegin();
+        Column between = last;
+        const float share = (turn - last_angle) / (turn - last_angle + first_angle);
+        for (std::size_t j = 0; j < between.size(); ++j) between[j] += (first[j] - last[j]) * share;
         columns.emplace(0.0f, between);
     }
     std::vector<float> angles, intensities;
@@ -55,7 +55,7 @@ std::vector<float> shifted(std::vector<float> angles, float by) {
     return angles;
 }
 
-/// LM-63 has negative sizes across round sections.
+/// Returns the sizes of LM-63, which are negative across round sections.
 V3f dimensions(const LuminousOpening& opening) {
     V3f size = opening.size;
     for (int k = 0; k < 3; ++k)

@@ -49,13 +49,14 @@ struct Box {
 /// Corners of each face, which are its name in genbox.
 constexpr std::array<std::string_view, 6> box_faces = {"1540", "4620", "2310", "3267", "5137", "6457"};
 
+/// Returns the axis perpendicular to a face, along which its corners agree.
 int face_axis(std::string_view corners) {
     int same = 7;
     for (const char corner : corners) same &= ~((corner - '0') ^ (corners[0] - '0'));
     return same == 1 ? 0 : same == 2 ? 1 : 2;
 }
 
-/// Flat pieces between the faces: one for each edge and each corner.
+/// Adds flat pieces between the faces: one for each edge and each corner.
 void add_bevels(const Box& box, const std::string& name, std::vector<GeneratedSurface>& result) {
     for (int axis = 0; axis < 3; ++axis) {
         const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -72,7 +73,7 @@ void add_bevels(const Box& box, const std::string& name, std::vector<GeneratedSu
                                  box.outward({box.point(corner, 0), box.point(corner, 1), box.point(corner, 2)})));
 }
 
-/// Whole cylinders and spheres, as genbox makes them.
+/// Adds whole cylinders and spheres, as genbox does.
 void add_rounds(const Box& box, const std::string& name, std::vector<GeneratedSurface>& result) {
     for (int corner = 0; corner < 8; ++corner) {
         const V3d a = box.point(corner, -1);
@@ -92,6 +93,7 @@ std::optional<GeneratedSurfaces> genbox(RadArguments arguments) {
     GeneratedSurfaces result;
     result.modifier = arguments.next("a material");
     const std::string name = arguments.next("a name");
+    // Read the options
     Box box{arguments.vector("one of three sizes")};
     bool is_inward = false, is_round = false;
     while (!arguments.is_at_end()) {
@@ -112,12 +114,14 @@ std::optional<GeneratedSurfaces> genbox(RadArguments arguments) {
     const double least = std::min({box.size.x, box.size.y, box.size.z});
     if (!(least > 0) || box.inset < 0 || 2 * box.inset > least)
         throw std::invalid_argument("genbox needs sizes above 0, and a bevel or rounding of at most half of each");
+    // Add the faces, then the edges and corners
     for (const std::string_view face : box_faces) {
         Points points;
         for (const char corner : face) points.push_back(box.point(corner - '0', face_axis(face)));
         if (2 * box.inset < least) result.surfaces.push_back(polygon(fmt::format("{}.{}", name, face), points));
     }
     if (box.inset > 0) is_round ? add_rounds(box, name, result.surfaces) : add_bevels(box, name, result.surfaces);
+    // Reverse polygons that face inwards
     for (GeneratedSurface& surface : result.surfaces) {
         if (!is_inward || surface.type != "polygon") continue;
         std::reverse(surface.numbers.begin(), surface.numbers.end());

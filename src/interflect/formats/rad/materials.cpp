@@ -33,7 +33,7 @@ float share(const RadPrimitive& p, std::size_t i, const char* what) {
     return static_cast<float>(p.numbers[i]);
 }
 
-/// Measured and procedural BRDFs count as rough.
+/// Returns the roughness. Measured and procedural BRDFs count as rough.
 double roughness_of(const RadPrimitive& p) {
     if (p.type.ends_with("func") || p.type.ends_with("data")) return 1;
     return p.type.ends_with('2') ? std::max(p.numbers[4], p.numbers[5]) : p.numbers[4];
@@ -137,7 +137,7 @@ void RadMaterials::define(const RadPrimitive& primitive, const Location& where) 
     if (primitive.modifier != "inherit") modifier.base = find(primitive.modifier, where);
     const Role role = types().at(modifier.primitive.type).role;
     if (role == Role::mixture) {
-        // Foreground, or background if void.
+        // Use the foreground, or the background if the foreground is void
         const auto& strings = modifier.primitive.strings;
         if (strings.size() < 2) throw std::invalid_argument("a mixture needs a foreground and a background");
         modifier.base = find(strings[0], where);
@@ -193,7 +193,7 @@ std::uint32_t RadMaterials::material(std::uint32_t modifier) {
 }
 
 void RadMaterials::warn_of_patterns(std::uint32_t begin, std::uint32_t end, Chain chain) {
-    // Bases are defined first: the chain ends.
+    // The chain ends, because each base is defined before its use.
     for (std::uint32_t i = begin; i != end && !modifiers_[i].has_warned[chain]; i = modifiers_[i].base) {
         modifiers_[i].has_warned[chain] = true;
         warn_of_pattern(modifiers_[i], chain == behind_light);
@@ -237,7 +237,7 @@ std::uint32_t RadMaterials::convert(const Modifier& modifier, const Type& type) 
     return static_cast<std::uint32_t>(model_.materials.size() - 1);
 }
 
-/// Keeps only mirrors, for the camera.
+/// Sets the specular reflectance of mirrors, which pictures show. Omits other specular reflection.
 void RadMaterials::reflect(const Modifier& modifier, const Rgb& specular, double roughness, Material& result) {
     if (is_mirror(largest_channel(specular), roughness)) result.specular_reflectance = specular;
     if (largest_channel(specular) > 0)

@@ -16,17 +16,17 @@
 
 namespace interflect::detail {
 
-/// [lm/W]
+/// Factor from radiometric values of Radiance to photometric ones [lm/W].
 inline constexpr double rad_efficacy = 179;
 
-/// Pane at normal incidence, with all internal reflections.
-/// @param transmissivity  Of the interior in one pass, 0 to 1. @param index  Refractive index, > 0.
 struct GlassShares {
     double transmittance = 0, reflectance = 0;
 };
+/// Returns the shares of a pane at normal incidence, with all internal reflections.
+/// @param transmissivity  Transmittance of the interior in one pass, 0 to 1. @param index  Refractive index, > 0.
 GlassShares glass_shares(double transmissivity, double index);
 
-/// Unused modifiers cause no errors or warnings.
+/// Modifiers of a scene. Converts those in use to materials; unused ones cause no errors or warnings.
 class RadMaterials {
   public:
     explicit RadMaterials(Model& model) : model_(model) {}
@@ -40,14 +40,15 @@ class RadMaterials {
 
     /// @return  `none` for "void". @throws std::invalid_argument if undefined.
     std::uint32_t find(std::string_view name, const Location& where);
-    /// Whether `name` is the modifier, or modifies it.
+    /// Returns whether `name` is the modifier, or modifies it.
     bool is_modified_by(std::uint32_t modifier, std::string_view name) const;
-    /// Returns the light of `modifier` if a pattern of ies2rad alone modifies it.
+    /// Light with a pattern of ies2rad.
     struct PatternedLight {
         RadLightPattern pattern;
-        Rgb radiance;    ///< Before the pattern [lm/(m^2 sr)].
+        Rgb radiance;    ///< Radiance before the pattern [lm/(m^2 sr)].
         Location where;  ///< Place of the pattern.
     };
+    /// Returns the light of `modifier` if a pattern of ies2rad alone modifies it.
     std::optional<PatternedLight> patterned_light(std::uint32_t modifier) const;
     /// Returns an index into Model::materials; `none` if invisible. @throws InputError
     std::uint32_t material(std::uint32_t modifier);
@@ -56,12 +57,12 @@ class RadMaterials {
     struct Modifier {
         RadPrimitive primitive;
         Location where;
-        std::uint32_t base = none;         // modified by this one
+        std::uint32_t base = none;         // modifier of this one
         std::uint32_t material = none;     // index, once used
         std::uint32_t surface = none;      // this one or its first base that is a material
-        std::array<bool, 3> has_warned{};  // per Chain: of this one and the rest
+        std::array<bool, 3> has_warned{};  // one per Chain; includes all modifiers beyond
     };
-    /// Modifiers from a surface to its material, and behind it.
+    /// Parts of a surface's chain of modifiers: up to its material, and beyond a material or light.
     enum Chain : std::uint8_t { to_material, behind_material, behind_light };
     enum class Role { material, pattern, mixture, nothing };
     struct Type {
@@ -82,7 +83,7 @@ class RadMaterials {
     void unknown(const Modifier& modifier, Material& result);
     void reflect(const Modifier& modifier, const Rgb& specular, double roughness, Material& result);
     void warn_of_pattern(const Modifier& modifier, bool is_of_light);
-    /// Warns of patterns that are ignored. Visits each modifier once per kind of chain.
+    /// Warns about ignored patterns. Visits each modifier once per kind of chain.
     void warn_of_patterns(std::uint32_t begin, std::uint32_t end, Chain chain);
     void warn(const std::string& kind, const std::string& message, const Modifier& modifier);
 

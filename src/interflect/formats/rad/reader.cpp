@@ -117,6 +117,7 @@ void RadReader::run(const std::string& command, const OpenFile& file, const Loca
 /// Reads files with xform, or generates surfaces, and transforms the result. Returns false if that is not possible.
 bool RadReader::run_pipeline(std::span<const std::vector<std::string>> commands, const OpenFile& file,
                              const Location& where) {
+    // Parse the commands
     const std::optional<GeneratedSurfaces> generated = generate_surfaces(commands.front());
     const std::optional<Daylight> daylight = parse_sky_command(commands.front());
     const bool reads_files = !generated && !daylight;
@@ -126,7 +127,7 @@ bool RadReader::run_pipeline(std::span<const std::vector<std::string>> commands,
         if (!xform || xform->files.empty() == (reads_files && xforms.empty())) return false;
         xforms.push_back(*xform);
     }
-    // The last command is the outermost.
+    // Combine the transforms. The last command is the outermost.
     OpenFile inner = file;
     for (auto xform = xforms.rbegin(); xform != xforms.rend(); ++xform) {
         inner.copies = copies_of(*xform, inner.copies);
@@ -157,7 +158,7 @@ bool RadReader::add_sky(const Daylight& daylight, const M44d& to_world, const Lo
     daylight_ = daylight;
     const V3d east = direction({1, 0, 0});
     if (daylight_->sun) daylight_->sun->azimuth -= degrees(std::atan2(east.y, east.x));
-    try {
+    try {  // validates the daylight
         Scene empty;
         add_daylight(empty, *daylight_);
     } catch (const InputError& fault) {
@@ -282,7 +283,7 @@ void RadReader::add_surface(const RadPrimitive& primitive, const OpenFile& file,
         model_.warnings.add("void-surface", "surface without a material is invisible, and left out", where.text());
         return;
     }
-    // A sphere has the most faces.
+    // Check spheres, which have the most faces, before their tessellation
     const double d = options_.curve_divisions;
     if (primitive.type == "sphere" || primitive.type == "bubble") require_room(8 * d * d, file.copies.size());
     const Tessellation tessellation{.divisions = options_.curve_divisions,
@@ -311,7 +312,7 @@ void RadReader::add_mesh(const PolygonMesh& polygons, const RadPrimitive& primit
         model_.instances.push_back({index, copy.to_world, object(copy.prefix + std::string(primitive.name))});
 }
 
-/// Joins the surfaces of a box or cylinder for whose size the pattern corrects.
+/// Adds an emitting surface of ies2rad. Joins the surfaces of a box or cylinder whose size the pattern contains.
 void RadReader::add_light(const RadMaterials::PatternedLight& light, std::uint32_t modifier,
                           const RadPrimitive& primitive, PolygonMesh mesh, const OpenFile& file) {
     const M44d to_luminaire = light.pattern.to_file.inverse();
@@ -339,7 +340,7 @@ void RadReader::add_light(const RadMaterials::PatternedLight& light, std::uint32
     emitter.surfaces.push_back(std::move(mesh));
 }
 
-/// Adds the lights of all copies.
+/// Adds the open luminaire once for each copy.
 void RadReader::finish_light() {
     if (!open_light_) return;
     const OpenLight open = *std::exchange(open_light_, std::nullopt);
@@ -381,7 +382,7 @@ void RadReader::finish_light() {
     }
 }
 
-/// Searches like included_file().
+/// Returns the data file of a light. Searches the same folders as included_file().
 const RadData& RadReader::data_file(const RadMaterials::PatternedLight& light) {
     const std::string& name = light.pattern.data_file;
     std::error_code ignored;

@@ -26,7 +26,7 @@ class RadReader {
     RadReader(const std::filesystem::path& path, const ReadOptions& options);
     /// Continues the scene with another file that the user names. It sees the modifiers of earlier files.
     void read(const std::filesystem::path& path, std::string text);
-    /// Daylight of gensky or gendaylit, as far as sources show it.
+    /// Returns the parts of the daylight of gensky or gendaylit that sources show.
     std::optional<Daylight> daylight() const;
     Model finish() { return std::move(model_); }
 

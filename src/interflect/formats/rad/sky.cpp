@@ -25,13 +25,14 @@ constexpr int cie_uniform = 5, cie_intermediate = 7, cie_clear = 12, cie_overcas
 
 struct SunPlace {
     double altitude = 0;  ///< [rad]
-    double azimuth = 0;   ///< From south to west [rad].
+    double azimuth = 0;   ///< Angle from south to west [rad].
 };
 
 /// Site and time of gensky and gendaylit, with their defaults.
 struct SolarTime {
     int year = 0, month = 0, day = 0;  ///< Year 0: simpler formulas.
     double hour = 0;
+    /// Whether `hour` is solar time.
     bool is_solar = false;
     double latitude = 0.66, west_longitude = 2.13, west_meridian = radians(120);  ///< [rad]
 
@@ -46,7 +47,7 @@ struct SolarTime {
     double almanac_declination(double& solar_hour) const;
 };
 
-/// Computes the declination [rad] by the formulas of the IES Lighting Handbook.
+/// Computes the declination [rad] and the solar time [h] by the formulas of the IES Lighting Handbook.
 double SolarTime::declination(double& solar_hour) const {
     const double n = day_of_year();
     solar_hour = hour + 0.170 * std::sin(4 * pi / 373 * (n - 80)) - 0.129 * std::sin(2 * pi / 355 * (n - 8)) +
@@ -54,7 +55,7 @@ double SolarTime::declination(double& solar_hour) const {
     return 0.4093 * std::sin(2 * pi / 365 * (n - 81));
 }
 
-/// Computes the declination [rad] by the formulas of Michalsky (1988).
+/// Computes the declination [rad] and the solar time [h] by the formulas of Michalsky (1988).
 double SolarTime::almanac_declination(double& solar_hour) const {
     const int leap_days = (year - 1949) / 4 + (month > 2 && year % 4 == 0 ? 1 : 0);
     const double days = day_of_year() + (year - 1949) * 365 + leap_days + (hour + west_meridian * 12 / pi) / 24 +
@@ -78,7 +79,7 @@ SunPlace SolarTime::sun() const {
                         -cosine * std::sin(decline) - sine * std::cos(decline) * std::cos(angle))};
 }
 
-/// @return  nullopt for a named time zone.
+/// Reads a time of day [h]. @return  nullopt for a named time zone.
 std::optional<double> parse_hour(std::string_view text) {
     const auto colon = text.find(':');
     const auto hours = parse_number(text.substr(0, colon));
@@ -127,7 +128,7 @@ Daylight::Sun daylight_sun(const SunPlace& place) {
 
 /// Returns the ratio of the horizontal irradiance, divided by pi, to the zenith radiance of a clear or intermediate
 /// sky.
-double normalised(double altitude, bool is_intermediate) {
+double zenith_ratio(double altitude, bool is_intermediate) {
     constexpr double coefficients[2][5] = {{2.766521, 0.547665, -0.369832, 0.009237, 0.059229},
                                            {3.5556, -2.7152, -1.3081, 1.0660, 0.60227}};
     const double x = (altitude - pi / 4) / (pi / 4), sine = std::sin(altitude), rest = pi / 2 - altitude;
@@ -139,6 +140,7 @@ double normalised(double altitude, bool is_intermediate) {
     return sum / at_zenith / pi;
 }
 
+/// Computes the daylight of gensky by its formulas and constants.
 std::optional<Daylight> gensky(RadArguments arguments) {
     constexpr double sky_efficacy = 203, sun_efficacy = 208;  // [lm/W]
     constexpr double sun_solid_angle = 6e-5;                  // [sr]
@@ -148,7 +150,8 @@ std::optional<Daylight> gensky(RadArguments arguments) {
     int type = cie_clear;
     bool has_sun = true;
     double turbidity = 2.45, ground = 0.2;
-    std::optional<double> zenith, sky_irradiance, sun_radiance, sun_irradiance;  // [W/(m^2 sr)], horizontal [W/m^2]
+    // Radiances [W/(m^2 sr)] and horizontal irradiances [W/m^2]
+    std::optional<double> zenith, sky_irradiance, sun_radiance, sun_irradiance;
     while (!arguments.is_at_end()) {
         const std::string option = arguments.next();
         const std::string_view name = std::string_view(option).substr(std::min<std::size_t>(1, option.size()));
@@ -170,27 +173,31 @@ std::optional<Daylight> gensky(RadArguments arguments) {
             return std::nullopt;
         }
     }
+    // Compute the position of the sun
     SunPlace sun = given ? *given : time.sun();
     const bool is_overcast = type == cie_overcast || type == cie_uniform;
     if (!is_overcast) sun.altitude = std::min(sun.altitude, radians(87));  // as gensky does
     if (!is_overcast && sun.altitude <= 0) return std::nullopt;
+    // Compute the illuminance by the sky
     const double sine = std::sin(sun.altitude), overcast_zenith = 8.6 * sine + .123;  // [kcd/m^2]
-    const double norm = type == cie_uniform ? 1
-                        : is_overcast       ? 7.0 / 9
-                                            : normalised(sun.altitude, type == cie_intermediate);
-    double of_zenith = is_overcast ? overcast_zenith : (1.376 * turbidity - 1.81) * std::tan(sun.altitude) + 0.38;
-    if (type == cie_intermediate) of_zenith = (of_zenith + overcast_zenith) / 2;
-    const double radiance = zenith.value_or(std::max(0.0, of_zenith) * 1000 / sky_efficacy);
+    const double ratio = type == cie_uniform ? 1
+                         : is_overcast       ? 7.0 / 9
+                                             : zenith_ratio(sun.altitude, type == cie_intermediate);
+    double zenith_luminance =
+        is_overcast ? overcast_zenith : (1.376 * turbidity - 1.81) * std::tan(sun.altitude) + 0.38;
+    if (type == cie_intermediate) zenith_luminance = (zenith_luminance + overcast_zenith) / 2;
+    const double radiance = zenith.value_or(std::max(0.0, zenith_luminance) * 1000 / sky_efficacy);
     Daylight result;
-    result.cie_sky = {type, sky_irradiance.value_or(radiance * norm * pi) * rad_efficacy};
+    result.cie_sky = {type, sky_irradiance.value_or(radiance * ratio * pi) * rad_efficacy};
     result.ground_reflectance = std::clamp(ground, 0.0, 1.0);
     if (is_overcast) return result;
-    double normal = 1.5e9 / sun_efficacy * (1.147 - .147 / std::max(sine, .16)) * sun_solid_angle;
-    if (type == cie_intermediate) normal *= 0.15;
-    if (sun_radiance) normal = *sun_radiance * sun_solid_angle;
-    if (sun_irradiance) normal = *sun_irradiance / sine;
+    // Compute the illuminance by the sun, facing it
+    double direct_normal = 1.5e9 / sun_efficacy * (1.147 - .147 / std::max(sine, .16)) * sun_solid_angle;
+    if (type == cie_intermediate) direct_normal *= 0.15;
+    if (sun_radiance) direct_normal = *sun_radiance * sun_solid_angle;
+    if (sun_irradiance) direct_normal = *sun_irradiance / sine;
     result.sun = daylight_sun(sun);
-    result.sun->illuminance = has_sun ? normal * rad_efficacy : 0;
+    result.sun->illuminance = has_sun ? direct_normal * rad_efficacy : 0;
     return result;
 }
 

@@ -8,7 +8,7 @@
 
 namespace interflect::detail {
 
-/// @param bytes  At least sizeof(Number) bytes.
+/// Decodes a number of this byte order. @param bytes  At least sizeof(Number) bytes.
 template <class Number>
 Number number_of(std::string_view bytes, std::endian order) {
     std::array<char, sizeof(Number)> raw;

@@ -6,7 +6,7 @@ namespace {
 
 using Imath::V3d;
 
-/// The directions into which a rotation turns the axes.
+/// The rotated directions of the axes.
 struct Turn {
     V3d x, y, z;
 };

@@ -14,11 +14,12 @@
 
 namespace interflect::detail {
 
+/// Place of a fault, for messages.
 struct Location {
     const std::filesystem::path* file = nullptr;
-    std::int64_t line = 0;       ///< From 1; 0: no lines.
-    std::string_view part = {};  ///< Such as "mesh 'chair'", or empty.
-    bool is_foreign = false;     ///< Messages do not quote referenced files.
+    std::int64_t line = 0;       ///< Number from 1; 0 for files without lines.
+    std::string_view part = {};  ///< Part of the file, such as "mesh 'chair'", or empty.
+    bool is_foreign = false;     ///< Whether another file refers to this one; messages do not quote such files.
 
     std::string text() const {
         if (!file) return {};
@@ -26,7 +27,7 @@ struct Location {
         return part.empty() ? file->string() : fmt::format("{}: {}", file->string(), part);
     }
     std::string shown(const std::string& message) const { return is_foreign ? without_quotes(message) : message; }
-    /// @param setting  As in Fault.
+    /// @param setting  Fault::setting.
     InputError error(const std::string& message, const std::string& setting = {}) const {
         const std::string text = part.empty() ? shown(message) : fmt::format("{}: {}", part, shown(message));
         return InputError(Fault{text, std::string(part), setting, *file, line});

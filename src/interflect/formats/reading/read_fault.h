@@ -9,9 +9,9 @@
 
 namespace interflect::detail {
 
-/// Invalid input that an option of ReadOptions would allow, without its place, which the reader adds.
+/// Invalid input that an option of ReadOptions would allow. The reader adds its location.
 struct ReadFault : std::invalid_argument {
-    /// @param setting_name  Of the option.
+    /// @param setting_name  Name of the option.
     ReadFault(const std::string& text, std::string setting_name)
         : std::invalid_argument(text), setting(std::move(setting_name)) {}
 
@@ -24,7 +24,7 @@ inline std::string setting_of(const std::invalid_argument& fault) {
 }
 
 /// @param subject  Start of the message: "the texture 'wood.png'".
-/// @throws ReadFault if `path` leaves `folder` and may not.
+/// @throws ReadFault if `path` is outside `folder`, unless options.outside_files allows it.
 void require_within(const std::filesystem::path& path, const std::filesystem::path& folder, const ReadOptions& options,
                     const std::string& subject);
 

@@ -10,7 +10,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// [words]; a quadrilateral with its vertices takes 33.
+// Limits of repeated words: a free number, plus a number per patch. A quadrilateral with its vertices takes 33 words.
+// The first limit counts the patches that max_patches allows, the second one the patches made so far.
 constexpr std::uint64_t free_of_limit = 100'000, words_per_allowed_patch = 25;
 constexpr std::uint64_t free_of_made = 50'000'000, words_per_made_patch = 1000;
 

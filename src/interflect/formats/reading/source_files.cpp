@@ -12,7 +12,7 @@ namespace interflect::detail {
 namespace fs = std::filesystem;
 
 std::pair<const SourceFile&, bool> SourceFiles::add(const fs::path& path, std::string&& text) {
-    std::error_code ignored;  // leaves the path empty
+    std::error_code ignored;  // an error leaves the path empty
     const auto [source, is_new] =
         sources_.try_emplace(fs::weakly_canonical(path, ignored), SourceFile{path, std::move(text)});
     source_of_path_.emplace(path.string(), &source->second);

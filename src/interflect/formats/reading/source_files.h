@@ -17,14 +17,14 @@ struct SourceFile {
 /// Reads each file once. Addresses are stable.
 class SourceFiles {
   public:
-    /// Returns the file as first added; whether it is new.
+    /// Returns the file as first added, and whether it is new.
     std::pair<const SourceFile&, bool> add(const std::filesystem::path& path, std::string&& text);
     /// @param name  Relative to `includer`. @throws std::invalid_argument
     std::pair<const SourceFile&, bool> find(std::string_view name, const SourceFile& includer);
 
   private:
-    std::map<std::filesystem::path, SourceFile> sources_;                // by canonical path
-    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // by path as written
+    std::map<std::filesystem::path, SourceFile> sources_;                // keys: canonical paths
+    std::unordered_map<std::string, const SourceFile*> source_of_path_;  // keys: paths as written
 };
 
 }  // namespace interflect::detail

@@ -25,16 +25,16 @@ V3d perpendicular(const V3d& axis) {
     return smallest.cross(axis).normalized();
 }
 
-double quarter_turns(int step, int steps_per_quarter) { return step * std::numbers::pi / (2.0 * steps_per_quarter); }
+double angle_of_step(int step, int steps_per_quarter) { return step * std::numbers::pi / (2.0 * steps_per_quarter); }
 
 void reverse_faces(PolygonMesh& mesh) {
     for (auto& face : mesh.faces) std::reverse(face.begin(), face.end());
 }
 
-/// Half the angle that a facet spans around the axis.
+/// Returns half the angle that a facet spans around the axis [rad].
 double half_step(int divisions) { return std::numbers::pi / (4.0 * divisions); }
 
-/// Area of the facets that revolve() makes between two points of a profile.
+/// Returns the area of the facets that revolve() makes between two points of a profile.
 double facet_area(const ProfilePoint& a, const ProfilePoint& b, int divisions) {
     const double angle = half_step(divisions);
     const double slant = std::hypot(b.height - a.height, (b.radius - a.radius) * std::cos(angle));
@@ -67,7 +67,7 @@ void widen_to_area(ProfilePoint& a, ProfilePoint& b, int divisions) {
     b.radius *= scale;
 }
 
-/// Faces point outwards if the profile ascends.
+/// Rotates a profile about an axis. Faces point outwards if the profile ascends.
 PolygonMesh revolve(std::span<const ProfilePoint> profile, bool closed, const V3d& centre, const V3d& axis,
                     int divisions) {
     const auto around = static_cast<std::uint32_t>(4 * divisions);
@@ -75,6 +75,7 @@ PolygonMesh revolve(std::span<const ProfilePoint> profile, bool closed, const V3
     double largest = 0;
     for (const ProfilePoint& p : profile) largest = std::max(largest, p.radius);
 
+    // Add a ring of points, or a pole, for each point of the profile
     PolygonMesh mesh;
     std::vector<std::uint32_t> first_point;
     std::vector<bool> is_pole;
@@ -87,10 +88,11 @@ PolygonMesh revolve(std::span<const ProfilePoint> profile, bool closed, const V3
             continue;
         }
         for (std::uint32_t i = 0; i < around; ++i) {
-            const double angle = quarter_turns(static_cast<int>(i), divisions);
+            const double angle = angle_of_step(static_cast<int>(i), divisions);
             mesh.points.push_back(level + p.radius * (std::cos(angle) * u + std::sin(angle) * v));
         }
     }
+    // Connect neighbouring rings
     const auto point = [&](std::size_t ring, std::uint32_t i) {
         return first_point[ring] + (is_pole[ring] ? 0 : i % around);
     };
@@ -114,7 +116,7 @@ PolygonMesh make_sphere(const V3d& centre, double radius, const Tessellation& te
     const int divisions = tessellation.divisions;
     std::vector<ProfilePoint> profile;
     for (int i = 0; i <= 2 * divisions; ++i) {
-        const double angle = quarter_turns(i, divisions);
+        const double angle = angle_of_step(i, divisions);
         profile.push_back({std::abs(radius) * std::sin(angle), -std::abs(radius) * std::cos(angle)});
     }
     if (tessellation.keeps_area) scale_to_area(profile, false, 4 * std::numbers::pi * radius * radius, divisions);
@@ -152,11 +154,11 @@ PolygonMesh make_torus(const V3d& centre, const V3d& normal, double inner, doubl
     const double tube = 0.5 * (std::abs(outer) - std::abs(inner)), middle = 0.5 * (std::abs(outer) + std::abs(inner));
     std::vector<ProfilePoint> profile;
     for (int i = 0; i < 4 * divisions; ++i) {
-        const double angle = quarter_turns(i, divisions);
+        const double angle = angle_of_step(i, divisions);
         profile.push_back({std::max(0.0, middle + tube * std::cos(angle)), tube * std::sin(angle)});
     }
-    constexpr double of_unit_radii = 4 * std::numbers::pi * std::numbers::pi;
-    if (tessellation.keeps_area) scale_to_area(profile, true, of_unit_radii * middle * tube, divisions);
+    constexpr double area_of_unit_radii = 4 * std::numbers::pi * std::numbers::pi;
+    if (tessellation.keeps_area) scale_to_area(profile, true, area_of_unit_radii * middle * tube, divisions);
     PolygonMesh mesh = revolve(profile, true, centre, normal, divisions);
     if (outer < 0) reverse_faces(mesh);
     return mesh;

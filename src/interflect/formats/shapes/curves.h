@@ -21,8 +21,8 @@ struct Tessellation {
     bool keeps_area = false;
 };
 
-// MGF surfaces. Faces are planar, with the front outside, or inside for negative radii.
-// @throws std::invalid_argument for other arguments.
+// Curved surfaces of MGF. Faces are planar, with the front outside, or inside for negative radii.
+// @throws std::invalid_argument for arguments out of range.
 
 /// @param radius  Not 0.
 PolygonMesh make_sphere(const Imath::V3d& centre, double radius, const Tessellation& tessellation);
@@ -40,7 +40,7 @@ PolygonMesh make_ring(const Imath::V3d& centre, const Imath::V3d& normal, double
 PolygonMesh make_torus(const Imath::V3d& centre, const Imath::V3d& normal, double inner, double outer,
                        const Tessellation& tessellation);
 
-/// Closed. Extends by `length` behind the outline or, if negative, to the front with inward faces.
+/// Makes a closed prism. It extends by `length` behind the outline or, if negative, to the front with inward faces.
 PolygonMesh make_prism(std::span<const Imath::V3d> outline, double length);
 
 }  // namespace interflect::detail

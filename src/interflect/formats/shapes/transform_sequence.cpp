@@ -16,7 +16,7 @@ namespace {
 using Imath::M44d;
 using Imath::V3d;
 
-/// Errors name the option.
+/// Arguments of options, which are read one after the other. Errors name the option.
 class Arguments {
     std::span<const std::string_view> words_;
     std::string_view option_;
@@ -52,7 +52,7 @@ struct SineCosine {
     double sine, cosine;
 };
 
-/// Exact for quarter turns, so rotated copies meet.
+/// Returns exact values for quarter turns, so that rotated copies meet.
 SineCosine sine_cosine(double degrees) {
     const double reduced = std::remainder(degrees, 360.0);
     if (reduced == 0) return {0, 1};
@@ -63,7 +63,7 @@ SineCosine sine_cosine(double degrees) {
     return {std::sin(radians), std::cos(radians)};
 }
 
-/// Right-handed.
+/// Returns a right-handed rotation about a coordinate axis.
 M44d rotation(int axis, double degrees) {
     const auto [sine, cosine] = sine_cosine(degrees);
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;

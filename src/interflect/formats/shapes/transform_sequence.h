@@ -24,7 +24,7 @@ class TransformSequence {
 
   private:
     struct Segment {
-        Imath::M44d step;  // up to the next -i or -a
+        Imath::M44d step;  // product of transforms up to the next -i or -a
         int repetitions = 1;
         bool is_array = false;  // the copy's index replaces `repetitions`
     };

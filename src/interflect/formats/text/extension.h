@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Converts ASCII letters alone.
+/// Converts ASCII letters to lower case.
 inline std::string lower_case(std::string_view text) {
     std::string result(text);
     for (char& c : result)

@@ -6,7 +6,7 @@ namespace {
 
 bool is_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
 
-/// Skips apostrophes, which follow a letter or digit.
+/// Returns the position of the first quotation mark. Skips apostrophes, which follow a letter or digit.
 std::size_t opening_mark(std::string_view message, std::size_t from) {
     std::size_t mark = message.find('\'', from);
     while (mark != message.npos && mark > 0 && is_word(message[mark - 1])) mark = message.find('\'', mark + 1);

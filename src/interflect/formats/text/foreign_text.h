@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Replaces the quoted text (') after `from` by "...", to hide the content of referenced files.
+/// Replaces the text from the first to the last quote (') after `from` by "...", to hide content of referenced files.
 std::string without_quotes(std::string_view message, std::size_t from = 0);
 
 }  // namespace interflect::detail

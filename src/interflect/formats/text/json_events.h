@@ -6,7 +6,7 @@
 
 namespace interflect::detail {
 
-/// Accepts all valid JSON; users override what they look for.
+/// Handler of JSON events that accepts all valid JSON. Derived classes override the events they need.
 template <class Json>
 class JsonEvents : public nlohmann::json_sax<Json> {
     using Base = nlohmann::json_sax<Json>;

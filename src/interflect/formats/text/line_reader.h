@@ -12,12 +12,12 @@ class LineReader {
   public:
     struct Position {
         std::size_t offset = 0;
-        std::int64_t line = 1;  ///< From 1.
+        std::int64_t line = 1;  ///< Number of the line, from 1.
     };
 
     explicit LineReader(std::string_view text) : text_(text) {}
 
-    /// Skips blank lines. @return  false at the end.
+    /// Moves to the next line that is not blank. @return  false at the end.
     bool next();
 
     std::span<const std::string_view> words() const { return words_; }  ///< Valid until next().
@@ -26,7 +26,7 @@ class LineReader {
         if (words_.size() < 2) return {};
         return {words_[1].data(), words_.back().data() + words_.back().size()};
     }
-    std::int64_t line() const { return line_; }     ///< From 1.
+    std::int64_t line() const { return line_; }     ///< Number of the line, from 1.
     std::size_t length() const { return length_; }  ///< [characters], including joined lines
 
     Position position() const { return next_; }

@@ -21,7 +21,7 @@ std::optional<T> parse_all(std::string_view text) {
 
 std::optional<double> parse_number(std::string_view text) {
     const std::optional<double> value = parse_all<double>(text);
-    // False for NaN.
+    // The comparison is false for NaN.
     if (!value || !(std::abs(*value) <= std::numeric_limits<float>::max())) return std::nullopt;
     return value;
 }

@@ -31,7 +31,7 @@ void require_text(std::string_view text, const fs::path& path) {
 
 bool is_within(const fs::path& path, const fs::path& folder) {
     std::error_code error;
-    const auto resolved = [&](const fs::path& given) {  // else nonexistent paths stay relative
+    const auto resolved = [&](const fs::path& given) {  // weakly_canonical() leaves nonexistent paths relative
         const fs::path whole = fs::absolute(given, error);
         return error ? fs::path() : fs::weakly_canonical(whole, error);
     };

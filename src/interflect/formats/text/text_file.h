@@ -8,10 +8,10 @@
 
 namespace interflect::detail {
 
-/// Removes the byte order mark. @throws InputError as read_bytes() and require_text().
+/// Reads a text file without its byte order mark. @throws InputError as read_bytes() and require_text().
 std::string read_text_file(const std::filesystem::path& path);
 
-/// Follows links; includes subfolders.
+/// Returns whether a path is inside a folder or its subfolders. Follows links.
 bool is_within(const std::filesystem::path& path, const std::filesystem::path& folder);
 
 /// @throws InputError for control characters other than white space.

@@ -58,6 +58,7 @@ std::size_t element_size(const GltfElements& elements) {
     return size_of(elements.component_type) * static_cast<std::size_t>(elements.components);
 }
 
+/// Returns the number and type of an accessor's elements, without their data.
 GltfElements shape_of(const GltfValue& owner) {
     GltfElements shape;
     shape.count = owner.integer("count");
@@ -124,21 +125,23 @@ const std::string& GltfAccessors::sparse(std::uint32_t index, const GltfElements
     if (!is_new) return bytes;
     const GltfValue owner = accessors_[index].object("sparse");
     const std::size_t size = element_size(base);
-    asset_.take_bytes(base.count * size, owner);
+    asset_.count_bytes(base.count * size, owner);
     bytes.resize(base.count * size);
     for (std::uint64_t i = 0; i < base.count; ++i)
         std::memcpy(bytes.data() + i * size, base.first + i * base.stride, size);
-    const GltfValue at = owner.object("indices"), with = owner.object("values");
-    const GltfElements places =
-        in_view(at, {.count = owner.integer("count"), .component_type = static_cast<int>(at.integer("componentType"))});
+    const GltfValue indices = owner.object("indices"), replacements = owner.object("values");
+    const GltfElements places = in_view(
+        indices,
+        {.count = owner.integer("count"), .component_type = static_cast<int>(indices.integer("componentType"))});
     GltfElements shape = base;
     shape.count = places.count;
-    const GltfElements values = in_view(with, shape);
+    const GltfElements values = in_view(replacements, shape);
     for (std::uint64_t i = 0; i < places.count; ++i) {
         const std::uint32_t place = places.whole_number(i);
         if (i > 0 && place <= places.whole_number(i - 1))
-            at.fail(fmt::format("index {} follows {}; indices must ascend", place, places.whole_number(i - 1)));
-        if (place >= base.count) at.fail(fmt::format("element {} is replaced, but there are {}", place, base.count));
+            indices.fail(fmt::format("index {} follows {}; indices must ascend", place, places.whole_number(i - 1)));
+        if (place >= base.count)
+            indices.fail(fmt::format("element {} is replaced, but there are {}", place, base.count));
         std::memcpy(bytes.data() + place * size, values.first + i * values.stride, size);
     }
     return bytes;

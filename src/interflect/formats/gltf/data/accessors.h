@@ -24,19 +24,21 @@ struct GltfElements {
     std::uint32_t whole_number(std::uint64_t element) const;
 };
 
-/// Accessors of a file. They may be sparse, or lack data, which are then zeros.
+/// Accessors of a file, which may be sparse. Accessors without data contain zeros.
 class GltfAccessors {
   public:
     GltfAccessors(GltfAsset& asset, GltfBuffers& buffers);
 
     std::size_t count() const { return accessors_.size(); }
-    /// @param types  Accepted, such as "VEC3 VEC4". @return  Valid while this object lives. @throws GltfFault
+    /// @param types  Accepted types, such as "VEC3 VEC4". @return  Valid while this object lives. @throws GltfFault
     GltfElements elements(std::uint32_t index, const std::string& types, const GltfValue& owner);
     /// Returns the elements of an accessor of unsigned scalars.
     GltfElements indices(std::uint32_t index, const GltfValue& owner);
 
   private:
+    /// Returns elements of a buffer view, after checking their bounds.
     GltfElements in_view(const GltfValue& owner, const GltfElements& shape);
+    /// Returns the bytes of a sparse accessor. @param base  The elements before their replacement.
     const std::string& sparse(std::uint32_t index, const GltfElements& base);
 
     GltfAsset& asset_;

@@ -98,11 +98,11 @@ void GltfAsset::warn(const char* kind, const std::string& message, const std::st
     model.warnings.add(kind, message, path().string() + ": " + place);
 }
 
-void GltfAsset::take_bytes(std::uint64_t count, const GltfValue& owner) {
-    if (count > options_.max_model_bytes - taken_)
+void GltfAsset::count_bytes(std::uint64_t count, const GltfValue& owner) {
+    if (count > options_.max_model_bytes - counted_bytes_)
         owner.fail(fmt::format("with its {} bytes, this file asks for more than {} (max_model_bytes)", count,
                                options_.max_model_bytes));
-    taken_ += count;
+    counted_bytes_ += count;
 }
 
 std::string GltfAsset::read_uri(const std::string& uri, const GltfValue& owner) {
@@ -110,7 +110,7 @@ std::string GltfAsset::read_uri(const std::string& uri, const GltfValue& owner) 
     if (!uri.starts_with(data_scheme)) return read_file(uri, owner);
     const auto comma = uri.find(',');
     if (comma == uri.npos) owner.fail("its data URI has no comma");
-    take_bytes(uri.size(), owner);
+    count_bytes(uri.size(), owner);
     const std::string_view content = std::string_view(uri).substr(comma + 1);
     if (!std::string_view(uri).substr(0, comma).ends_with(base64)) return percent_decoded(content);
     auto bytes = decode_base64(content);
@@ -142,8 +142,8 @@ fs::path GltfAsset::file_of(const std::string& uri, const GltfValue& owner) cons
 std::string GltfAsset::read_file(const std::string& uri, const GltfValue& owner) {
     const fs::path file = file_of(uri, owner);
     try {
-        std::string bytes = read_bytes(file, options_.max_model_bytes - taken_);
-        take_bytes(bytes.size(), owner);
+        std::string bytes = read_bytes(file, options_.max_model_bytes - counted_bytes_);
+        count_bytes(bytes.size(), owner);
         if (std::find(model.files.begin(), model.files.end(), file.string()) == model.files.end())
             model.files.push_back(file.string());
         return bytes;

@@ -20,6 +20,7 @@ struct GltfParts {
 /// @throws GltfFault for an invalid GLB.
 GltfParts gltf_parts(std::string_view bytes);
 
+/// A glTF file, and the model that is read from it.
 class GltfAsset {
   public:
     GltfAsset(const std::filesystem::path& path, const ReadOptions& options, const nlohmann::json& json);
@@ -30,12 +31,12 @@ class GltfAsset {
 
     void warn(const char* kind, const std::string& message, const std::string& place);
 
-    /// Whether a URI names a file that does not exist, in the scene's folder.
+    /// Returns whether a URI names a file that does not exist, in the scene's folder.
     bool is_missing(const std::string& uri, const GltfValue& owner) const;
     /// Reads a data URI, or a file in the scene's folder.
     std::string read_uri(const std::string& uri, const GltfValue& owner);
-    /// @throws GltfFault beyond max_model_bytes in total.
-    void take_bytes(std::uint64_t count, const GltfValue& owner);
+    /// Counts bytes that are read or decoded. @throws GltfFault beyond max_model_bytes in total.
+    void count_bytes(std::uint64_t count, const GltfValue& owner);
 
     Model model;
 
@@ -46,7 +47,7 @@ class GltfAsset {
 
     GltfValue root_;
     const ReadOptions& options_;
-    std::uint64_t taken_ = 0;
+    std::uint64_t counted_bytes_ = 0;
 };
 
 }  // namespace interflect::detail

@@ -10,6 +10,7 @@
 
 namespace interflect::detail {
 
+/// Buffers and buffer views of a file. Decompresses views with EXT_meshopt_compression.
 class GltfBuffers {
   public:
     struct View {
@@ -31,7 +32,7 @@ class GltfBuffers {
     GltfAsset& asset_;
     const GltfParts& parts_;
     std::vector<GltfValue> buffers_, views_;
-    std::map<std::uint32_t, std::string> read_, decompressed_;
+    std::map<std::uint32_t, std::string> read_, decompressed_;  // keys: buffers, and views
 };
 
 }  // namespace interflect::detail

@@ -37,7 +37,7 @@ std::string decode_meshopt(const GltfValue& extension, std::string_view compress
         extension.fail(fmt::format("the mode {} cannot have byteStride {}", mode, stride));
     if (count == 0 || (is_triangles && count % 3 != 0))
         extension.fail(fmt::format("the mode {} cannot have count {}", mode, count));
-    asset.take_bytes(count * stride, extension);
+    asset.count_bytes(count * stride, extension);
     std::string bytes(count * stride, '\0');
     const auto* data = reinterpret_cast<const unsigned char*>(compressed.data());
     const int fault = is_attributes ? meshopt_decodeVertexBuffer(bytes.data(), count, stride, data, compressed.size())

@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// Calls take_bytes() first. @throws GltfFault for invalid data.
+/// Decodes a view with EXT_meshopt_compression. Calls count_bytes() first. @throws GltfFault for invalid data.
 std::string decode_meshopt(const GltfValue& extension, std::string_view compressed, GltfAsset& asset);
 
 }  // namespace interflect::detail

@@ -15,7 +15,7 @@ namespace interflect::detail {
 
 /// Error whose message names the place, but not the file.
 struct GltfFault : std::runtime_error {
-    /// @param setting_name  As in Fault.
+    /// @param setting_name  Fault::setting.
     explicit GltfFault(const std::string& text, std::string setting_name = {})
         : std::runtime_error(text), setting(std::move(setting_name)) {}
 

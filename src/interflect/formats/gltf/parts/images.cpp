@@ -17,6 +17,7 @@ constexpr int repeat = 10497;  // glTF constant
 /// Limit of all decoded pixels, because each texture decodes its images again.
 constexpr std::uint64_t max_decoded = 32 * max_texels;
 
+/// Returns the linear values of 16-bit sRGB values.
 const std::vector<float>& decoded_srgb() {
     static const std::vector<float> table = [] {
         std::vector<float> values(1 << 16);
@@ -32,13 +33,13 @@ Rgb colour_at(const StoredImage& image, std::size_t pixel) {
     return {decoded[values[0]], decoded[values[1]], decoded[values[2]]};
 }
 
-/// Returns the index of the pixel of `image` at the centre of pixel (x, y) of `of`.
-std::size_t pixel_at(const StoredImage& image, std::uint32_t x, std::uint32_t y, const Texture& of) {
+/// Returns the index of the pixel of `image` at the centre of texel (x, y) of `texture`.
+std::size_t pixel_at(const StoredImage& image, std::uint32_t x, std::uint32_t y, const Texture& texture) {
     const auto scaled = [](std::uint64_t i, std::uint64_t from, int to) {
         return static_cast<std::size_t>((2 * i + 1) * static_cast<std::uint64_t>(to) / (2 * from));
     };
-    return scaled(y, of.height, image.height) * static_cast<std::size_t>(image.width) +
-           scaled(x, of.width, image.width);
+    return scaled(y, texture.height, image.height) * static_cast<std::size_t>(image.width) +
+           scaled(x, texture.width, image.width);
 }
 
 }  // namespace
@@ -111,6 +112,7 @@ StoredImage GltfImages::decode(std::uint32_t image) {
 }
 
 Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
+    // Decode the images; the first one determines the size
     StoredImage colour, metallic, coverage;
     const StoredImage* shape = nullptr;  // image that determines the size
     std::string name;
@@ -126,6 +128,7 @@ Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
     load(texels.metallic, metallic);
     load(texels.coverage.image, coverage);
     Texture result{name, static_cast<std::uint32_t>(shape->width), static_cast<std::uint32_t>(shape->height), {}};
+    // Compute the texels
     constexpr int blue = 2, alpha = 3;
     result.texels.reserve(shape->pixel_count());
     for (std::uint32_t y = 0; y < result.height; ++y)
@@ -136,8 +139,8 @@ Texture GltfImages::make_texture(const GltfTexels& texels, bool& is_reduced) {
             if (texels.metallic != none) share *= metallic.value(pixel_at(metallic, x, y, result), blue);
             texel *= texels.factor * (1 - share);
             if (texels.coverage.image != none) {
-                const float there = texels.coverage.at(coverage.value(pixel_at(coverage, x, y, result), alpha));
-                texel = texel * there + texels.open * (1 - there);
+                const float covered = texels.coverage.at(coverage.value(pixel_at(coverage, x, y, result), alpha));
+                texel = texel * covered + texels.open * (1 - covered);
             }
             for (int c = 0; c < 3; ++c) {
                 is_reduced |= texel[c] > 1;

@@ -12,6 +12,7 @@
 
 namespace interflect::detail {
 
+/// Adds the light sources and cameras of nodes to the model.
 class GltfLights {
   public:
     GltfLights(GltfAsset& asset, GltfBuffers& buffers);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto max_reflected = static_cast<float>(largest_reflectance);
 
-/// The default material of glTF does not reflect diffusely.
+/// Reflectance in place of glTF's default material, which does not reflect diffusely.
 constexpr float default_reflectance = 0.5f;
 
 GltfMapping mapping_of(const GltfValue& use) {
@@ -36,6 +36,7 @@ GltfMapping mapping_of(const GltfValue& use) {
 
 }  // namespace
 
+/// Properties of a material in the file.
 struct GltfMaterials::Parts {
     Rgb base{1, 1, 1};
     GltfTextureUse base_texture;
@@ -50,6 +51,7 @@ struct GltfMaterials::Parts {
     std::optional<GltfMapping> mapping;
 
     GltfCoverage coverage_from_texture() const { return {coverage_texture.image, coverage, cutoff}; }
+    /// Returns the coverage unless a texture determines it.
     float even_coverage() const { return coverage_texture.image == none ? coverage : 1; }
 };
 
@@ -201,7 +203,7 @@ void GltfMaterials::transmit(const GltfValue& owner, const Parts& parts, Materia
     if (parts.transmission > 0 && parts.base_texture.image != none)
         asset_.warn("transmission-texture", "transmitted light has the mean colour of the surface's texture",
                     owner.place());
-    constexpr float above_rounding = 1 - 0x1p-20f;
+    constexpr float above_rounding = 1 - 0x1p-20f;                     // keeps rounded sums at most 1
     const Rgb through = base * (parts.transmission * (1 - metallic));  // transmitted by the opaque parts
     if (coverage.image != none) {
         material.transmittance = Rgb(1);
@@ -273,7 +275,7 @@ std::uint32_t GltfMaterials::tinted(std::uint32_t material, const Rgb& tint) {
     return entry->second;
 }
 
-void GltfMaterials::warn_of_lost() {
+void GltfMaterials::warn_of_lost_reflection() {
     const std::string message = fmt::format(
         "specular reflection of metals is left out: {:.1f}% of all that the materials in use reflect (mean over "
         "materials, not areas)",

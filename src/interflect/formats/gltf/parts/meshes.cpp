@@ -19,7 +19,7 @@ namespace {
 using Imath::V3d;
 
 constexpr int float_component = 5126;
-constexpr const char* lightmap_set = "TEXCOORD_1";  // by convention
+constexpr const char* lightmap_set = "TEXCOORD_1";  // set of texture coordinates that lightmaps use by convention
 constexpr const char* normal_set = "NORMAL";
 /// Distance beyond 0 or 1 that counts as rounding.
 constexpr double lightmap_tolerance = 1e-4;
@@ -69,6 +69,7 @@ std::vector<std::uint32_t> compact(std::vector<std::uint32_t>& indices, std::uin
 
 }  // namespace
 
+/// Attributes of a primitive, with its morph targets and skin.
 struct GltfMeshes::Vertices {
     struct Target {
         GltfElements offsets;
@@ -280,7 +281,8 @@ std::vector<GltfMeshes::TintedFaces> GltfMeshes::by_tint(const GltfValue& primit
         for (int c = 0; c < 3; ++c) result[c] = static_cast<float>(std::clamp(colour[c], 0.0, 1.0));
         return result;
     };
-    constexpr float steps = 16;  // steps of a channel's square root; colours of a group differ by up to 6% of white
+    // Number of steps of a channel's square root. Colours of a group differ by up to 6% of white.
+    constexpr float steps = 16;
     std::map<std::array<int, 3>, TintedFaces> groups;
     bool varies = false;
     for (std::size_t i = 0; i < indices.size(); i += 3) {
@@ -321,7 +323,7 @@ Mesh GltfMeshes::mesh_of(const GltfValue& primitive, const Vertices& vertices, c
         for (const std::uint32_t v : used) mesh.normals.push_back(vector_at(*vertices.normals, v));
     bool is_outside = false;
     if (surface.mapping) {
-        const GltfElements& c = *vertices.texture_coordinates;  // which exist if there is a mapping
+        const GltfElements& c = *vertices.texture_coordinates;  // a mapping implies coordinates
         mesh.texture_coordinates.reserve(used.size());
         for (const std::uint32_t v : used) {
             const V2f coordinate = surface.mapping->apply(c.number(v, 0), c.number(v, 1));

@@ -25,12 +25,13 @@ class GltfMeshes {
     GltfMeshes(GltfAsset& asset, GltfBuffers& buffers, GltfAccessors& accessors, GltfMaterials& materials);
 
     std::size_t count() const { return meshes_.size(); }
-    /// Returns indices into Model::meshes, one per primitive with faces.
+    /// Returns indices into Model::meshes: one per primitive with faces, or several for primitives with several tints.
     const std::vector<std::uint32_t>& meshes(std::uint32_t index, const GltfPose& pose);
 
   private:
     struct Vertices;
 
+    /// Triangles with one factor of their reflectance.
     struct TintedFaces {
         Rgb tint{1, 1, 1};
         std::vector<std::uint32_t> indices;

@@ -96,10 +96,10 @@ std::vector<std::uint32_t> GltfNodes::roots_of_scene() const {
 std::vector<GltfNode> GltfNodes::in_scene() const {
     const std::size_t longest = 4 * asset_.options().max_name_length;
     std::vector<GltfNode> result;
-    std::vector<std::uint32_t> place(values_.size(), none);
+    std::vector<std::uint32_t> index_in_result(values_.size(), none);
     traverse(roots_of_scene(), [&](std::uint32_t i) {
-        place[i] = static_cast<std::uint32_t>(result.size());
-        const std::string outer = parents_[i] == none ? "" : result[place[parents_[i]]].dotted;
+        index_in_result[i] = static_cast<std::uint32_t>(result.size());
+        const std::string outer = parents_[i] == none ? "" : result[index_in_result[parents_[i]]].dotted;
         GltfNode node{i, &values_[i], to_world_[i], values_[i].text("name").substr(0, asset_.options().max_name_length),
                       outer};
         if (!node.name.empty()) node.dotted += (outer.empty() ? "" : ".") + node.name;

@@ -105,7 +105,7 @@ void ObjMaterials::read_line(std::span<const std::string_view> words, Definition
     if (key == map_of_colours && words.size() > 1) definition.texture = texture_path(words.subspan(1), where);
     if (key == "map_d" && words.size() > 1) definition.mask = texture_path(words.subspan(1), where);
     if ((key == "d" || key == "Tr") && words.size() > 1) {
-        const float value = mtl_number(words.back());  // options come before the number: d -halo 0.5
+        const float value = mtl_number(words.back());  // options precede the number, as in d -halo 0.5
         if (!(value >= 0 && value <= 1))
             throw std::invalid_argument(fmt::format("{} is {}; expected 0 to 1", key, value));
         if (key == "d" || !definition.has_dissolve) definition.opacity = key == "d" ? value : 1 - value;
@@ -113,7 +113,7 @@ void ObjMaterials::read_line(std::span<const std::string_view> words, Definition
     }
 }
 
-/// File names may contain spaces.
+/// Returns the path of a texture, which follows its options. File names may contain spaces.
 fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, const Location& where) {
     while (words.size() > 1 && words[0].starts_with('-')) {
         warn("texture-option", fmt::format("the option {} of texture maps is ignored", words[0]), where);
@@ -137,7 +137,7 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
 }
 
 std::uint32_t ObjMaterials::find(const std::string& name, const Location& where) {
-    // Names such as "Material #25" are more frequent than comments.
+    // Search the whole text first, because names such as "Material #25" are more frequent than comments
     auto entry = definitions_.find(name);
     if (entry == definitions_.end()) entry = definitions_.find(std::string(without_comment(name)));
     if (entry == definitions_.end()) {
@@ -150,6 +150,7 @@ std::uint32_t ObjMaterials::find(const std::string& name, const Location& where)
 }
 
 std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& definition) {
+    // Set the reflectance, transmittance and textures
     Material result;
     result.name = name;
     result.exitance = definition.emitted * static_cast<float>(std::numbers::pi);
@@ -169,6 +170,7 @@ std::uint32_t ObjMaterials::convert(const std::string& name, const Definition& d
              fmt::format("the largest images are halved in width and height, to at most {} texels in all", max_texels),
              definition.where);
     }
+    // Limit reflected and transmitted light
     bool limited = limit_reflectance(result.reflectance);
     if (result.reflectance_texture != none) {
         const Rgb largest = largest_texel(model_.textures[result.reflectance_texture]);

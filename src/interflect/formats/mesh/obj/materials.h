@@ -17,12 +17,13 @@
 
 namespace interflect::detail {
 
-/// Returns a name without the comment after it, which a space and '#' begin.
+/// Returns a name without the comment that follows it after a blank and '#'.
 inline std::string_view without_comment(std::string_view name) {
     const std::size_t comment = std::min(name.find(" #"), name.find("\t#"));
     return comment == name.npos ? name : name.substr(0, name.find_last_not_of(" \t", comment) + 1);
 }
 
+/// Materials of the libraries (MTL) of an OBJ file.
 class ObjMaterials {
   public:
     /// Adds a default material.
@@ -52,6 +53,7 @@ class ObjMaterials {
     Texture read_colours(const Definition& definition);
     StoredImage read_mask(const Definition& definition);
     bool is_readable(const std::filesystem::path& texture, std::string_view key, const Definition& definition);
+    /// Sets the textures of a material with holes.
     void cut_out(const Definition& definition, Material& material);
     /// Counts decoded pixels, to limit the work. @throws InputError
     void count_decoded(std::size_t pixels);

@@ -118,21 +118,22 @@ void ObjReader::read_ahead() {
 
 /// Returns the index of a vertex, coordinate or normal.
 /// @param text  Number in the whole file, from 1; or backwards from -1 in the lines before this one.
-std::uint32_t ObjReader::resolved(std::string_view text, std::size_t Counts::*of, std::string_view name,
+std::uint32_t ObjReader::resolved(std::string_view text, std::size_t Counts::*kind, std::string_view name,
                                   const Location& where) {
     const std::optional<std::int64_t> number = whole_number(text);
     if (!number || *number == 0)
         throw std::invalid_argument(fmt::format("expected the number of a {}, not '{}'", name, text));
-    if (const std::uint32_t index = index_of(*number, preceding_.*of); index != none) return index;
+    if (const std::uint32_t index = index_of(*number, preceding_.*kind); index != none) return index;
     if (*number > 0) {
         if (!has_all_vertices_) read_ahead();
         const Counts all{positions_.size(), coordinates_.size(), normals_.size()};
-        if (const std::uint32_t index = index_of(*number, all.*of); index != none) {
+        if (const std::uint32_t index = index_of(*number, all.*kind); index != none) {
             model_.warnings.add("later-vertices", "faces refer to vertices of later lines", where.text());
             return index;
         }
     }
-    throw std::invalid_argument(fmt::format("there is no {} {}: {} precede this line", name, *number, preceding_.*of));
+    throw std::invalid_argument(
+        fmt::format("there is no {} {}: {} precede this line", name, *number, preceding_.*kind));
 }
 
 void ObjReader::vertex(Words words) {
@@ -142,7 +143,7 @@ void ObjReader::vertex(Words words) {
     uses_.emplace_back();
 }
 
-/// Exporters write NaN for degenerate faces.
+/// Reads texture coordinates. Replaces invalid ones, because exporters write NaN for degenerate faces.
 void ObjReader::coordinate(Words words, const Location& where) {
     if (words.size() < 2) throw std::invalid_argument("texture coordinates need a number");
     if (coordinates_.size() >= none) throw std::invalid_argument("more texture coordinates than 32 bits can count");
@@ -153,7 +154,7 @@ void ObjReader::coordinate(Words words, const Location& where) {
     coordinates_.push_back(u && v ? V2f(static_cast<float>(*u), static_cast<float>(*v)) : V2f(0));
 }
 
-/// Invalid normals count as missing; only shading uses them.
+/// Reads a normal. Invalid normals count as missing, because only shading uses them.
 void ObjReader::normal(Words words) {
     if (normals_.size() >= none) throw std::invalid_argument("more normals than 32 bits can count");
     Imath::V3d n(0);
@@ -256,7 +257,7 @@ std::uint32_t ObjReader::object() {
     return entry->second;
 }
 
-/// A single name may contain spaces and '#', or be followed by a comment.
+/// Reads material libraries. A single name may contain spaces and '#', or be followed by a comment.
 void ObjReader::libraries(const LineReader& line, Words words, const Location& where) {
     const std::filesystem::path folder = model_.file.parent_path();
     std::error_code ignored;

@@ -15,7 +15,7 @@
 
 namespace interflect::detail {
 
-/// Replaces tinyobjloader, which accepts invalid indices and numbers.
+/// Reads Wavefront OBJ. A library such as tinyobjloader would accept invalid indices and numbers.
 class ObjReader {
   public:
     ObjReader(const std::filesystem::path& path, const ReadOptions& options);
@@ -37,12 +37,14 @@ class ObjReader {
     void coordinate(std::span<const std::string_view> words, const Location& where);
     void normal(std::span<const std::string_view> words);
     std::uint32_t normal_index(std::string_view text, const Location& where);
-    std::uint32_t resolved(std::string_view text, std::size_t Counts::*of, std::string_view name,
+    std::uint32_t resolved(std::string_view text, std::size_t Counts::*kind, std::string_view name,
                            const Location& where);
     void face(std::span<const std::string_view> words, const Location& where);
     void libraries(const LineReader& line, std::span<const std::string_view> words, const Location& where);
     std::uint32_t corner(std::string_view word, const Location& where);
+    /// Returns the index of the mesh with the current object and material.
     std::uint32_t mesh();
+    /// Returns the index of the current object, which is named after its object and group in the file.
     std::uint32_t object();
 
     ReadOptions options_;
@@ -51,14 +53,14 @@ class ObjReader {
     std::vector<Imath::V3d> positions_;
     std::vector<V2f> coordinates_;
     std::vector<Imath::V3d> normals_;
-    std::vector<Use> uses_;  // by position
+    std::vector<Use> uses_;  // one entry per position
     const LineReader* lines_ = nullptr;
-    Counts preceding_;               // counts of the lines before the current one
+    Counts preceding_;               // numbers of entries before the current line
     bool has_all_vertices_ = false;  // whether the vertices of later lines have been read
     std::string object_, group_;
     std::uint32_t material_ = 0;
     std::uint32_t mesh_ = none;                                                // current mesh, once it has faces
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // by object and material
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> meshes_;  // keys: object and material
     std::unordered_map<std::string, std::uint32_t> object_index_;
 };
 

@@ -63,7 +63,7 @@ class PlyReader {
   private:
     static constexpr std::uint64_t max_elements = std::uint64_t{1} << 40;  // keeps products below 2^64
 
-    /// Text usually has one element a line; then more values on a line than the header declares can be skipped.
+    /// Returns whether a text has one element per line, so that surplus values can be skipped.
     bool has_line_for_each_element() const {
         const auto lines = values_.lines_left();
         std::uint64_t elements = 0;
@@ -107,7 +107,7 @@ class PlyReader {
     void read_vertices(const PlyElement& element) {
         if (!mesh_.positions.empty()) throw std::invalid_argument("there are two elements 'vertex'");
         if (element.count >= none) throw std::invalid_argument("more vertices than 32 bits can count");
-        std::array<std::optional<std::size_t>, 3> place, tint, normal;
+        std::array<std::optional<std::size_t>, 3> place, tint, normal;  // indices of properties
         for (std::size_t c = 0; c < 3; ++c) {
             place[c] = element.find(std::array{"x", "y", "z"}[c]);
             tint[c] = element.find(std::array{"red", "green", "blue"}[c]);
@@ -213,7 +213,8 @@ class PlyReader {
         }
     }
 
-    /// Every vertex after the first two makes a triangle, whose orientation alternates; -1 begins a new strip.
+    /// Reads a triangle strip. Each vertex after the first two adds a triangle, whose orientation alternates; -1 begins
+    /// a new strip.
     void read_strip(const PlyProperty& property) {
         std::uint64_t length = 0;  // number of vertices in the current strip
         std::array<std::uint32_t, 2> last{};
@@ -256,7 +257,7 @@ class PlyReader {
     const ReadOptions& options_;
     std::optional<RgbD> colour_;  // colour of the first vertex
     bool colours_vary_ = false, colours_are_bytes_ = false, has_vertices_ = false;
-    bool has_line_each_ = false;  // text with one element a line
+    bool has_line_each_ = false;  // whether a text has one element per line
 };
 
 }  // namespace

@@ -34,9 +34,8 @@ class ContextTable {
     }
 
     /// Makes a context the current one.
-    /// @param words  `name` for an existing context, `name =` for a new one, `name = template` for a copy. A new
-    /// context
-    ///     without a name has no words.
+    /// @param words  `name` for an existing context, `name =` for a new one, `name = template` for a copy;
+    ///               empty for a new context without a name.
     /// @throws std::invalid_argument
     void enter(std::span<const std::string_view> words) {
         if (words.empty()) {

@@ -13,12 +13,12 @@ namespace interflect::detail {
 /// Errors in colours and materials, reported only if a face uses them.
 class MgfFaults {
   public:
-    /// Stores one error per line.
+    /// Stores an error, one per line of a file. Returns its index.
     std::uint32_t add(const Location& where, const std::string& message);
 
     /// @throws InputError unless `fault` is none.
     void refuse(std::uint32_t fault) const;
-    /// Includes errors of the rd and ed colours.
+    /// Refuses the faults of a material and of its rd and ed colours.
     void refuse_faults_of(const MgfMaterial& material) const;
     void refuse_first() const { refuse(faults_.empty() ? none : 0); }
 

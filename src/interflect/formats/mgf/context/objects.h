@@ -21,13 +21,13 @@ class MgfObjects {
 
     /// @param is_copy  Whether the object is an array copy, which only close_copy() closes.
     void open(std::string_view name, bool is_copy, const Location& where);
-    /// @return  false for an array copy or a depth of at most `outer_depth`.
+    /// Closes the innermost object. @return  false for an array copy or a depth of at most `outer_depth`.
     bool close_innermost(std::size_t outer_depth);
     void close_copy();
-    /// Warns about unclosed objects.
+    /// Closes objects until `depth` remain. Warns about each, except for array copies.
     void close_down_to(std::size_t depth);
 
-    /// @return  Index into Scene::objects.
+    /// Returns the index of the innermost object in Scene::objects.
     std::uint32_t current();
 
   private:

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t max_lights = 1 << 16;
 
+/// Returns a key that equal materials share.
 std::string identity(const Material& m) {
     std::string key = m.name;
     const auto append = [&](const auto& value) { key.append(reinterpret_cast<const char*>(&value), sizeof value); };

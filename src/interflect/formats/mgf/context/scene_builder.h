@@ -58,6 +58,7 @@ class MgfSceneBuilder {
   private:
     Rgb converted(const MgfColour& colour, double luminance, double largest, const Location& where);
     std::uint32_t texture(const MgfTexture& texture);
+    /// Requires that factors times textures are in range.
     void require_products(const Material& result, const MgfMaterial& material) const;
     void warn_of_lost(const std::string& kind, const std::string& what, double MgfMaterial::*share);
 
@@ -65,9 +66,9 @@ class MgfSceneBuilder {
     SceneFaces faces_;
     VertexWeld weld_;
     std::unordered_map<std::string, std::uint32_t> material_index_, object_index_, texture_index_;
-    std::vector<Rgb> largest_texels_;  // per texture
+    std::vector<Rgb> largest_texels_;  // one per texture
     std::uint64_t texels_ = 0;
-    std::vector<MgfMaterial> used_materials_;  // per scene material
+    std::vector<MgfMaterial> used_materials_;  // one per material of the scene
 };
 
 }  // namespace interflect::detail

@@ -46,7 +46,7 @@ class Numbers {
     std::size_t word_ = 0;
 };
 
-/// Two equal ends mean that the coordinates follow.
+/// Reads an axis. Two equal ends mean that its coordinates follow.
 std::vector<double> read_axis(Numbers& numbers, std::size_t most) {
     const double first = numbers.next("the first coordinate"), last = numbers.next("the last coordinate");
     const std::size_t count = numbers.count("the number of coordinates", 2, most);

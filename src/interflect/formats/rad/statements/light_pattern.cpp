@@ -47,7 +47,7 @@ double folded(double x, double period) {
     return rest > period ? 2 * period - rest : rest;
 }
 
-/// @param d  Unit direction of emission. @return  [degrees], as source.cal defines it.
+/// Returns a coordinate as source.cal defines it [degrees]. @param d  Unit direction of emission.
 double value_of(Coordinate coordinate, const V3d& d) {
     const auto azimuth = [&] {
         const double phi = degrees(std::atan2(d.y, d.x));
@@ -75,7 +75,7 @@ double value_of(Coordinate coordinate, const V3d& d) {
 }
 
 struct Facet {
-    V3d area_normal;  // of the front, times the area
+    V3d area_normal;  // normal of the front, times the area
     V3d normal;
 };
 
@@ -92,7 +92,7 @@ std::vector<Facet> facets_of(const RadEmitter& emitter) {
     return result;
 }
 
-/// Projected area, divided by the projected area for which the pattern corrects.
+/// Returns the projected area, divided by the projected area for which the pattern corrects.
 double corrected_area(const RadLightPattern& pattern, std::span<const Facet> facets, const V3d& d) {
     constexpr double edge = 1e-6;  // cosine; a flat source includes its own plane, as its table does
     const std::vector<double>& a = pattern.arguments;
@@ -115,8 +115,8 @@ double corrected_area(const RadLightPattern& pattern, std::span<const Facet> fac
     return factor * area;
 }
 
-/// Angles of the web [degrees]: the table's coordinates, mirrored at their ends and divided into steps of at most
-/// `step`.
+/// Returns angles of the web [degrees]: the table's coordinates, mirrored at their ends and divided into steps of at
+/// most `step`.
 std::vector<float> angles_of(const std::vector<double>* nodes, double low, double high, double step) {
     std::vector<double> all{low, high};
     if (nodes) {
@@ -185,6 +185,7 @@ PhotometricWeb make_light_web(const RadLightPattern& pattern, const RadData& dat
         throw std::invalid_argument(
             fmt::format("{} coordinates for a table of {} dimensions", coordinates.size(), data.axes.size()));
     coordinates.resize(data.axes.size());
+    // Choose the angles of the web
     const std::vector<double>* theta = nullptr;
     const std::vector<double>* phi = nullptr;
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
@@ -200,6 +201,7 @@ PhotometricWeb make_light_web(const RadLightPattern& pattern, const RadData& dat
     web.polar = angles_of(theta, low, high, theta_step);
     web.azimuth = angles_of(phi, 0, full_turn, phi_step);
     if (web.polar.size() < 2) throw std::invalid_argument("its polar angles are not from 0 to 180 degrees");
+    // Compute the intensity in each direction
     const std::vector<Facet> facets = facets_of(emitter);
     std::vector<double> at(coordinates.size());
     for (const float azimuth : web.azimuth)

@@ -25,10 +25,10 @@ struct RadLightPattern {
     std::vector<double> arguments;  ///< Factor; then the size of a box or cylinder [m].
     std::string data_file;
     std::vector<Coordinate> coordinates;
-    Imath::M44d to_file;  ///< From the luminaire's frame, as for PhotometricWeb.
+    Imath::M44d to_file;  ///< Transform from the luminaire's frame (PhotometricWeb) to the file.
 };
 
-/// @return  nullopt for other patterns. @throws std::invalid_argument for missing arguments.
+/// Parses a pattern. @return  nullopt for other patterns. @throws std::invalid_argument for missing arguments.
 std::optional<RadLightPattern> parse_light_pattern(const RadPrimitive& primitive);
 
 /// Emitting surfaces in the luminaire's frame.
@@ -39,7 +39,7 @@ struct RadEmitter {
     Imath::Box3d bounds() const;
 };
 
-/// Intensity of the emitter for a radiance of 1 before the pattern, which is computed from its projected area.
+/// Computes the intensities of the emitter from its projected area, for a radiance of 1 before the pattern.
 /// The opening is a box, upright cylinder or ellipsoid around all surfaces.
 PhotometricWeb make_light_web(const RadLightPattern& pattern, const RadData& data, const RadEmitter& emitter);
 

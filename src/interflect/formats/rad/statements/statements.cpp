@@ -58,11 +58,11 @@ std::string_view RadStatements::word(std::string_view expected) {
     return result;
 }
 
-std::size_t RadStatements::count(std::string_view of) {
-    const std::string_view text = word(fmt::format("the number of {}", of));
+std::size_t RadStatements::count(std::string_view kind) {
+    const std::string_view text = word(fmt::format("the number of {}", kind));
     const auto number = parse_integer(text);
     if (!number || *number < 0)
-        throw std::invalid_argument(fmt::format("expected the number of {}, not '{}'", of, text));
+        throw std::invalid_argument(fmt::format("expected the number of {}, not '{}'", kind, text));
     return static_cast<std::size_t>(*number);
 }
 

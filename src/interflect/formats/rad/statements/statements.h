@@ -7,7 +7,7 @@
 
 namespace interflect::detail {
 
-/// `modifier type name` with arguments, or `modifier alias name original`.
+/// Statement `modifier type name` with arguments, or `modifier alias name original`.
 struct RadPrimitive {
     std::string_view modifier, type, name;
     std::string_view original;  ///< Alias only.
@@ -15,17 +15,18 @@ struct RadPrimitive {
     std::vector<double> numbers;
 };
 
-/// Comments (`#`) start between statements. Words may be quoted with ' or ".
+/// Splits a file into statements. Comments (`#`) start between statements. Words may be quoted with ' or ".
 class RadStatements {
   public:
     enum class Kind { primitive, command, end };
 
     explicit RadStatements(std::string_view text) : text_(text) {}
 
+    /// Moves to the next statement.
     Kind next();
-    std::int64_t line() const { return line_; }  ///< Start of the statement, from 1
+    std::int64_t line() const { return line_; }  ///< Line at which the statement starts, from 1.
 
-    /// Joins continued lines.
+    /// Returns the command with its continued lines joined.
     std::string command();
     /// @throws std::invalid_argument
     RadPrimitive primitive();
@@ -33,7 +34,7 @@ class RadStatements {
   private:
     void skip_blanks();
     std::string_view word(std::string_view expected);
-    std::size_t count(std::string_view of);
+    std::size_t count(std::string_view kind);
 
     std::string_view text_;
     std::size_t offset_ = 0;

@@ -30,6 +30,7 @@ std::optional<std::vector<std::vector<std::string>>> parse_pipeline(std::string_
     bool in_word = false;
     char quote = '\0';
     for (const char c : command) {
+        // Refuse characters that a shell interprets, outside quotes and inside double quotes
         if (quote == '\'' ? false : quote ? c == '$' || c == '`' || c == '\\' : special.find(c) != special.npos)
             return std::nullopt;
         if (!quote && c == '|') {
@@ -52,6 +53,7 @@ std::optional<std::vector<std::vector<std::string>>> parse_pipeline(std::string_
 
 std::optional<RadXform> parse_xform(std::span<const std::string> words) {
     if (words.front() != "xform") return std::nullopt;
+    // Read the options before the transform
     const std::vector<std::string_view> arguments(words.begin() + 1, words.end());
     std::size_t i = 0;
     std::string name, modifier;
@@ -68,6 +70,7 @@ std::optional<RadXform> parse_xform(std::span<const std::string> words) {
             break;
         }
     }
+    // Find the end of the transform, after which the files follow
     std::size_t end = i;
     while (end < arguments.size() && arguments[end].starts_with('-')) {
         const auto numbers = number_count(arguments[end]);

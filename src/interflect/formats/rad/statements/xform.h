@@ -16,17 +16,17 @@ struct RadXform {
     std::string modifier;  ///< Overrides the surfaces' own unless empty.
     bool inverts = false;  ///< Swaps front and back.
     TransformSequence transform;
-    std::vector<std::string> files;  ///< Empty: standard input.
+    std::vector<std::string> files;  ///< Empty for the standard input.
 
     /// Returns "name.0.2", or "a0.2" without a name; `name` without an array.
     std::string prefix(const std::vector<int>& copy) const;
 };
 
-/// Splits `command` at pipes into commands of words. @param command  Without `!`.
+/// Splits `command` at pipes into commands of words. @param command  Command without its `!`.
 /// @return  nullopt for an empty command and for shell syntax beyond pipes and quotes.
 std::optional<std::vector<std::vector<std::string>>> parse_pipeline(std::string_view command);
 
-/// @param words  Command and arguments. @return  nullopt for other commands and for arguments in a file (-f).
+/// @param words  Command and arguments. @return  nullopt for commands other than xform, and for arguments in a file.
 /// @throws std::invalid_argument if xform would reject it.
 std::optional<RadXform> parse_xform(std::span<const std::string> words);
 
