@@ -164,5 +164,22 @@ TEST_F(KeptFiles, WithSolidsThatAreTurnedInsideOutShowTheLightOfTheirOutside) {
         }
 }
 
+/// A negative scale turns the order of corners around and keeps the front. Seen to fail (1) if it swaps both sides.
+TEST_F(KeptFiles, WithMirroredNodesShowTheLightOfTheirFront) {
+    GltfBuilder file;
+    file.add_triangle()["scale"] = {-1, 1, 1};
+    const Scene scene = load_scene(write(file));
+    Solution solution = uniform(scene, 1);
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p)
+        if (PatchGeometry(scene, scene.patches[p]).normal().z > 0.9f)
+            solution.irradiance[ElementIndex(p.value)] = Rgb(100);
+    export_solution(folder_ / "lit.glb", scene, solution, at(20));
+    const Image light = read_image(folder_ / "lit.lightmap-0.exr");
+    for (const Rgb& texel : light.pixels)
+        if (texel != Rgb(0)) {
+            ASSERT_NEAR(texel.y, 100, 0.1);
+        }
+}
+
 }  // namespace
 }  // namespace interflect

@@ -3,13 +3,19 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "interflect/elements/forest.h"
+#include "interflect/exports/gltf/lightmap_images.h"
 #include "interflect/exports/lightmap/baked_light.h"
 #include "interflect/generate.h"
+#include "interflect/image/codecs/image_codecs.h"
+#include "interflect/image/codecs/srgb.h"
 #include "interflect/prepare.h"
 #include "interflect/render/smooth/smooth_field.h"
 #include "interflect/solve.h"
@@ -318,6 +324,51 @@ INSTANTIATE_TEST_SUITE_P(All, LightmapOfGroups,
                          testing::Combine(testing::Values(Shading::smooth, Shading::gather, Shading::hybrid),
                                           testing::Values(LightmapContent::irradiance, LightmapContent::radiance)),
                          testing_support::printed_name);
+
+/// Each texel has (M + rho H) / pi. Seen to fail without 1 / pi.
+TEST(Lightmap, OfRadianceHasTheLightThatLeavesTheSurface) {
+    const Rgb reflectance(0.5f, 0.25f, 0.1f), exitance(2, 1, 4), irradiance(3);
+    const Scene scene = closed_box(V3f(1), 1, {{"lamp", reflectance, exitance}});
+    ExportOptions options = at(4);
+    options.lightmap->content = LightmapContent::radiance;
+    const Lightmap lightmap = make_lightmap(scene, uniform(scene, irradiance.x), options);
+    const Rgb expected = (exitance + reflectance * irradiance) / std::numbers::pi_v<float>;
+    for (PatchIndex p{0}; p < scene.patches.size(); ++p) {
+        const Rgb found = sample(lightmap, p, {0.4f, 0.3f});
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 1e-5f);
+    }
+}
+
+/// Both images of a grey ramp, which extends ten stops beyond the scale, give its irradiance. Half a step of 8 bits is
+/// 0.45% of the brightest texels. Seen to fail if gains are computed in 256 steps.
+TEST(LightmapImages, TexelsTimesTheirGainsAreTheIrradiance) {
+    constexpr int texels = 64;
+    const float most = 8 * std::numbers::pi_v<float>;  // scale of exposure 0
+    BakedImages baked;
+    Image& ramp = baked.images.emplace_back(texels, 1);
+    for (int i = 0; i < texels; ++i)
+        ramp.at(i, 0) = Rgb(most * std::exp2(10 * static_cast<float>(i + 1) / static_cast<float>(texels)));
+    GltfDocument document;
+    const LightmapImages images = add_lightmap_images(document, "lit.glb", baked, {}, at(1));
+    EXPECT_FLOAT_EQ(images.encoding.scale, most);
+    const std::string glb = document.glb();
+    const auto read = [&](int texture) {
+        const Json& json = document.json;
+        const Json& view =
+            json["bufferViews"]
+                [json["images"][json["textures"][texture]["source"].get<int>()]["bufferView"].get<int>()];
+        constexpr std::size_t header = 12, chunk_header = 8;
+        std::uint32_t json_bytes = 0;
+        std::memcpy(&json_bytes, glb.data() + header, sizeof json_bytes);
+        const std::size_t begin = header + 2 * chunk_header + json_bytes + view["byteOffset"].get<std::size_t>();
+        return codecs::decode_png(std::string_view(glb).substr(begin, view["byteLength"].get<std::size_t>()), texels);
+    };
+    const Image stored = read(images.textures[0]), gains = read(images.gains[0]);
+    for (int i = 0; i < texels; ++i) {
+        const float gain = std::exp2(images.stops * srgb_encode(gains.at(i, 0).x));
+        EXPECT_NEAR(stored.at(i, 0).x * gain * images.encoding.scale / ramp.at(i, 0).x, 1, 0.005) << i;
+    }
+}
 
 class SampledLightmap : public testing::TestWithParam<Shading> {};
 INSTANTIATE_TEST_SUITE_P(Shading, SampledLightmap, testing::Values(Shading::gather, Shading::hybrid),

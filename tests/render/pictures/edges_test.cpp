@@ -6,14 +6,18 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
+#include "interflect/render/pictures/pixel_statistics.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes/scenes.h"
 
 namespace interflect {
+
+using namespace detail;
 namespace {
 
 using namespace testing_support;
@@ -97,6 +101,27 @@ INSTANTIATE_TEST_SUITE_P(OfBrightHalves, Edges,
                          testing::Values(Edge{"Reflecting", Rgb(reflectance), Rgb(0)},
                                          Edge{"Emitting", Rgb(0), Rgb(std::numbers::pi_v<float>* radiance)}),
                          testing::PrintToStringParamName());
+
+/// Four paths of each half predict 2, and ten first hits find 3. Each half adds the difference to its direct and
+/// indirect light in the proportions of the other half. Seen to fail without either part; pictures of Edges have no
+/// indirect light.
+TEST(PixelStatistics, FirstHitsCorrectDirectAndIndirectLight) {
+    SampleBatch paths{.size = 4};
+    paths.halves = {PathLight{.direct = RgbD(4), .indirect = RgbD(8), .predicted = RgbD(8)},
+                    PathLight{.direct = RgbD(12), .indirect = RgbD(4), .predicted = RgbD(8)}};
+    SampleBatch first_hits{.size = 10};
+    first_hits.halves.fill({.emitted = RgbD(5), .predicted = RgbD(30)});
+    PixelStatistics pixel;
+    pixel.add(paths, ErrorSource::halves);
+    pixel.add_first_hits(first_hits);
+    for (const auto& [half, direct, indirect] :
+         {std::tuple{0, 1 + 12.0 / 16, 2 + 4.0 / 16}, {1, 3 + 4.0 / 12, 1 + 8.0 / 12}}) {
+        const PathLight mean = pixel.half_mean(static_cast<std::size_t>(half));
+        EXPECT_NEAR(mean.emitted.x, 0.5, 1e-6);
+        EXPECT_NEAR(mean.direct.x, direct, 1e-6);
+        EXPECT_NEAR(mean.indirect.x, indirect, 1e-6);
+    }
+}
 
 }  // namespace
 }  // namespace interflect

@@ -12,6 +12,7 @@
 #include "interflect/preview.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
+#include "interflect/render/preview/coarse_light.h"
 #include "interflect/solve.h"
 #include "tests/support/release_only.h"
 #include "tests/support/rooms/reference_rooms.h"
@@ -117,6 +118,32 @@ TEST(Preview, IsNotShifted) {
     const Imath::V2d expected = centre(lit.picture(view, options));
     for (const int reduction : {2, 5, 8})
         EXPECT_LT((centre(lit.preview(view, options, reduction)) - expected).length(), 0.3) << reduction;
+}
+
+/// Two parallel walls, 10 pixels apart, of irradiance 1 and 100: at their common outline, each keeps its light. Seen to
+/// fail if pixels of other planes have equal weights, a fault that the pictures of this file tolerate.
+TEST(CoarseLight, IsThatOfPixelsInTheSamePlane) {
+    constexpr int side = 8;
+    constexpr float distance = 10, albedo = 0.5f;
+    const V3f normal(0, 0, 1);
+    PictureLayers layers;
+    layers.emitted = Image(side, side);
+    layers.albedo = layers.normal = layers.position = layers.emitted;
+    layers.depth.assign(side * side, 1);
+    layers.pixel_size = 1;
+    Image picture(side, side);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            const bool is_near = x < side / 2;
+            layers.albedo.at(x, y) = Rgb(albedo);
+            layers.normal.at(x, y) = Rgb(normal);
+            layers.position.at(x, y) = Rgb(static_cast<float>(x), static_cast<float>(y), is_near ? 0 : -distance);
+            picture.at(x, y) = Rgb(albedo * (is_near ? 1.0f : 100.0f));
+        }
+    const detail::CoarseLight light(layers, picture);
+    const auto at_outline = [&](float z) { return light.at(side / 2.0f, side / 2.0f, {3.5f, 3.5f, z}, normal)->x; };
+    EXPECT_NEAR(at_outline(0), 1, 0.01);
+    EXPECT_NEAR(at_outline(-distance), 100, 0.01);
 }
 
 /// A pane before a wall, whose light it halves, and a mirror.
