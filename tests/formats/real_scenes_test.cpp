@@ -27,7 +27,7 @@ std::size_t triangles(const Scene& scene) {
     for (const Patch& p : scene.patches) count += p.is_triangle();
     return count;
 }
-double area(const Scene& scene) {
+double scene_area(const Scene& scene) {
     double sum = 0;
     for (const Patch& p : scene.patches) sum += patch_area(scene, p);
     return sum;
@@ -38,7 +38,7 @@ double luminous_power(const Scene& scene) {
         sum += static_cast<double>(patch_area(scene, p)) * luminance(scene.materials[p.material].exitance);
     return sum;
 }
-std::int64_t warnings(const Scene& scene, const std::string& kind) {
+std::int64_t warning_count(const Scene& scene, const std::string& kind) {
     std::int64_t count = 0;
     for (const auto& entry : scene.warnings.entries())
         if (entry.kind == kind) count += entry.count;
@@ -49,9 +49,9 @@ TEST(RealScenes, Cube) {
     const Scene scene = load("cube.mgf");
     EXPECT_EQ(scene.patches.size(), 2u * (65 + 1));
     EXPECT_EQ(triangles(scene), 2u * 65);
-    EXPECT_NEAR(area(scene), 1456.49601, 1e-3);
+    EXPECT_NEAR(scene_area(scene), 1456.49601, 1e-3);
     EXPECT_NEAR(luminous_power(scene), 400'000, 1);  // two sides of 1 m2 with 200,000 lm/m2
-    EXPECT_EQ(warnings(scene, "specular-reflection"), 7);
+    EXPECT_EQ(warning_count(scene, "specular-reflection"), 7);
 }
 
 TEST(RealScenes, Office2) {
@@ -59,7 +59,7 @@ TEST(RealScenes, Office2) {
     // 103 triangles and 319 quadrilaterals: one of them is one-sided, and 8 are warped and become 16 triangles.
     EXPECT_EQ(scene.patches.size(), 2u * (421 + 8) + 1);
     EXPECT_EQ(triangles(scene), 2u * (103 + 16));
-    EXPECT_NEAR(area(scene), 217.59212, 1e-4);  // 0.00023 more than with flat areas for the warped ones
+    EXPECT_NEAR(scene_area(scene), 217.59212, 1e-4);  // 0.00023 more than with flat areas for the warped ones
     EXPECT_NEAR(luminous_power(scene), 2600, 0.01);
 }
 
@@ -79,11 +79,11 @@ TEST(RealScenes, OfficeGraz) {
     const std::size_t front_triangles = 137 + 2 * 141 + 519 + 2 * 4 + 6 + 16;
     EXPECT_EQ(triangles(scene), 2 * front_triangles);
     EXPECT_EQ(scene.patches.size(), 2 * (13'258 - 137 - 141 + front_triangles));
-    EXPECT_NEAR(area(scene), 749.778607 + 2 * 16 * 0.5 * std::sin(std::numbers::pi / 8) * 0.019 * 0.019, 0.001);
+    EXPECT_NEAR(scene_area(scene), 749.778607 + 2 * 16 * 0.5 * std::sin(std::numbers::pi / 8) * 0.019 * 0.019, 0.001);
     EXPECT_NEAR(luminous_power(scene), 4 * 2 * 2 * 0.2 * 1.5 * 1874, 0.1);
-    EXPECT_EQ(warnings(scene, "unsupported-entity"), 3);
-    EXPECT_EQ(warnings(scene, "degenerate-face"), 0);
-    EXPECT_EQ(warnings(scene, "unclosed-object") + warnings(scene, "unbalanced-object"), 0);
+    EXPECT_EQ(warning_count(scene, "unsupported-entity"), 3);
+    EXPECT_EQ(warning_count(scene, "degenerate-face"), 0);
+    EXPECT_EQ(warning_count(scene, "unclosed-object") + warning_count(scene, "unbalanced-object"), 0);
 }
 
 TEST(RealScenes, FloorGloss) {

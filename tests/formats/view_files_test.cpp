@@ -4,6 +4,7 @@
 
 #include "interflect/core.h"
 #include "interflect/load.h"
+#include "tests/support/refusals.h"
 #include "tests/support/scenes/scenes.h"
 
 namespace interflect {
@@ -11,20 +12,13 @@ namespace interflect {
 using namespace detail;
 namespace {
 
+using testing_support::expect_in;
+using testing_support::message_of;
 using testing_support::TemporaryFolder;
 
 std::string fault_of_list(const std::string& text) {
     const TemporaryFolder folder;
-    try {
-        read_view_list(folder.write("room.views.json", text));
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
-
-void expect_in(const std::string& message, const std::string& part) {
-    EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
+    return message_of([&] { read_view_list(folder.write("room.views.json", text)); });
 }
 
 TEST(ViewList, StandsBesideTheScene) {

@@ -45,15 +45,15 @@ std::string png_of_zeros(std::uint32_t width, std::uint32_t height, std::size_t 
            png_chunk("IDAT" + deflated) + png_chunk("IEND");
 }
 
-struct Fault {
+struct GltfFault {
     const char* name;
     std::function<void(GltfBuilder&)> damage;  ///< Of a file with a triangle.
     const char* expected;                      ///< Part of the message.
 };
 
-void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.name; }
+void PrintTo(const GltfFault& fault, std::ostream* out) { *out << fault.name; }
 
-class GltfFaults : public testing::TestWithParam<Fault> {};
+class GltfFaults : public testing::TestWithParam<GltfFault> {};
 
 TEST_P(GltfFaults, AreNamed) {
     GltfBuilder file;
@@ -96,87 +96,87 @@ void use_meshopt(GltfBuilder& file, const char* mode, std::uint64_t count, std::
 INSTANTIATE_TEST_SUITE_P(
     All, GltfFaults,
     testing::Values(
-        Fault{"OldVersion", put("/asset/version", "1.0"), "asset.version is '1.0'"},
-        Fault{"UnknownExtension", put("/extensionsRequired", {"ACME_walls", "ACME_doors"}),
+        GltfFault{"OldVersion", put("/asset/version", "1.0"), "asset.version is '1.0'"},
+        GltfFault{"UnknownExtension", put("/extensionsRequired", {"ACME_walls", "ACME_doors"}),
               "extensions that are not read: ACME_walls, ACME_doors"},
-        Fault{"NoArray", put("/meshes", 3), "meshes is not an array"},
-        Fault{"NoObject", put("/nodes/0", "a"), "nodes[0] is not an object"},
-        Fault{"NoSuchScene", put("/scene", 7), "scene is 7, but there are 1"},
-        Fault{"NoSuchNode", put("/scenes/0/nodes", {0, 5}), "nodes is 5"},
-        Fault{"NoSuchMesh", put("/nodes/0/mesh", 9), "mesh is 9, but there are 1"},
-        Fault{"NegativeIndex", put("/nodes/0/mesh", -1), "mesh is not a whole number"},
-        Fault{"FractionalIndex", put("/nodes/0/mesh", 0.5), "mesh is not a whole number"},
-        Fault{"IndexIsText", put("/nodes/0/mesh", "0"), "mesh is not a whole number"},
-        Fault{"NodeOfItself", put("/nodes/0/children", {0}), "their own ancestors"},
-        Fault{"NodeTwice", put("/scenes/0/nodes", {0, 0}), "is in it twice"},
-        Fault{"CyclicNodes", [](GltfBuilder& f) { f.file["nodes"].push_back({{"children", {2}}}); f.file["nodes"].push_back({{"children", {1}}}); },
+        GltfFault{"NoArray", put("/meshes", 3), "meshes is not an array"},
+        GltfFault{"NoObject", put("/nodes/0", "a"), "nodes[0] is not an object"},
+        GltfFault{"NoSuchScene", put("/scene", 7), "scene is 7, but there are 1"},
+        GltfFault{"NoSuchNode", put("/scenes/0/nodes", {0, 5}), "nodes is 5"},
+        GltfFault{"NoSuchMesh", put("/nodes/0/mesh", 9), "mesh is 9, but there are 1"},
+        GltfFault{"NegativeIndex", put("/nodes/0/mesh", -1), "mesh is not a whole number"},
+        GltfFault{"FractionalIndex", put("/nodes/0/mesh", 0.5), "mesh is not a whole number"},
+        GltfFault{"IndexIsText", put("/nodes/0/mesh", "0"), "mesh is not a whole number"},
+        GltfFault{"NodeOfItself", put("/nodes/0/children", {0}), "their own ancestors"},
+        GltfFault{"NodeTwice", put("/scenes/0/nodes", {0, 0}), "is in it twice"},
+        GltfFault{"CyclicNodes", [](GltfBuilder& f) { f.file["nodes"].push_back({{"children", {2}}}); f.file["nodes"].push_back({{"children", {1}}}); },
               "their own ancestors"},
-        Fault{"TwoParents", [](GltfBuilder& f) { for (int i = 0; i < 2; ++i) f.add_node({{"children", {0}}}); },
+        GltfFault{"TwoParents", [](GltfBuilder& f) { for (int i = 0; i < 2; ++i) f.add_node({{"children", {0}}}); },
               "nodes[0]: it is the child of two nodes"},
-        Fault{"MatrixTooShort", put("/nodes/0/matrix", {1, 2, 3}), "nodes[0]: matrix has not 16 numbers"},
-        Fault{"Perspective", put("/nodes/0/matrix", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}), "not affine"},
-        Fault{"NoRotation", put("/nodes/0/rotation", {0, 0, 0, 0}), "quaternion of length 0"},
-        Fault{"FarAway", put("/nodes/0/translation", {1e30, 0, 0}), "meshes[0] 'chair'.primitives[0]"},
-        Fault{"NoSuchAccessor", put("/meshes/0/primitives/0/attributes/POSITION", 99), "POSITION is 99"},
-        Fault{"PositionsOfTwo", put("/meshes/0/primitives/0/attributes/POSITION", 1), "type 'VEC2', expected VEC3"},
-        Fault{"NoSuchMode", put("/meshes/0/primitives/0/mode", 7), "its mode is 7"},
-        Fault{"TwoCorners", put("/accessors/0/count", 2), "2 vertices, expected a multiple of 3"},
-        Fault{"FourIndices", index({0, 1, 2, 0}), "4 indices, expected a multiple of 3"},
-        Fault{"TooManyElements", put("/accessors/0/count", 4), "end beyond its view"},
-        Fault{"EnormousCount", put("/accessors/0/count", 1'000'000'000), "end beyond its view"},
-        Fault{"CountBeyondIntegers", put("/accessors/0/count", 1e19), "count is not a whole number"},
-        Fault{"OffsetBeyondView", put("/accessors/0/byteOffset", 4), "end beyond its view"},
-        Fault{"EnormousOffset", put("/accessors/0/byteOffset", 1'099'511'627'776), "end beyond its view"},
-        Fault{"EnormousStride", put("/bufferViews/0/byteStride", 1'099'511'627'776), "end beyond its view"},
-        Fault{"StrideTooSmall", put("/bufferViews/0/byteStride", 4), "byteStride 4 is less than"},
-        Fault{"UnknownComponents", put("/accessors/0/componentType", 5130), "component type 5130"},
-        Fault{"NoData", [](GltfBuilder& f) { f.file["accessors"][0].erase("bufferView"); }, "has no data"},
-        Fault{"ViewBeyondBuffer", put("/bufferViews/0/byteLength", 1000), "end beyond its buffer"},
-        Fault{"ViewOffsetBeyondBuffer", put("/bufferViews/0/byteOffset", 1'000'000), "end beyond its buffer"},
-        Fault{"NoSuchBuffer", put("/bufferViews/0/buffer", 1), "buffer is 1, but there are 1"},
-        Fault{"LyingBuffer", put("/buffers", {{{"byteLength", 1000}}}), "byteLength is 1000, but there are"},
-        Fault{"BufferWithoutData", [](GltfBuilder& f) { f.file["buffers"] = {{{"byteLength", 60}}, {{"byteLength", 36}}}; f.file["bufferViews"][0]["buffer"] = 1; },
+        GltfFault{"MatrixTooShort", put("/nodes/0/matrix", {1, 2, 3}), "nodes[0]: matrix has not 16 numbers"},
+        GltfFault{"Perspective", put("/nodes/0/matrix", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}), "not affine"},
+        GltfFault{"NoRotation", put("/nodes/0/rotation", {0, 0, 0, 0}), "quaternion of length 0"},
+        GltfFault{"FarAway", put("/nodes/0/translation", {1e30, 0, 0}), "meshes[0] 'chair'.primitives[0]"},
+        GltfFault{"NoSuchAccessor", put("/meshes/0/primitives/0/attributes/POSITION", 99), "POSITION is 99"},
+        GltfFault{"PositionsOfTwo", put("/meshes/0/primitives/0/attributes/POSITION", 1), "type 'VEC2', expected VEC3"},
+        GltfFault{"NoSuchMode", put("/meshes/0/primitives/0/mode", 7), "its mode is 7"},
+        GltfFault{"TwoCorners", put("/accessors/0/count", 2), "2 vertices, expected a multiple of 3"},
+        GltfFault{"FourIndices", index({0, 1, 2, 0}), "4 indices, expected a multiple of 3"},
+        GltfFault{"TooManyElements", put("/accessors/0/count", 4), "end beyond its view"},
+        GltfFault{"EnormousCount", put("/accessors/0/count", 1'000'000'000), "end beyond its view"},
+        GltfFault{"CountBeyondIntegers", put("/accessors/0/count", 1e19), "count is not a whole number"},
+        GltfFault{"OffsetBeyondView", put("/accessors/0/byteOffset", 4), "end beyond its view"},
+        GltfFault{"EnormousOffset", put("/accessors/0/byteOffset", 1'099'511'627'776), "end beyond its view"},
+        GltfFault{"EnormousStride", put("/bufferViews/0/byteStride", 1'099'511'627'776), "end beyond its view"},
+        GltfFault{"StrideTooSmall", put("/bufferViews/0/byteStride", 4), "byteStride 4 is less than"},
+        GltfFault{"UnknownComponents", put("/accessors/0/componentType", 5130), "component type 5130"},
+        GltfFault{"NoData", [](GltfBuilder& f) { f.file["accessors"][0].erase("bufferView"); }, "has no data"},
+        GltfFault{"ViewBeyondBuffer", put("/bufferViews/0/byteLength", 1000), "end beyond its buffer"},
+        GltfFault{"ViewOffsetBeyondBuffer", put("/bufferViews/0/byteOffset", 1'000'000), "end beyond its buffer"},
+        GltfFault{"NoSuchBuffer", put("/bufferViews/0/buffer", 1), "buffer is 1, but there are 1"},
+        GltfFault{"LyingBuffer", put("/buffers", {{{"byteLength", 1000}}}), "byteLength is 1000, but there are"},
+        GltfFault{"BufferWithoutData", [](GltfBuilder& f) { f.file["buffers"] = {{{"byteLength", 60}}, {{"byteLength", 36}}}; f.file["bufferViews"][0]["buffer"] = 1; },
               "buffers[1]: it has no uri"},
-        Fault{"BadBase64", put("/buffers", {{{"byteLength", 60}, {"uri", "data:;base64,A*"}}}), "no valid base64"},
-        Fault{"IndexBeyondVertices", index({0, 1, 3}), "index 3 is outside the 3 vertices"},
-        Fault{"RestartIndex", index({0, 1, 65535}), "index 65535 is outside the 3 vertices"},
-        Fault{"BillionIndices", index_zeros(999'999'999), "max_patches"},
-        Fault{"FloatIndices", put("/meshes/0/primitives/0/indices", 0), "expected SCALAR"},
-        Fault{"SparseBeyondEnd", [](GltfBuilder& f) {
+        GltfFault{"BadBase64", put("/buffers", {{{"byteLength", 60}, {"uri", "data:;base64,A*"}}}), "no valid base64"},
+        GltfFault{"IndexBeyondVertices", index({0, 1, 3}), "index 3 is outside the 3 vertices"},
+        GltfFault{"RestartIndex", index({0, 1, 65535}), "index 65535 is outside the 3 vertices"},
+        GltfFault{"BillionIndices", index_zeros(999'999'999), "max_patches"},
+        GltfFault{"FloatIndices", put("/meshes/0/primitives/0/indices", 0), "expected SCALAR"},
+        GltfFault{"SparseBeyondEnd", [](GltfBuilder& f) {
                   const int places = f.add_view(std::string("\x03\0", 2)), values = f.add_view(std::string(12, '\0'));
                   f.file["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", places}, {"componentType", 5123}}}, {"values", {{"bufferView", values}}}};
               }, "element 3 is replaced, but there are 3"},
-        Fault{"SparseOutOfOrder", [](GltfBuilder& f) {
+        GltfFault{"SparseOutOfOrder", [](GltfBuilder& f) {
                   const int places = f.add_view(std::string("\x01\0\x01\0", 4)), values = f.add_view(std::string(24, '\0'));
                   f.file["accessors"][0]["sparse"] = {{"count", 2}, {"indices", {{"bufferView", places}, {"componentType", 5123}}}, {"values", {{"bufferView", values}}}};
               }, "index 1 follows 1; indices must ascend"},
-        Fault{"SparseOfNoComponents", [](GltfBuilder& f) { f.file["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 1}}}, {"values", {{"bufferView", 0}}}}; }, "its componentType is unknown"},
-        Fault{"SparseOfTerabytes", [](GltfBuilder& f) {
+        GltfFault{"SparseOfNoComponents", [](GltfBuilder& f) { f.file["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 1}}}, {"values", {{"bufferView", 0}}}}; }, "its componentType is unknown"},
+        GltfFault{"SparseOfTerabytes", [](GltfBuilder& f) {
                   f.file["accessors"][0].erase("bufferView");
                   f.file["accessors"][0].update({{"count", 999'999'999'999}, {"sparse", {{"count", 0}, {"indices", {{"bufferView", 0}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}}}});
               }, "max_model_bytes"},
-        Fault{"CoordinatesAreFewer", [](GltfBuilder& f) { show_image(png_of_zeros(1, 1, 4))(f); put("/accessors/1/count", 2)(f); }, "2 texture coordinates for 3 vertices"},
-        Fault{"NormalsAreFewer", [](GltfBuilder& f) { f.file["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = f.add_vectors({{0, 0, 1}}); }, "1 normals for 3 vertices"},
-        Fault{"MeshoptDamaged", [](GltfBuilder& f) { use_meshopt(f, "ATTRIBUTES", 3, 12); }, "its data are damaged"},
-        Fault{"MeshoptTerabytes", [](GltfBuilder& f) { use_meshopt(f, "ATTRIBUTES", 1ull << 40, 256); }, "max_model_bytes"},
-        Fault{"MeshoptStride", [](GltfBuilder& f) { use_meshopt(f, "ATTRIBUTES", 3, 6); }, "cannot have byteStride 6"},
-        Fault{"MeshoptMode", [](GltfBuilder& f) { use_meshopt(f, "QUADS", 3, 12); }, "its mode is unknown"},
-        Fault{"InstancesDiffer", [](GltfBuilder& f) { f.file["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", 0}, {"SCALE", f.add_vectors({{1, 1, 1}})}}; },
+        GltfFault{"CoordinatesAreFewer", [](GltfBuilder& f) { show_image(png_of_zeros(1, 1, 4))(f); put("/accessors/1/count", 2)(f); }, "2 texture coordinates for 3 vertices"},
+        GltfFault{"NormalsAreFewer", [](GltfBuilder& f) { f.file["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = f.add_vectors({{0, 0, 1}}); }, "1 normals for 3 vertices"},
+        GltfFault{"MeshoptDamaged", [](GltfBuilder& f) { use_meshopt(f, "ATTRIBUTES", 3, 12); }, "its data are damaged"},
+        GltfFault{"MeshoptTerabytes", [](GltfBuilder& f) { use_meshopt(f, "ATTRIBUTES", 1ull << 40, 256); }, "max_model_bytes"},
+        GltfFault{"MeshoptStride", [](GltfBuilder& f) { use_meshopt(f, "ATTRIBUTES", 3, 6); }, "cannot have byteStride 6"},
+        GltfFault{"MeshoptMode", [](GltfBuilder& f) { use_meshopt(f, "QUADS", 3, 12); }, "its mode is unknown"},
+        GltfFault{"InstancesDiffer", [](GltfBuilder& f) { f.file["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = {{"TRANSLATION", 0}, {"SCALE", f.add_vectors({{1, 1, 1}})}}; },
               "differ in their counts"},
-        Fault{"BillionInstances", [](GltfBuilder& f) { f.file["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = f.add("accessors", {{"componentType", 5126}, {"count", 1'000'000'000}, {"type", "VEC3"}}); },
+        GltfFault{"BillionInstances", [](GltfBuilder& f) { f.file["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] = f.add("accessors", {{"componentType", 5126}, {"count", 1'000'000'000}, {"type", "VEC3"}}); },
               "max_patches"},
-        Fault{"NegativeColour", [](GltfBuilder& f) { f.file["materials"][0]["emissiveFactor"] = {-1, 0, 0}; }, "the channel -1"},
-        Fault{"EmitsTooMuch", [](GltfBuilder& f) { f.file["materials"][0] = {{"emissiveFactor", {1, 1, 1}}, {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e20}}}}}}; }, "materials[0]: its exitance"},
-        Fault{"NoImage", show_image("text"), "images[0]: cannot read this image"},
-        Fault{"HugeTexture", show_image(png_of_zeros(100'000, 100'000, 10)), "100000 x 100000 pixels"},
-        Fault{"LongTexture", show_image(png_of_zeros(100'000, 1, 300'001)), "100000 x 1 pixels"},
-        Fault{"EmptyTexture", show_image(png_of_zeros(0, 1, 10)), "cannot read this image"},
-        Fault{"CutTexture", show_image(png_of_zeros(1000, 1000, 100)), "cannot read this image"},
-        Fault{"LightOfNoType", [](GltfBuilder& f) { f.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}); f.file["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "area"}}}; },
+        GltfFault{"NegativeColour", [](GltfBuilder& f) { f.file["materials"][0]["emissiveFactor"] = {-1, 0, 0}; }, "the channel -1"},
+        GltfFault{"EmitsTooMuch", [](GltfBuilder& f) { f.file["materials"][0] = {{"emissiveFactor", {1, 1, 1}}, {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e20}}}}}}; }, "materials[0]: its exitance"},
+        GltfFault{"NoImage", show_image("text"), "images[0]: cannot read this image"},
+        GltfFault{"HugeTexture", show_image(png_of_zeros(100'000, 100'000, 10)), "100000 x 100000 pixels"},
+        GltfFault{"LongTexture", show_image(png_of_zeros(100'000, 1, 300'001)), "100000 x 1 pixels"},
+        GltfFault{"EmptyTexture", show_image(png_of_zeros(0, 1, 10)), "cannot read this image"},
+        GltfFault{"CutTexture", show_image(png_of_zeros(1000, 1000, 100)), "cannot read this image"},
+        GltfFault{"LightOfNoType", [](GltfBuilder& f) { f.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}); f.file["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "area"}}}; },
               "not point, spot or directional"},
-        Fault{"ConeTooWide", [](GltfBuilder& f) { f.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}); f.file["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}}; },
+        GltfFault{"ConeTooWide", [](GltfBuilder& f) { f.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}); f.file["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", {{"outerConeAngle", 2}}}}}; },
               "its cone goes from 0 to 2"},
-        Fault{"CameraOfNoWidth", [](GltfBuilder& f) { f.add_node({{"camera", 0}}); f.file["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 4}}}}}; },
+        GltfFault{"CameraOfNoWidth", [](GltfBuilder& f) { f.add_node({{"camera", 0}}); f.file["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 4}}}}}; },
               "nodes[1]: its camera"}),
     [](const auto& fault) { return fault.param.name; });
 

@@ -26,14 +26,14 @@ namespace fs = std::filesystem;
 using std::numbers::pi;
 using namespace testing_support;
 
-const std::string square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n";
+const std::string obj_square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n";
 
-Scene read(const std::string& text, const ReadOptions& options = {}) {
+Scene parse_obj(const std::string& text, const ReadOptions& options = {}) {
     return read_obj_text(text, "room.obj", options);
 }
 
 TEST(Obj, FaceIsTwoSidedWithItsFrontCounterClockwise) {
-    const Scene scene = read("# made by hand\n" + square + "f 1 2 3 4  # the floor\n");
+    const Scene scene = parse_obj("# made by hand\n" + obj_square + "f 1 2 3 4  # the floor\n");
     ASSERT_EQ(scene.patches.size(), 2u);
     EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));
     EXPECT_EQ(patch_area(scene, scene.patches[0]), 2);
@@ -42,7 +42,7 @@ TEST(Obj, FaceIsTwoSidedWithItsFrontCounterClockwise) {
 
 class ObjIndices : public testing::TestWithParam<const char*> {};
 TEST_P(ObjIndices, OfAnyFormGiveTheSameFaces) {
-    const Scene scene = read(square + "vt 0 0\nvn 0 0 1\n" + GetParam());
+    const Scene scene = parse_obj(obj_square + "vt 0 0\nvn 0 0 1\n" + GetParam());
     EXPECT_EQ(scene.patches.size(), 2u);
     EXPECT_EQ(patch_area(scene, scene.patches[0]), 2);
 }
@@ -53,21 +53,21 @@ INSTANTIATE_TEST_SUITE_P(, ObjIndices,
                          printed_name);
 
 TEST(Obj, PolygonsOfAnyShapeKeepTheirArea) {
-    const Scene scene = read("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\n");  // an inverted W
+    const Scene scene = parse_obj("v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\n");  // an inverted W
     double area = 0;
     for (std::size_t i = 0; i < scene.patches.size(); i += 2) area += patch_area(scene, scene.patches[i]);
     EXPECT_NEAR(area, 16 - 6, 1e-5);
 }
 
 TEST(Obj, ObjectsAndGroupsNameFaces) {
-    const Scene scene = read(square + "f 1 2 3\no desk\nf 1 2 3\ng leg left\nf 1 2 3\no chair\nf 1 2 3\n");
+    const Scene scene = parse_obj(obj_square + "f 1 2 3\no desk\nf 1 2 3\ng leg left\nf 1 2 3\no chair\nf 1 2 3\n");
     std::vector<std::string> names;
     for (std::size_t i = 0; i < scene.patches.size(); i += 2) names.push_back(scene.objects[scene.patches[i].object]);
     EXPECT_EQ(names, (std::vector<std::string>{"", "desk", "desk.leg left", "chair"}));
 }
 
 TEST(Obj, CoordinatesFarAwayKeepTheirPrecision) {
-    const Scene scene = read("v 5000000.001 0 0\nv 5000000.003 0 0\nv 5000000.003 0.001 0\nf 1 2 3\n");
+    const Scene scene = parse_obj("v 5000000.001 0 0\nv 5000000.003 0 0\nv 5000000.003 0.001 0\nf 1 2 3\n");
     EXPECT_NEAR(patch_area(scene, scene.patches[0]), 1e-6, 1e-11);
 }
 
@@ -83,7 +83,7 @@ TEST_P(ObjMaterial, IsMapped) {
     folder.write("my paints.mtl",
                  std::string("# paints\nnewmtl other\nKd 1 1 1\nnewmtl red paint\n") + GetParam().lines);
     const Scene scene =
-        load_scene(folder.write("room.obj", "mtllib my paints.mtl\n" + square + "usemtl red paint\nf 1 2 3 4\n"));
+        load_scene(folder.write("room.obj", "mtllib my paints.mtl\n" + obj_square + "usemtl red paint\nf 1 2 3 4\n"));
     const Material& found = scene.materials[scene.patches[0].material];
     EXPECT_EQ(found.name, "red paint");
     for (int c = 0; c < 3; ++c) {
@@ -113,7 +113,7 @@ TEST(ObjNames, MayBeFollowedByComments) {
     const TemporaryFolder folder;
     folder.write("a.mtl", "newmtl Material #25\nKd .25 .25 .25\nnewmtl red\nKd .75 0 0\n");
     const Scene scene =
-        load_scene(folder.write("room.obj", "mtllib a.mtl  # paints\n" + square +
+        load_scene(folder.write("room.obj", "mtllib a.mtl  # paints\n" + obj_square +
                                                 "usemtl Material #25\nf 1 2 3\nusemtl red\t# walls\nf 1 3 4\n"));
     EXPECT_EQ(scene.materials[scene.patches[0].material].name, "Material #25") << "the exact name comes first";
     EXPECT_EQ(scene.materials[scene.patches.back().material].name, "red");
@@ -121,7 +121,7 @@ TEST(ObjNames, MayBeFollowedByComments) {
 }
 
 TEST(Obj, SliversThatRoundingFlattensAreLeftOut) {
-    const Scene scene = read(
+    const Scene scene = parse_obj(
         "v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 7.1 7.3 2\nv 7.102 7.3 2\nv 7.101 7.300003 2\nf 1 2 3 4\nf 5 6 7\n");
     EXPECT_EQ(scene.patches.size(), 2u);
     EXPECT_EQ(scene.warnings.entries().at(0).kind, "degenerate-face");
@@ -132,8 +132,9 @@ TEST(Obj, TextureMultipliesTheReflectance) {
     Texture texture{"wood.png", 2, 1, {Rgb(1), Rgb(0)}};
     write_texture(folder.path() / "wood.png", texture);
     folder.write("a.mtl", "newmtl wood\nKd 1 1 .5\nmap_Kd -s 2 2 -clamp on wood.png\n");
-    const Scene scene = load_scene(folder.write(
-        "room.obj", "mtllib a.mtl\n" + square + "vt 0 0\nvt .5 0\nvt .5 1\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3 4/4\n"));
+    const Scene scene =
+        load_scene(folder.write("room.obj", "mtllib a.mtl\n" + obj_square +
+                                                "vt 0 0\nvt .5 0\nvt .5 1\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3 4/4\n"));
     const Material& wood = scene.materials[scene.patches[0].material];
     ASSERT_NE(wood.reflectance_texture, none);
     EXPECT_FLOAT_EQ(wood.reflectance.x, 0.99f);
@@ -151,7 +152,7 @@ TEST(Obj, MasksMakeHoles) {
     for (const std::string mask : {"greys.png", "alpha.png"}) {
         folder.write("a.mtl", "newmtl leaf\nKd .5 .5 .5\nd .5\nKe 1 1 1\nmap_Kd bark.png\nmap_d " + mask + "\n");
         const Scene scene =
-            load_scene(folder.write("room.obj", "mtllib a.mtl\n" + square +
+            load_scene(folder.write("room.obj", "mtllib a.mtl\n" + obj_square +
                                                     "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl leaf\nf 1/1 "
                                                     "2/2 3/3 4/4\n"));
         const Material& leaf = scene.materials[scene.patches[0].material];
@@ -168,7 +169,7 @@ TEST(Obj, MasksMakeHoles) {
 TEST(Obj, WhatIsMissingIsAWarning) {
     const TemporaryFolder folder;
     folder.write("a.mtl", "newmtl wood\nmap_Kd missing.png\nnewmtl photo\nmap_Kd photo.jpg\n");
-    const Scene scene = load_scene(folder.write("room.obj", "mtllib a.mtl none.mtl\n" + square +
+    const Scene scene = load_scene(folder.write("room.obj", "mtllib a.mtl none.mtl\n" + obj_square +
                                                                 "usemtl wood\nf 1 2 3\nusemtl photo\nf 1 3 4\n"
                                                                 "usemtl paper\nf 1 2 4\nl 1 2\ncurv 0 1 1 2\n"));
     std::vector<std::string> kinds;
@@ -182,7 +183,7 @@ TEST(Obj, WhatIsMissingIsAWarning) {
 TEST(Obj, LibrariesAreReadOnceHoweverOftenTheyAreNamed) {
     const TemporaryFolder folder;
     folder.write("a.mtl", "newmtl a\nKd .2 .2 .2\n");
-    std::string text = square;
+    std::string text = obj_square;
     for (int i = 0; i < 1000; ++i) text += "mtllib a.mtl\n";
     const Scene scene =
         load_scene(folder.write("room.obj", text + "usemtl a\nf 1 2 3 4\nmtllib a.mtl\nusemtl a\nf 1 2 3\n"));
@@ -196,7 +197,8 @@ TEST(Obj, FilesOutsideTheFolderAreRefused) {
     folder.write("secret.mtl", "newmtl a\n");
     folder.write("scene/a.mtl", "newmtl a\nmap_Kd ..\\secret.png\n");
     const auto message = [&](const std::string& text) {
-        return message_of([&] { load_scene(folder.write("scene/room.obj", text + square + "usemtl a\nf 1 2 3\n")); });
+        return message_of(
+            [&] { load_scene(folder.write("scene/room.obj", text + obj_square + "usemtl a\nf 1 2 3\n")); });
     };
     expect_in(message("mtllib ../secret.mtl\n"), "room.obj:1: ");
     expect_in(message("mtllib /etc/passwd\n"), "outside the folder of the scene");
@@ -206,21 +208,21 @@ TEST(Obj, FilesOutsideTheFolderAreRefused) {
 /// Each was refused.
 TEST(Obj, OddLinesOfExportersGiveAWarning) {
     const auto kind_of = [](const std::string& text) {
-        const Scene scene = read(text);
+        const Scene scene = parse_obj(text);
         EXPECT_EQ(scene.patches.size(), 2u) << text;
         EXPECT_EQ(patch_area(scene, scene.patches[0]), 2) << text;
         EXPECT_EQ(scene.warnings.entries().size(), 1u) << text;
         return scene.warnings.entries().empty() ? "" : scene.warnings.entries()[0].kind;
     };
-    EXPECT_EQ(kind_of(square + "f 1 2\nf 1\nf\nf 1 2 3 4\n"), "degenerate-face");
-    EXPECT_EQ(kind_of("f 1 2 3 4\n" + square), "later-vertices");
-    EXPECT_EQ(kind_of(square.substr(0, 16) + "f 1//1 2//1 3//1 4//1\n" + square.substr(16) + "vn 0 0 1\n"),
+    EXPECT_EQ(kind_of(obj_square + "f 1 2\nf 1\nf\nf 1 2 3 4\n"), "degenerate-face");
+    EXPECT_EQ(kind_of("f 1 2 3 4\n" + obj_square), "later-vertices");
+    EXPECT_EQ(kind_of(obj_square.substr(0, 16) + "f 1//1 2//1 3//1 4//1\n" + obj_square.substr(16) + "vn 0 0 1\n"),
               "later-vertices");
-    EXPECT_EQ(kind_of(square + "vt nan inf\nvn nan nan nan\nf 1/1/1 2/1/1 3/1/1 4/1/1\n"), "invalid-coordinates");
+    EXPECT_EQ(kind_of(obj_square + "vt nan inf\nvn nan nan nan\nf 1/1/1 2/1/1 3/1/1 4/1/1\n"), "invalid-coordinates");
 }
 
 TEST(Obj, NegativeIndicesCountBackFromTheirLineAfterReadingAhead) {
-    const Scene scene = read("f 5 6 7\n" + square + "f -4 -3 -2 -1\nv 0 0 5\nv 1 0 5\nv 0 1 5\nf -3 -2 -1\n");
+    const Scene scene = parse_obj("f 5 6 7\n" + obj_square + "f -4 -3 -2 -1\nv 0 0 5\nv 1 0 5\nv 0 1 5\nf -3 -2 -1\n");
     ASSERT_EQ(scene.patches.size(), 6u);
     std::vector<float> areas;
     for (const Patch& patch : scene.patches) areas.push_back(patch_area(scene, patch));
@@ -230,7 +232,7 @@ TEST(Obj, NegativeIndicesCountBackFromTheirLineAfterReadingAhead) {
 
 class ObjBadText : public testing::TestWithParam<BadText> {};
 TEST_P(ObjBadText, IsNamedWithItsFault) {
-    const std::string error = message_of([] { read(square + GetParam().text); });
+    const std::string error = message_of([] { parse_obj(obj_square + GetParam().text); });
     expect_in(error, "room.obj");
     expect_in(error, GetParam().expected);
 }
@@ -257,7 +259,7 @@ class MtlBadText : public testing::TestWithParam<BadText> {};
 TEST_P(MtlBadText, IsNamedWithItsFault) {
     const TemporaryFolder folder;
     folder.write("a.mtl", "newmtl a\n" + GetParam().text);
-    const fs::path path = folder.write("room.obj", "mtllib a.mtl\n" + square + "usemtl a\nf 1 2 3\n");
+    const fs::path path = folder.write("room.obj", "mtllib a.mtl\n" + obj_square + "usemtl a\nf 1 2 3\n");
     const std::string error = message_of([&] { load_scene(path); });
     expect_in(error, "a.mtl:");
     expect_in(error, GetParam().expected);

@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing_support;
 
-Scene read(const std::string& bytes, const ReadOptions& options = {}) {
+Scene parse_stl(const std::string& bytes, const ReadOptions& options = {}) {
     return read_stl_bytes(bytes, "part.stl", options);
 }
 
@@ -33,7 +33,7 @@ std::string binary(float y = 1, std::uint32_t count = 1) {
 
 class StlForm : public testing::TestWithParam<std::string> {};
 TEST_P(StlForm, GivesTheSameTriangle) {
-    const Scene scene = read(GetParam());
+    const Scene scene = parse_stl(GetParam());
     ASSERT_EQ(scene.patches.size(), 2u);
     EXPECT_EQ(patch_area(scene, scene.patches[0]), 1);
     EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));  // from its corners, not from the file
@@ -44,7 +44,7 @@ INSTANTIATE_TEST_SUITE_P(, StlForm, testing::Values("solid part\n" + facet + "en
 
 TEST(Stl, SolidsAreObjects) {
     const Scene scene =
-        read("solid a lamp\n" + facet + "endsolid a lamp\nsolid\n" + facet + "endsolid\nsolid c\n" + facet);
+        parse_stl("solid a lamp\n" + facet + "endsolid a lamp\nsolid\n" + facet + "endsolid\nsolid c\n" + facet);
     ASSERT_EQ(scene.patches.size(), 6u);
     EXPECT_EQ(scene.objects[scene.patches[0].object], "a lamp");
     EXPECT_EQ(scene.objects[scene.patches[2].object], "");
@@ -54,7 +54,7 @@ TEST(Stl, SolidsAreObjects) {
 TEST(Stl, EveryCutOfABinaryFileIsRefused) {
     const std::string whole = binary();
     for (std::size_t size = 0; size < whole.size(); ++size)
-        EXPECT_NE(message_of([&] { read(whole.substr(0, size)); }), "no error") << size;
+        EXPECT_NE(message_of([&] { parse_stl(whole.substr(0, size)); }), "no error") << size;
 }
 
 /// Each was refused.
@@ -65,12 +65,12 @@ TEST(Stl, VariantsOfOtherProgramsAreRead) {
         if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
     for (const std::string& variant :
          {upper, "\n \r\n  " + text, bom + text, "solid " + std::string(1000, '/') + "\n" + facet, binary(1, 0)}) {
-        const Scene scene = read(variant);
+        const Scene scene = parse_stl(variant);
         ASSERT_EQ(scene.patches.size(), 2u) << variant.substr(0, 20);
         EXPECT_EQ(patch_area(scene, scene.patches[0]), 1);
         EXPECT_TRUE(scene.warnings.entries().empty());
     }
-    const Scene longer = read(binary() + "\r\n");
+    const Scene longer = parse_stl(binary() + "\r\n");
     EXPECT_EQ(longer.patches.size(), 2u);
     ASSERT_EQ(longer.warnings.entries().size(), 1u);
     EXPECT_EQ(longer.warnings.entries()[0].kind, "surplus-data");
@@ -78,7 +78,7 @@ TEST(Stl, VariantsOfOtherProgramsAreRead) {
 
 class StlBadText : public testing::TestWithParam<BadText> {};
 TEST_P(StlBadText, IsNamedWithItsFault) {
-    const std::string error = message_of([] { read(GetParam().text); });
+    const std::string error = message_of([] { parse_stl(GetParam().text); });
     expect_in(error, "part.stl");
     expect_in(error, GetParam().expected);
 }
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Stl, LimitOfPatchesIsNamed) {
     for (const std::string& bytes : {binary(), "solid\n" + facet})
-        expect_in(message_of([&] { read(bytes, {.max_patches = 1}); }), "max_patches");
+        expect_in(message_of([&] { parse_stl(bytes, {.max_patches = 1}); }), "max_patches");
 }
 
 }  // namespace

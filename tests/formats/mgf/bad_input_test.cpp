@@ -16,26 +16,12 @@ using namespace detail;
 namespace {
 
 namespace fs = std::filesystem;
-using testing_support::TemporaryFolder;
+using namespace testing_support;
 
-const std::string three_vertices = "v a =\n p 0 0 0\nv b =\n p 1 0 0\nv d =\n p 1 1 0\n";  // six lines
-
-template <class Read>
-std::string message_of(const Read& read) {
-    try {
-        read();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
+const std::string three_points = "v a =\n p 0 0 0\nv b =\n p 1 0 0\nv d =\n p 1 1 0\n";  // six lines
 
 std::string message(const std::string& text, const ReadOptions& options = {}) {
     return message_of([&] { read_mgf_text(text, "bad.mgf", options); });
-}
-
-void expect_in(const std::string& message, const std::string& part) {
-    EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' is not in: " << message;
 }
 
 struct BadLine {
@@ -48,7 +34,7 @@ void PrintTo(const BadLine& bad, std::ostream* out) { *out << bad.name; }
 class MgfBadLine : public testing::TestWithParam<BadLine> {};
 
 TEST_P(MgfBadLine, IsNamedWithItsFault) {
-    const std::string error = message(three_vertices + GetParam().line + "\nf a b d\n");
+    const std::string error = message(three_points + GetParam().line + "\nf a b d\n");
     expect_in(error, "bad.mgf:7: ");
     expect_in(error, GetParam().expected);
 }
@@ -104,69 +90,70 @@ INSTANTIATE_TEST_SUITE_P(
     testing::PrintToStringParamName());
 
 TEST(MgfBadInput, SpotLightWithoutACone) {
-    expect_in(message(three_vertices + "v x =\n n 0 0 1\nlight spot x 1 50 45\nf a b d\n"),
+    expect_in(message(three_points + "v x =\n n 0 0 1\nlight spot x 1 50 45\nf a b d\n"),
               "bad.mgf:9: this light has angles of 50 and 45 degrees; expected 0 <= inner <= outer");
 }
 
 TEST(MgfBadInput, TransformThatOverflows) {
-    expect_in(message(three_vertices + "xf -s 1e38 -s 1e38\nf a b d\nxf\n"), "bad.mgf:8: the transformed point");
-    expect_in(message(three_vertices + "xf -i 1000000000 -s 2\n"), "bad.mgf:7: the transform is not finite");
+    expect_in(message(three_points + "xf -s 1e38 -s 1e38\nf a b d\nxf\n"), "bad.mgf:8: the transformed point");
+    expect_in(message(three_points + "xf -i 1000000000 -s 2\n"), "bad.mgf:7: the transform is not finite");
 }
 
 TEST(MgfBadInput, NoUsableFaceIsLeft) {
     expect_in(message(""), "no usable face is left");
-    expect_in(message(three_vertices), "no usable face is left");
+    expect_in(message(three_points), "no usable face is left");
     expect_in(message("v a =\nv b =\nv d =\nf a b d\n"), "no usable face is left");
     expect_in(message("some text that is no scene\nat all\n"), "no usable face is left");
 }
 
 TEST(MgfBadInput, WithoutAUsableFaceTheFirstLeftOutIsNamed) {
-    expect_in(message(three_vertices + "f a b b\nf a a b\n"),
+    expect_in(message(three_points + "f a b b\nf a a b\n"),
               "bad.mgf:7: no usable face is left: 2 are left out, and this is the first of them: face with fewer than "
               "three different vertices");
-    expect_in(message(three_vertices + "v e =\n p 0 1 0\nf a d b e\n"), "bad.mgf:9: no usable face is left");
-    expect_in(message(three_vertices + "v e =\n p 0 1 0\nf a d b e\n"), "outline crosses itself");
-    expect_in(message(three_vertices + "f a b missing\n"), "'missing' is not defined");
-    expect_in(message(three_vertices + "f a b b missing\n"), "'missing' is not defined");
+    expect_in(message(three_points + "v e =\n p 0 1 0\nf a d b e\n"), "bad.mgf:9: no usable face is left");
+    expect_in(message(three_points + "v e =\n p 0 1 0\nf a d b e\n"), "outline crosses itself");
+    expect_in(message(three_points + "f a b missing\n"), "'missing' is not defined");
+    expect_in(message(three_points + "f a b b missing\n"), "'missing' is not defined");
 }
 
 TEST(MgfBadInput, AFaultCountsWhereItIsOnceAFaceUsesIt) {
-    const std::string bad = three_vertices + "c bad =\n cct 5\nc mixed =\n cmix 1 bad 1 bad\n";
+    const std::string bad = three_points + "c bad =\n cct 5\nc mixed =\n cmix 1 bad 1 bad\n";
     const std::string uses = "m one =\n c mixed\n rd .5\nm two = one\nf a b d\n";
     expect_in(message(bad + uses), "bad.mgf:8: a colour temperature must be at least 1000 K");
     expect_in(message(bad + "m one =\n c mixed\n ed 5\nf a b d\n"), "bad.mgf:8: ");
     EXPECT_EQ(message(bad + "m one =\n c mixed\n ed 0\n rd 0\nf a b d\n"), "no error") << "a black one uses none";
     EXPECT_EQ(message(bad + "m one =\n c bad\n cxy .3 .3\n rd .5\nf a b d\n"), "no error") << "what is mended is good";
-    expect_in(message(three_vertices + "m x =\n rd -1\nm y = x\n ed z\nf a b d\n"), "bad.mgf:8: '-1' must not be");
-    expect_in(message(three_vertices + "m x =\n rd -1\n"), "bad.mgf:8: '-1' must not be");
-    expect_in(message(three_vertices + "m x =\n rd -1\nsph a 1\n"), "bad.mgf:8: '-1' must not be");
+    expect_in(message(three_points + "m x =\n rd -1\nm y = x\n ed z\nf a b d\n"), "bad.mgf:8: '-1' must not be");
+    expect_in(message(three_points + "m x =\n rd -1\n"), "bad.mgf:8: '-1' must not be");
+    expect_in(message(three_points + "m x =\n rd -1\nsph a 1\n"), "bad.mgf:8: '-1' must not be");
 }
 
 // ---- Values beyond the numeric limits
 
-std::string square(const std::string& size, const std::string& more = "") {
+std::string mgf_square(const std::string& size, const std::string& more = "") {
     return "m x =\n rd .5\nv a =\nv b =\n p " + size + " 0 0\nv d =\n p 0 " + size + " 0\n" + more + "f a b d\n";
 }
 
 // Fails without the limits, with areas of inf and 0.
 TEST(MgfBadInput, FacesThatAreTooWideAndScenesThatAreTooSmall) {
-    EXPECT_EQ(message(square("7e6")), "no error");
-    expect_in(message(square("7.1e6")), "bad.mgf:8: this face is 1e+07 m wide; at most 1e+07 m can be computed");
-    expect_in(message(square("1e14")), "bad.mgf:8: this face is 1.41e+14 m wide");
-    expect_in(message(square("1e38")), "bad.mgf:8: the transformed point (1e+38, 0, 0) is farther than 1e+15 m");
-    EXPECT_EQ(message(square("8e-7")), "no error");
+    EXPECT_EQ(message(mgf_square("7e6")), "no error");
+    expect_in(message(mgf_square("7.1e6")), "bad.mgf:8: this face is 1e+07 m wide; at most 1e+07 m can be computed");
+    expect_in(message(mgf_square("1e14")), "bad.mgf:8: this face is 1.41e+14 m wide");
+    expect_in(message(mgf_square("1e38")), "bad.mgf:8: the transformed point (1e+38, 0, 0) is farther than 1e+15 m");
+    EXPECT_EQ(message(mgf_square("8e-7")), "no error");
     for (const char* const size : {"5e-7", "1e-12", "1e-38"})
-        expect_in(message(square(size)), "m wide; at least 1e-06 m can be computed");
-    EXPECT_EQ(message(square("1", "v e =\n p 1e-10 0 0\nv g =\n p 0 1e-10 0\nf a e g\n")), "no error") << "litter";
+        expect_in(message(mgf_square(size)), "m wide; at least 1e-06 m can be computed");
+    EXPECT_EQ(message(mgf_square("1", "v e =\n p 1e-10 0 0\nv g =\n p 0 1e-10 0\nf a e g\n")), "no error") << "litter";
 }
 
 TEST(MgfBadInput, ExitanceThatCannotBeComputed) {
     for (const char* const exitance : {"0", "1.1e-9", "9.9e9"})
-        EXPECT_EQ(message(square("1", "m x\n ed " + std::string(exitance) + "\n")), "no error") << exitance;
+        EXPECT_EQ(message(mgf_square("1", "m x\n ed " + std::string(exitance) + "\n")), "no error") << exitance;
     for (const char* const exitance : {"1.1e10", "1e30", "1e38"})
-        expect_in(message(square("1", "m x\n ed " + std::string(exitance) + "\n")), "bad.mgf:9: exitance (");
+        expect_in(message(mgf_square("1", "m x\n ed " + std::string(exitance) + "\n")), "bad.mgf:9: exitance (");
     for (const char* const exitance : {"1e-40", "9e-10"})
-        expect_in(message(square("1", "m x\n ed " + std::string(exitance) + "\n")), "bad.mgf: the scene emits only");
+        expect_in(message(mgf_square("1", "m x\n ed " + std::string(exitance) + "\n")),
+                  "bad.mgf: the scene emits only");
 }
 
 TEST(MgfBadInput, BinaryJunk) {
@@ -176,8 +163,7 @@ TEST(MgfBadInput, BinaryJunk) {
 }
 
 TEST(MgfBadInput, FileCutAtAnyPlaceIsReadOrRefused) {
-    const std::string text =
-        "m x =\n rd .5\n" + three_vertices + "o thing\nxf -t 0 0 1 -a 2 -t 0 0 3\nf a b d\nxf\no\n";
+    const std::string text = "m x =\n rd .5\n" + three_points + "o thing\nxf -t 0 0 1 -a 2 -t 0 0 3\nf a b d\nxf\no\n";
     for (std::size_t length = 0; length < text.size(); ++length) {
         const std::string error = message(text.substr(0, length));
         if (error != "no error") expect_in(error, "bad.mgf");
@@ -196,7 +182,7 @@ TEST(MgfLimits, CopiesTimesContent) {
 }
 
 TEST(MgfLimits, Patches) {
-    const std::string text = three_vertices + "f a b d\nf a b d\n";
+    const std::string text = three_points + "f a b d\nf a b d\n";
     EXPECT_EQ(message(text, {.max_patches = 4}), "no error");
     expect_in(message(text, {.max_patches = 3}), "bad.mgf:8: this would give more than 3 patches");
     EXPECT_EQ(testing_support::refused_setting([&] { read_mgf_text(text, "bad.mgf", {.max_patches = 3}); }),
@@ -204,7 +190,7 @@ TEST(MgfLimits, Patches) {
 }
 
 TEST(MgfLimits, NestedArraysOfNothingEnd) {
-    std::string text = three_vertices;
+    std::string text = three_points;
     for (int i = 0; i < 4; ++i) text += "xf -a 70 -t 1 0 0\n";  // 24 million copies
     for (int i = 0; i < 4; ++i) text += "xf\n";
     expect_in(message(text + "f a b d\n", {.max_patches = 10'000}), "(max_patches)");
@@ -215,7 +201,7 @@ TEST(MgfLimits, NestedArraysOfNothingEnd) {
 
 TEST(MgfLimits, ABillionCopiesAreRefusedAtOnce) {
     const auto start = std::chrono::steady_clock::now();
-    message("xf -a 1000000000 -t 1 0 0\n" + three_vertices + "f a b d\nxf\n");
+    message("xf -a 1000000000 -t 1 0 0\n" + three_points + "f a b d\nxf\n");
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
 }
 
@@ -230,8 +216,8 @@ TEST(MgfLimits, NestingOfTransformsAndObjects) {
 }
 
 TEST(MgfLimits, LinesFacesAndNames) {
-    expect_in(message(three_vertices + "f a b \\\n d\n", {.max_line_length = 9}), "bad.mgf:7: a line of 11 characters");
-    expect_in(message(three_vertices + "f a b d\n", {.max_face_vertices = 2}), "bad.mgf:7: a face of 3 vertices");
+    expect_in(message(three_points + "f a b \\\n d\n", {.max_line_length = 9}), "bad.mgf:7: a line of 11 characters");
+    expect_in(message(three_points + "f a b d\n", {.max_face_vertices = 2}), "bad.mgf:7: a face of 3 vertices");
     expect_in(message("m longer =\n", {.max_name_length = 5}), "bad.mgf:1: a name of 6 characters");
     expect_in(message("o a23\no b23\no c23\no d23\no e23\no f23\n", {.max_name_length = 5}), "bad.mgf:6: ");
 }
@@ -322,9 +308,9 @@ TEST(MgfLimits, CopiesOfNothingEndSoon) {
 
 TEST(MgfLimits, FacesLeftOutCountAsPatches) {
     const std::string spheres = "v c =\n p 1 1 1\nsph c 1e-9\n";  // of 128 faces, all lost to rounding
-    expect_in(message(three_vertices + "f a b d\n" + spheres, {.max_patches = 100}), "(max_patches)");
-    expect_in(message(three_vertices + "f a b d\n" + spheres + "sph c 1e-9\n", {.max_patches = 200}), "(max_patches)");
-    EXPECT_EQ(message(three_vertices + "f a b d\n" + spheres, {.max_patches = 200}), "no error");
+    expect_in(message(three_points + "f a b d\n" + spheres, {.max_patches = 100}), "(max_patches)");
+    expect_in(message(three_points + "f a b d\n" + spheres + "sph c 1e-9\n", {.max_patches = 200}), "(max_patches)");
+    EXPECT_EQ(message(three_points + "f a b d\n" + spheres, {.max_patches = 200}), "no error");
 }
 
 TEST(LoadScene, UnknownExtensionListsTheKnownOnes) {

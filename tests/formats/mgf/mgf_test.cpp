@@ -27,14 +27,14 @@ const std::string vertices =
     "v ha =\n p .25 .25 0\nv hb =\n p .75 .25 0\nv hd =\n p .75 .75 0\nv he =\n p .25 .75 0\n";
 const std::string one_sided = "m grey =\n rd .5\n sides 1\n";
 
-Scene read(const std::string& text, const ReadOptions& options = {}) {
+Scene parse_mgf(const std::string& text, const ReadOptions& options = {}) {
     Scene scene = read_mgf_text(text, "test.mgf", options);
     EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
     return scene;
 }
 
 /// Faces between the vertices above, one-sided and grey.
-Scene read_faces(const std::string& text) { return read(vertices + one_sided + text); }
+Scene read_faces(const std::string& text) { return parse_mgf(vertices + one_sided + text); }
 
 const Material& material_of(const Scene& scene, std::size_t patch) {
     return scene.materials[scene.patches[patch].material];
@@ -70,9 +70,9 @@ void expect_rgb(const Rgb& rgb, float r, float g, float b) {
 // ---- Faces
 
 TEST(Mgf, FaceIsTwoSidedUnlessSidesSaysOne) {
-    EXPECT_EQ(read(vertices + "f a b d e\n").patches.size(), 2u);
-    EXPECT_EQ(read(vertices + "m x =\n sides 1\nf a b d e\n").patches.size(), 1u);
-    EXPECT_EQ(read(vertices + "m x =\n sides 1\n sides 2\nf a b d e\n").patches.size(), 2u);
+    EXPECT_EQ(parse_mgf(vertices + "f a b d e\n").patches.size(), 2u);
+    EXPECT_EQ(parse_mgf(vertices + "m x =\n sides 1\nf a b d e\n").patches.size(), 1u);
+    EXPECT_EQ(parse_mgf(vertices + "m x =\n sides 1\n sides 2\nf a b d e\n").patches.size(), 2u);
 }
 
 TEST(Mgf, FrontIsAsWritten) {
@@ -96,7 +96,7 @@ TEST(Mgf, HoleBehindASeam) { EXPECT_NEAR(total_area(read_faces("f a b d e he hd 
 
 TEST(Mgf, VertexContexts) {
     // `v a` returns to a; `v b = a` copies; without a name there is an unnamed vertex, which has no effect here.
-    const Scene scene = read("v a =\n p 1 2 3\nv b = a\nv d =\n p 0 1 0\nv\n p 9 9 9\nv a\n p 0 0 0\nf a b d\n");
+    const Scene scene = parse_mgf("v a =\n p 1 2 3\nv b = a\nv d =\n p 0 1 0\nv\n p 9 9 9\nv a\n p 0 0 0\nf a b d\n");
     EXPECT_EQ(scene.vertices, (std::vector<V3f>{{0, 0, 0}, {1, 2, 3}, {0, 1, 0}}));
 }
 
@@ -113,26 +113,26 @@ TEST(Mgf, ContinuedLinesAndComments) {
 // ---- Materials and colours
 
 TEST(Mgf, DefaultMaterialIsBlackAndTwoSided) {
-    const Scene scene = read(vertices + "f a b d\n");
+    const Scene scene = parse_mgf(vertices + "f a b d\n");
     expect_rgb(material_of(scene, 0).reflectance, 0, 0, 0);
     expect_rgb(material_of(scene, 0).exitance, 0, 0, 0);
 }
 
 TEST(Mgf, NeutralReflectanceAndExitanceAreTheSameInEachChannel) {
-    const Scene scene = read(vertices + "m x =\n rd .9\n ed 1000\nf a b d\n");
+    const Scene scene = parse_mgf(vertices + "m x =\n rd .9\n ed 1000\nf a b d\n");
     EXPECT_EQ(material_of(scene, 0).name, "x");
     expect_rgb(material_of(scene, 0).reflectance, 0.9f, 0.9f, 0.9f);
     expect_rgb(material_of(scene, 0).exitance, 1000, 1000, 1000);
 }
 
 TEST(Mgf, FlatSpectrumIsNeutral) {
-    const Scene scene = read(vertices + "c flat =\n cspec 380 780 .9 .9 .9\nm x =\n c flat\n rd .9\nf a b d\n");
+    const Scene scene = parse_mgf(vertices + "c flat =\n cspec 380 780 .9 .9 .9\nm x =\n c flat\n rd .9\nf a b d\n");
     expect_rgb(material_of(scene, 0).reflectance, 0.9f, 0.9f, 0.9f);
 }
 
 TEST(Mgf, ColourGivesTheChromaticityRdAndEdTheLuminance) {
     for (const char* colour : {"cxy .4 .45", "cct 3000", "cspec 400 700 .1 .2 .3 .4 .5"}) {
-        const Scene scene = read(vertices + "m x =\n c\n " + colour + "\n rd .3\n ed 500\nf a b d\n");
+        const Scene scene = parse_mgf(vertices + "m x =\n c\n " + colour + "\n rd .3\n ed 500\nf a b d\n");
         const Material& material = material_of(scene, 0);
         EXPECT_NEAR(luminance(material.reflectance), 0.3, 1e-6) << colour;
         EXPECT_NEAR(luminance(material.exitance), 500, 1e-3) << colour;
@@ -142,25 +142,25 @@ TEST(Mgf, ColourGivesTheChromaticityRdAndEdTheLuminance) {
 }
 
 TEST(Mgf, ColourIsTheOneInForceWhenThePropertyIsSet) {
-    const Scene scene = read(vertices + "c red =\n cxy .5 .33\nm x =\n rd .2\n c\n ed 7\n c red\nf a b d\n");
+    const Scene scene = parse_mgf(vertices + "c red =\n cxy .5 .33\nm x =\n rd .2\n c\n ed 7\n c red\nf a b d\n");
     EXPECT_GT(material_of(scene, 0).reflectance.x, 0.25f);
     expect_rgb(material_of(scene, 0).exitance, 7, 7, 7);
 }
 
 TEST(Mgf, MixedColours) {
-    const Scene mixed = read(vertices +
-                             "c y =\n cxy .4 .5\nc b =\n cxy .2 .1\n"
-                             "m x =\n c\n cmix .7 y .3 b\n rd .3\nf a b d\n");
+    const Scene mixed = parse_mgf(vertices +
+                                  "c y =\n cxy .4 .5\nc b =\n cxy .2 .1\n"
+                                  "m x =\n c\n cmix .7 y .3 b\n rd .3\nf a b d\n");
     // X = .7 .4/.5 + .3 .2/.1 = 1.16, Y = 1, Z = .7 .1/.5 + .3 .7/.1 = 2.24: x = .263636, y = .227273.
-    const Scene same = read(vertices + "m x =\n c\n cxy .26363636 .22727273\n rd .3\nf a b d\n");
+    const Scene same = parse_mgf(vertices + "m x =\n c\n cxy .26363636 .22727273\n rd .3\nf a b d\n");
     EXPECT_LT((V3f(material_of(mixed, 0).reflectance) - V3f(material_of(same, 0).reflectance)).length(), 1e-5f);
 }
 
 TEST(Mgf, NamedAndUnnamedColourContexts) {
-    const Scene scene = read(vertices +
-                             "c red =\n cxy .5 .33\nc pale = red\nc\n cxy .3 .6\nc red\n"
-                             "m x =\n c pale\n rd .2\nf a b d\nm y =\n c red\n rd .2\nf a b d\n"
-                             "m z =\n c\n rd .2\nf a b d\n");
+    const Scene scene = parse_mgf(vertices +
+                                  "c red =\n cxy .5 .33\nc pale = red\nc\n cxy .3 .6\nc red\n"
+                                  "m x =\n c pale\n rd .2\nf a b d\nm y =\n c red\n rd .2\nf a b d\n"
+                                  "m z =\n c\n rd .2\nf a b d\n");
     EXPECT_EQ(V3f(material_of(scene, 0).reflectance), V3f(material_of(scene, 2).reflectance));
     expect_rgb(material_of(scene, 4).reflectance, 0.2f, 0.2f, 0.2f);
 }
@@ -194,16 +194,16 @@ TEST(Mgf, MaterialThatIsDefinedAgainTheSameIsOneMaterial) {
 }
 
 TEST(Mgf, ReflectanceIsClampedWithAWarning) {
-    const Scene scene = read(vertices + "m x =\n rd 1.5\nf a b d\n");
+    const Scene scene = parse_mgf(vertices + "m x =\n rd 1.5\nf a b d\n");
     expect_rgb(material_of(scene, 0).reflectance, 0.99f, 0.99f, 0.99f);
     EXPECT_EQ(warnings(scene, "reflectance-clamped"), 1);
     EXPECT_EQ(scene.warnings.entries()[0].where, "test.mgf:18");
 }
 
 TEST(Mgf, WhatDiffuseTransportLeavesOutIsCountedWithItsShare) {
-    const Scene scene = read(vertices +
-                             "m x =\n rd .5\n rs .2 .1\n td .05\n ts .05 0\n ir 1.5 0\nf a b d\n"
-                             "m y =\n rd .2\nf a b d\nm unused =\n rs .9 0\n");
+    const Scene scene = parse_mgf(vertices +
+                                  "m x =\n rd .5\n rs .2 .1\n td .05\n ts .05 0\n ir 1.5 0\nf a b d\n"
+                                  "m y =\n rd .2\nf a b d\nm unused =\n rs .9 0\n");
     EXPECT_EQ(warnings(scene, "specular-reflection"), 1);
     EXPECT_EQ(warnings(scene, "diffuse-transmission"), 1);
     EXPECT_EQ(warnings(scene, "rough-transmission"), 0);
@@ -213,9 +213,9 @@ TEST(Mgf, WhatDiffuseTransportLeavesOutIsCountedWithItsShare) {
 
 TEST(Mgf, ThinGlassAndMirrorsHaveTheColourInForce) {
     const Scene scene =
-        read(vertices +
-             "m glass =\n c red = \n  cxy .64 .33\n ts .10632 0\n c\n rd .1\n rs .3 .01\nf a b d\n"
-             "m rough =\n rs .4 .1\n ts .5 .3\nf a b d\nm bright =\n rd .5\n ts .6 0\n rs .2 0\nf a b d\n");
+        parse_mgf(vertices +
+                  "m glass =\n c red = \n  cxy .64 .33\n ts .10632 0\n c\n rd .1\n rs .3 .01\nf a b d\n"
+                  "m rough =\n rs .4 .1\n ts .5 .3\nf a b d\nm bright =\n rd .5\n ts .6 0\n rs .2 0\nf a b d\n");
     EXPECT_NEAR(material_of(scene, 0).transmittance.x, 0.49, 0.01);
     EXPECT_NEAR(material_of(scene, 0).transmittance.y, 0, 0.01);
     expect_rgb(material_of(scene, 0).specular_reflectance, 0.3f, 0.3f, 0.3f);
@@ -304,16 +304,16 @@ TEST(Mgf, UnclosedTransformIsWarnedOf) {
 
 TEST(Mgf, CurvedEntities) {
     const std::string ends = one_sided + "v a =\n p 0 0 0\n n 0 0 2\nv b =\n p 0 0 1\n";
-    EXPECT_EQ(read(ends + "sph a 1\n").patches.size(), 128u);
-    EXPECT_EQ(read(ends + "cyl a 1 b\n").patches.size(), 16u);
-    EXPECT_EQ(read(ends + "cone a 1 b 0\n").patches.size(), 16u);
-    EXPECT_EQ(read(ends + "ring a .5 1\n").patches.size(), 16u);
-    EXPECT_EQ(read(ends + "torus a .5 1\n").patches.size(), 256u);
-    EXPECT_EQ(read(ends + "sph a 1\n", {.curve_divisions = 2}).patches.size(), 32u);
+    EXPECT_EQ(parse_mgf(ends + "sph a 1\n").patches.size(), 128u);
+    EXPECT_EQ(parse_mgf(ends + "cyl a 1 b\n").patches.size(), 16u);
+    EXPECT_EQ(parse_mgf(ends + "cone a 1 b 0\n").patches.size(), 16u);
+    EXPECT_EQ(parse_mgf(ends + "ring a .5 1\n").patches.size(), 16u);
+    EXPECT_EQ(parse_mgf(ends + "torus a .5 1\n").patches.size(), 256u);
+    EXPECT_EQ(parse_mgf(ends + "sph a 1\n", {.curve_divisions = 2}).patches.size(), 32u);
 }
 
 TEST(Mgf, CurvesAreTransformed) {
-    const Scene scene = read(one_sided + "v a =\n p 1 0 0\nxf -s 2 -t 0 0 7\nsph a -1\nxf\n");
+    const Scene scene = parse_mgf(one_sided + "v a =\n p 1 0 0\nxf -s 2 -t 0 0 7\nsph a -1\nxf\n");
     for (const V3f& x : scene.vertices) EXPECT_NEAR((x - V3f(2, 0, 7)).length(), 2, 1e-5);
     for (std::size_t i = 0; i < scene.patches.size(); ++i)
         EXPECT_LT(normal_of(scene, i).dot(centre_of(scene, i) - V3f(2, 0, 7)), 0) << "a negative radius looks inside";
@@ -329,14 +329,17 @@ TEST(Mgf, CurvedLampsHaveTheirPower) {
     for (const auto& [entity, area] : lamps)
         for (const int divisions : {2, 3, 4, 8, 32}) {
             const ReadOptions options{.curve_divisions = divisions};
-            EXPECT_NEAR(power(read(lamp + entity + "\n", options)) / (100 * area), 1, 1e-5) << entity << divisions;
-            EXPECT_NEAR(power(read(lamp + "sides 2\n" + entity + "\n", options)) / (200 * area), 1, 1e-5) << entity;
-            EXPECT_NEAR(power(read(lamp + "xf -s 3 -rx 20\n" + entity + "\nxf\n", options)) / (900 * area), 1, 1e-5);
+            EXPECT_NEAR(power(parse_mgf(lamp + entity + "\n", options)) / (100 * area), 1, 1e-5) << entity << divisions;
+            EXPECT_NEAR(power(parse_mgf(lamp + "sides 2\n" + entity + "\n", options)) / (200 * area), 1, 1e-5)
+                << entity;
+            EXPECT_NEAR(power(parse_mgf(lamp + "xf -s 3 -rx 20\n" + entity + "\nxf\n", options)) / (900 * area), 1,
+                        1e-5);
         }
 }
 
 TEST(Mgf, LampFlushInARoundHoleKeepsItsPower) {
-    const Scene scene = read(one_sided + "v a =\n n 0 0 -1\nring a 1 4\nm lamp =\n ed 100\n sides 1\nring a 0 1\n");
+    const Scene scene =
+        parse_mgf(one_sided + "v a =\n n 0 0 -1\nring a 1 4\nm lamp =\n ed 100\n sides 1\nring a 0 1\n");
     const RayCaster ray_caster(scene);
     for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const bool is_lamp = material_of(scene, i).exitance.x > 0;

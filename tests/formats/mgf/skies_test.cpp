@@ -27,7 +27,7 @@ using namespace testing_support;
 using testing::HasSubstr;
 
 using std::numbers::pi;
-const std::string face = "v a =\n p 0 0 0\nv b =\n p 1 0 0\nv d =\n p 1 1 0\nf a b d\n";  // 7 lines
+const std::string any_face = "v a =\n p 0 0 0\nv b =\n p 1 0 0\nv d =\n p 1 1 0\nf a b d\n";  // 7 lines
 const std::string sunlight = "v up =\n n 0 0 1\nv s =\n n -0.6 0 -0.8\n";  // the sun is in the east, 53.13 degrees high
 
 class MgfSkies : public testing::Test {
@@ -39,7 +39,7 @@ class MgfSkies : public testing::Test {
             map,
             *image_of(4, 2, {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}, {5, 5, 5}, {6, 6, 6}, {7, 7, 7}, {8, 8, 8}}));
     }
-    Scene read(const std::string& entities) { return load_scene(folder.write("scene.mgf", face + entities)); }
+    Scene read(const std::string& entities) { return load_scene(folder.write("scene.mgf", any_face + entities)); }
     static const SkyDome& dome(const Scene& scene) { return std::get<SkyDome>(scene.luminaires.at(0).kind); }
     static double seen(const Scene& scene, const V3f& direction) {
         return static_cast<double>(Skies(scene).seen(direction.normalized()).y);
@@ -193,7 +193,7 @@ TEST_F(MgfSkies, ComeBackAsTheyWereWritten) {
 
 class PlacedDaylight : public MgfSkies {
   protected:
-    Scene placed(const Daylight& daylight) { return load_scene(folder.write("scene.mgf", face), {}, {}, daylight); }
+    Scene placed(const Daylight& daylight) { return load_scene(folder.write("scene.mgf", any_face), {}, {}, daylight); }
 };
 
 TEST_F(PlacedDaylight, HasItsSunByAzimuthAndAltitude) {

@@ -43,7 +43,7 @@ void expect_colour(const Rgb& actual, const Rgb& expected, const std::string& wh
 const Material& material_of(const Scene& scene, const Patch& patch) { return scene.materials[patch.material]; }
 
 /// Expects the same patches in the same order at identical positions.
-void expect_same(const Scene& actual, const Scene& expected) {
+void expect_same_scene(const Scene& actual, const Scene& expected) {
     ASSERT_EQ(actual.patches.size(), expected.patches.size());
     for (std::size_t i = 0; i < expected.patches.size(); ++i) {
         const Patch &a = actual.patches[i], &b = expected.patches[i];
@@ -112,13 +112,13 @@ TEST(WriteMgf, KeepsLights) {
 TEST(WriteMgf, FurnishedMaze) {
     const Scene maze = make_maze({.rooms = 6, .furniture = true});
     const Scene read = there_and_back(maze);
-    expect_same(read, maze);
+    expect_same_scene(read, maze);
     EXPECT_EQ(read.vertices.size(), maze.vertices.size()) << "vertices are shared as they were";
 }
 
 TEST(WriteMgf, Offices) {
     const Scene office = make_office({.rooms = 2});
-    expect_same(there_and_back(office), office);
+    expect_same_scene(there_and_back(office), office);
 }
 
 TEST(WriteMgf, WhatWasReadFromAFile) {
@@ -128,7 +128,7 @@ TEST(WriteMgf, WhatWasReadFromAFile) {
                             [](const Patch& patch) { return patch.other_side != none; }),
               0);
     office.warnings = {};
-    expect_same(there_and_back(office), office);
+    expect_same_scene(there_and_back(office), office);
 }
 
 TEST(WriteMgf, IsStableFromThenOn) {
@@ -145,7 +145,7 @@ TEST(WriteMgf, PositionsComeBackToTheBit) {
         const float scale = std::ldexp(1.f, static_cast<int>(words[3] % 24) - 12);
         add_triangle(scene, 0, scale * V3f(unit_float(words[0]), -unit_float(words[1]), unit_float(words[2])));
     }
-    expect_same(there_and_back(scene), scene);
+    expect_same_scene(there_and_back(scene), scene);
 }
 
 // ---- Materials
@@ -161,7 +161,7 @@ TEST(WriteMgf, ColoursComeBack) {
                              .exitance = std::ldexp(1.f, static_cast<int>(words[3] % 40) - 20) * light});
     }
     const Scene scene = scene_of(materials);
-    expect_same(there_and_back(scene), scene);
+    expect_same_scene(there_and_back(scene), scene);
 }
 
 TEST(WriteMgf, ColoursAtTheEdge) {
@@ -172,7 +172,7 @@ TEST(WriteMgf, ColoursAtTheEdge) {
                                   {.name = "blue", .reflectance = {0, 0, .9f}, .exitance = {0, 5e9f, 0}},
                                   {.name = "yellow", .reflectance = {.99f, .99f, 0}},
                                   {.name = "dark", .reflectance = {1e-7f, 3e-7f, 2e-7f}}});
-    expect_same(there_and_back(scene), scene);
+    expect_same_scene(there_and_back(scene), scene);
 }
 
 TEST(WriteMgf, ReflectanceAboveTheReadersBoundIsReduced) {
@@ -185,7 +185,7 @@ TEST(WriteMgf, OneMaterialOnFacesOfOneAndTwoSides) {
     for (int i = 0; i < 4; ++i)
         add_triangle(scene, static_cast<std::uint32_t>(i / 2), V3f(0, static_cast<float>(i), 2), i % 2 == 0);
     const Scene read = there_and_back(scene);
-    expect_same(read, scene);
+    expect_same_scene(read, scene);
     EXPECT_EQ(read.materials.size(), 2u);
 }
 
@@ -233,7 +233,7 @@ TEST(WriteMgf, ObjectNamesAreNested) {
         add_triangle(scene, 0, V3f(static_cast<float>(scene.patches.size()), 0, 0));
         scene.patches.back().object = object;
     }
-    expect_same(there_and_back(scene), scene);
+    expect_same_scene(there_and_back(scene), scene);
     EXPECT_NE(mgf_of(scene).find("o room\no desk\no leg\n"), std::string::npos);
 }
 
@@ -282,7 +282,7 @@ TEST(WriteMgf, SceneWithItsViewsIsLoaded) {
     write_mgf(maze, folder.path() / "maze.mgf");
     write_view_list(maze.views, folder.path() / "maze.views.json");
     const Scene read = load_scene(folder.path() / "maze.mgf");
-    expect_same(read, maze);
+    expect_same_scene(read, maze);
     EXPECT_EQ(read.views.size(), maze.views.size());
 }
 

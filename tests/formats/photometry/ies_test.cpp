@@ -24,16 +24,16 @@ using namespace testing_support;
 using Shape = LuminousOpening::Shape;
 using testing::HasSubstr;
 
-struct Read {
+struct ParsedIes {
     PhotometricWeb web;
     Warnings warnings;
 };
-Read read(const std::string& text) {
-    Read result;
+ParsedIes parse_ies(const std::string& text) {
+    ParsedIes result;
     result.web = read_ies_text(text, "lamp.ies", {}, result.warnings);
     return result;
 }
-PhotometricWeb web_of(const IesText& text) { return read(text.str()).web; }
+PhotometricWeb web_of(const IesText& text) { return parse_ies(text.str()).web; }
 
 TEST(Ies, FactorsMultiplyIntensities) {
     EXPECT_FLOAT_EQ(web_of({.multiplier = 2.5}).peak(), 250);
@@ -101,7 +101,7 @@ TEST(Ies, RoundHeightsWereEllipsoidsUntil1995) {
 TEST(Ies, UnlikelyUnitsAreWarnedOf) {
     const auto kinds = [](int unit, const char* opening) {
         std::vector<std::string> found;
-        const Read lamp = read(IesText{.unit = unit, .opening = opening}.str());
+        const ParsedIes lamp = parse_ies(IesText{.unit = unit, .opening = opening}.str());
         for (const Warnings::Entry& warning : lamp.warnings.entries()) found.push_back(warning.kind);
         return found;
     };
@@ -118,7 +118,7 @@ TEST(Ies, UnlikelyUnitsAreWarnedOf) {
 
 TEST(Ies, TwoPlanesAreEnoughOfAHalf) {
     for (const std::vector<double>& horizontal : {std::vector<double>{0, 180}, {90, 270}}) {
-        const Read found = read(IesText{.horizontal = horizontal}.str());
+        const ParsedIes found = parse_ies(IesText{.horizontal = horizontal}.str());
         EXPECT_TRUE(found.warnings.entries().empty());
         EXPECT_EQ(found.web.azimuth.size(), 3u);
         EXPECT_FLOAT_EQ(found.web.intensity({-0.3f, 0.7f, -1}), 100);
@@ -127,7 +127,7 @@ TEST(Ies, TwoPlanesAreEnoughOfAHalf) {
 
 TEST(Ies, LineBreaksAndSeparatorsAreFree) {
     const auto expect_same = [](const std::string& text) {
-        const Read found = read(text);
+        const ParsedIes found = parse_ies(text);
         EXPECT_EQ(found.web.intensities, std::vector<float>({100, 100, 100, 100}));
         EXPECT_TRUE(found.warnings.entries().empty());
     };
@@ -153,7 +153,7 @@ TEST(Ies, MarksOfEditorsAndOfMsDosAreNoText) {
 const std::string tilt_data = "1 3\n0 45 90\n0.9 1 0.8\n";
 
 TEST(Ies, TiltIsThatOfTheMeasurement) {
-    const Read included = read(IesText{.tilt = "TILT=INCLUDE\n" + tilt_data}.str());
+    const ParsedIes included = parse_ies(IesText{.tilt = "TILT=INCLUDE\n" + tilt_data}.str());
     EXPECT_FLOAT_EQ(included.web.peak(), 90);
     ASSERT_EQ(included.warnings.entries().size(), 1u);
     EXPECT_EQ(included.warnings.entries()[0].kind, "ies-tilt");
@@ -191,13 +191,13 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return printed_name(test) + '_' + std::to_string(test.index); });
 
 TEST_P(IesOddity, IsToleratedWithOneWarning) {
-    const Read found = read(GetParam().text);
+    const ParsedIes found = parse_ies(GetParam().text);
     ASSERT_EQ(found.warnings.entries().size(), 1u);
     EXPECT_EQ(found.warnings.entries()[0].kind, GetParam().kind);
     EXPECT_THAT(found.warnings.entries()[0].where, HasSubstr("lamp.ies:"));
 }
 
-std::vector<MalformedText> malformed() {
+std::vector<MalformedText> malformed_ies() {
     const std::string good = IesText().str();
     const auto cut = [&](std::size_t from_end) { return good.substr(0, good.size() - from_end); };
     const auto numbers = [](const std::string& text) { return "IESNA91\nTILT=NONE\n" + text; };
@@ -250,11 +250,11 @@ std::vector<MalformedText> malformed() {
 }
 
 class MalformedIes : public testing::TestWithParam<MalformedText> {};
-INSTANTIATE_TEST_SUITE_P(All, MalformedIes, testing::ValuesIn(malformed()),
+INSTANTIATE_TEST_SUITE_P(All, MalformedIes, testing::ValuesIn(malformed_ies()),
                          [](const auto& test) { return test.param.name; });
 
 TEST_P(MalformedIes, IsAnErrorThatNamesTheLine) {
-    expect_error([](const std::string& text) { read(text); }, GetParam(), "lamp.ies");
+    expect_error([](const std::string& text) { parse_ies(text); }, GetParam(), "lamp.ies");
 }
 
 TEST(Ies, HugeFilesAreRefused) {

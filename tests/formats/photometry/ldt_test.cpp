@@ -18,46 +18,46 @@ namespace {
 using namespace testing_support;
 using testing::HasSubstr;
 
-struct Read {
+struct ParsedLdt {
     PhotometricWeb web;
     Warnings warnings;
 };
-Read read(const std::string& text) {
-    Read result;
+ParsedLdt parse_ldt(const std::string& text) {
+    ParsedLdt result;
     result.web = read_ldt_text(text, "lamp.ldt", {}, result.warnings);
     return result;
 }
 
 TEST(Ldt, IntensitiesAreForAThousandLumens) {
-    EXPECT_FLOAT_EQ(read(LdtText{.lumens = 3500}.str()).web.peak(), 350);
-    EXPECT_FLOAT_EQ(read(LdtText{.conversion = 1.2, .lumens = 3500}.str()).web.peak(), 420);
-    EXPECT_EQ(read(LdtText{.lumens = 3500}.str()).web.lamp_lumens, 3500);
-    const PhotometricWeb absolute = read(LdtText{.lumens = 3500, .lamps = -1}.str()).web;
+    EXPECT_FLOAT_EQ(parse_ldt(LdtText{.lumens = 3500}.str()).web.peak(), 350);
+    EXPECT_FLOAT_EQ(parse_ldt(LdtText{.conversion = 1.2, .lumens = 3500}.str()).web.peak(), 420);
+    EXPECT_EQ(parse_ldt(LdtText{.lumens = 3500}.str()).web.lamp_lumens, 3500);
+    const PhotometricWeb absolute = parse_ldt(LdtText{.lumens = 3500, .lamps = -1}.str()).web;
     EXPECT_EQ(absolute.lamp_lumens, 0);
     EXPECT_FLOAT_EQ(absolute.peak(), 350);
 }
 
 TEST(Ldt, OpeningIsLongAlongC90) {
-    const LuminousOpening box = read(LdtText{.length = 1200, .width = 300}.str()).web.opening;
+    const LuminousOpening box = parse_ldt(LdtText{.length = 1200, .width = 300}.str()).web.opening;
     EXPECT_EQ(box.shape, LuminousOpening::Shape::box);
     EXPECT_LT((box.size - V3f(0.3f, 1.2f, 0)).length(), 1e-6f);
-    const LuminousOpening disk = read(LdtText{.length = 200}.str()).web.opening;
+    const LuminousOpening disk = parse_ldt(LdtText{.length = 200}.str()).web.opening;
     EXPECT_EQ(disk.shape, LuminousOpening::Shape::cylinder);
     EXPECT_LT((disk.size - V3f(0.2f, 0.2f, 0)).length(), 1e-6f);
 }
 
 TEST(Ldt, LineBreaksAreFree) {
     for (const char* line_break : {"\n", "\r\n", "\r"}) {
-        const Read found = read(LdtText{.line_break = line_break}.str());
+        const ParsedLdt found = parse_ldt(LdtText{.line_break = line_break}.str());
         EXPECT_FLOAT_EQ(found.web.peak(), 100);
         EXPECT_TRUE(found.warnings.entries().empty());
     }
 }
 
-struct Oddity {
+struct LdtDeviation {
     std::string kind, text;
 };
-void PrintTo(const Oddity& oddity, std::ostream* out) { *out << oddity.kind; }
+void PrintTo(const LdtDeviation& oddity, std::ostream* out) { *out << oddity.kind; }
 
 /// Counts lines from 1.
 std::string with_line(const LdtText& ldt, int n, const std::string& line) {
@@ -67,20 +67,21 @@ std::string with_line(const LdtText& ldt, int n, const std::string& line) {
     return text.replace(begin, text.find("\r\n", begin) - begin, line);
 }
 
-class LdtOddity : public testing::TestWithParam<Oddity> {};
+class LdtOddity : public testing::TestWithParam<LdtDeviation> {};
 INSTANTIATE_TEST_SUITE_P(
     All, LdtOddity,
-    testing::Values(Oddity{"ldt-decimal-comma", with_line({}, 24, "1,5")}, Oddity{"ldt-empty", with_line({}, 18, "")},
-                    Oddity{"ldt-comment", with_line({}, 29, "1000 lm")},
-                    Oddity{"ldt-comment", with_line({}, 44, "0 degrees")},
-                    Oddity{"ldt-lamps", LdtText{.lamp_sets = 3}.str()}, Oddity{"ldt-tilt", LdtText{.tilt = 15}.str()},
-                    Oddity{"ldt-angles", LdtText{.gamma = {0, 80}}.str()},
-                    Oddity{"ldt-negative", LdtText{.intensity = [](double g, double) { return g > 0 ? -1 : 5; }}.str()},
-                    Oddity{"ldt-trailing", LdtText().str() + "1\r\n2"}),
+    testing::Values(
+        LdtDeviation{"ldt-decimal-comma", with_line({}, 24, "1,5")}, LdtDeviation{"ldt-empty", with_line({}, 18, "")},
+        LdtDeviation{"ldt-comment", with_line({}, 29, "1000 lm")},
+        LdtDeviation{"ldt-comment", with_line({}, 44, "0 degrees")},
+        LdtDeviation{"ldt-lamps", LdtText{.lamp_sets = 3}.str()}, LdtDeviation{"ldt-tilt", LdtText{.tilt = 15}.str()},
+        LdtDeviation{"ldt-angles", LdtText{.gamma = {0, 80}}.str()},
+        LdtDeviation{"ldt-negative", LdtText{.intensity = [](double g, double) { return g > 0 ? -1 : 5; }}.str()},
+        LdtDeviation{"ldt-trailing", LdtText().str() + "1\r\n2"}),
     [](const auto& test) { return printed_name(test) + '_' + std::to_string(test.index); });
 
 TEST_P(LdtOddity, IsToleratedWithOneWarning) {
-    const Read found = read(GetParam().text);
+    const ParsedLdt found = parse_ldt(GetParam().text);
     ASSERT_EQ(found.warnings.entries().size(), 1u);
     EXPECT_EQ(found.warnings.entries()[0].kind, GetParam().kind);
 }
@@ -88,18 +89,18 @@ TEST_P(LdtOddity, IsToleratedWithOneWarning) {
 /// Each was refused, and empty direct ratios were read as angles.
 TEST(Ldt, EmptyLinesHaveTheUsualValues) {
     const LdtText text{.length = 1200, .width = 300};
-    const PhotometricWeb usual = read(text.str()).web;
+    const PhotometricWeb usual = parse_ldt(text.str()).web;
     for (const int line : {18, 19, 20, 21, 24, 25, 27, 33, 37, 42}) {
-        const PhotometricWeb web = read(with_line(text, line, "")).web;
+        const PhotometricWeb web = parse_ldt(with_line(text, line, "")).web;
         EXPECT_EQ(web.intensities, usual.intensities) << line;
         EXPECT_EQ(web.lamp_lumens, usual.lamp_lumens) << line;
         EXPECT_EQ(web.opening.size, usual.opening.size) << line;
         EXPECT_EQ(web.polar, usual.polar) << line;
     }
-    EXPECT_TRUE(read(with_line(text, 16, "")).web.opening.size.y == 0);
+    EXPECT_TRUE(parse_ldt(with_line(text, 16, "")).web.opening.size.y == 0);
 }
 
-std::vector<MalformedText> malformed() {
+std::vector<MalformedText> malformed_ldt() {
     const std::string good = LdtText().str();
     const std::vector<double> four{0, 90, 180, 270};
     return {
@@ -145,11 +146,11 @@ std::vector<MalformedText> malformed() {
 }
 
 class MalformedLdt : public testing::TestWithParam<MalformedText> {};
-INSTANTIATE_TEST_SUITE_P(All, MalformedLdt, testing::ValuesIn(malformed()),
+INSTANTIATE_TEST_SUITE_P(All, MalformedLdt, testing::ValuesIn(malformed_ldt()),
                          [](const auto& test) { return test.param.name; });
 
 TEST_P(MalformedLdt, IsAnErrorThatNamesTheLine) {
-    expect_error([](const std::string& text) { read(text); }, GetParam(), "lamp.ldt");
+    expect_error([](const std::string& text) { parse_ldt(text); }, GetParam(), "lamp.ldt");
 }
 
 }  // namespace

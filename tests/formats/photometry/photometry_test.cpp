@@ -24,8 +24,9 @@ namespace {
 
 using namespace testing_support;
 using Imath::V3d;
+using std::numbers::pi;
 
-constexpr double pi = std::numbers::pi, degree = pi / 180;
+constexpr double degree = pi / 180;
 
 using Distribution = std::function<double(const V3d&)>;
 

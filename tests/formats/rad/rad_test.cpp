@@ -25,14 +25,14 @@ using std::numbers::pi;
 using namespace testing_support;
 
 const std::string grey = "void plastic grey\n0\n0\n5 .5 .5 .5 0 0\n";
-const std::string square = "grey polygon square\n0\n0\n12\n 0 0 0\n 1 0 0\n 1 1 0\n 0 1 0\n";
+const std::string rad_square = "grey polygon square\n0\n0\n12\n 0 0 0\n 1 0 0\n 1 1 0\n 0 1 0\n";
 
-Scene read(const std::string& text, const ReadOptions& options = {}) {
+Scene parse_rad(const std::string& text, const ReadOptions& options = {}) {
     return read_rad_text(text, "room.rad", options);
 }
 
 Material material_of(const std::string& definition, const std::string& name) {
-    const Scene scene = read(definition + "\n" + name + " polygon p 0 0 9 0 0 0  1 0 0  0 1 0");
+    const Scene scene = parse_rad(definition + "\n" + name + " polygon p 0 0 9 0 0 0  1 0 0  0 1 0");
     return scene.materials[scene.patches[0].material];
 }
 
@@ -57,7 +57,7 @@ double volume(const Scene& scene) {
     return sum;
 }
 
-double power(const Scene& scene) {
+double total_power(const Scene& scene) {
     double sum = 0;
     for (const Patch& patch : scene.patches)
         sum += patch_area(scene, patch) * scene.materials[patch.material].exitance.x;
@@ -65,7 +65,7 @@ double power(const Scene& scene) {
 }
 
 TEST(Rad, PolygonIsATwoSidedFace) {
-    const Scene scene = read("# a room\n" + grey + square);
+    const Scene scene = parse_rad("# a room\n" + grey + rad_square);
     ASSERT_EQ(scene.patches.size(), 2u);
     EXPECT_EQ(PatchGeometry(scene, scene.patches[0]).normal(), V3f(0, 0, 1));
     EXPECT_EQ(scene.objects[scene.patches[0].object], "square");
@@ -74,9 +74,9 @@ TEST(Rad, PolygonIsATwoSidedFace) {
 }
 
 TEST(Rad, SeamLeadsToAHole) {
-    const Scene scene = read(grey +
-                             "grey polygon frame 0 0 30  0 0 0  4 0 0  4 4 0  0 4 0  0 0 0"
-                             "  1 1 0  1 3 0  3 3 0  3 1 0  1 1 0\n");
+    const Scene scene = parse_rad(grey +
+                                  "grey polygon frame 0 0 30  0 0 0  4 0 0  4 4 0  0 4 0  0 0 0"
+                                  "  1 1 0  1 3 0  3 3 0  3 1 0  1 1 0\n");
     EXPECT_NEAR(area(scene), 16 - 4, 1e-5);
 }
 
@@ -90,22 +90,22 @@ void PrintTo(const Curve& curve, std::ostream* out) { *out << curve.name; }
 class RadCurve : public testing::TestWithParam<Curve> {};
 
 TEST_P(RadCurve, ComesCloseToTheTrueSurface) {
-    const Scene scene = read(grey + "grey " + GetParam().surface, {.curve_divisions = 40});
+    const Scene scene = parse_rad(grey + "grey " + GetParam().surface, {.curve_divisions = 40});
     EXPECT_NEAR(area(scene) / GetParam().area, 1, 1e-3);
     EXPECT_NEAR(volume(scene) / GetParam().volume, 1, 2e-3);
 }
 
 TEST_P(RadCurve, EmitsThePowerOfTheTrueSurface) {
     for (const int divisions : {2, 3, 4, 8, 32}) {
-        const Scene scene = read("void light lamp 0 0 3 1 1 1\nlamp " + std::string(GetParam().surface),
-                                 {.curve_divisions = divisions});
-        EXPECT_NEAR(power(scene) / (179 * pi * GetParam().area), 1, 1e-5) << divisions;
+        const Scene scene = parse_rad("void light lamp 0 0 3 1 1 1\nlamp " + std::string(GetParam().surface),
+                                      {.curve_divisions = divisions});
+        EXPECT_NEAR(total_power(scene) / (179 * pi * GetParam().area), 1, 1e-5) << divisions;
     }
 }
 
 TEST_P(RadCurve, HasItsCornersOnTheTrueSurfaceIfItIsDark) {
-    const Scene coarse = read(grey + "grey " + GetParam().surface, {.curve_divisions = 1});
-    const Scene fine = read(grey + "grey " + GetParam().surface, {.curve_divisions = 8});
+    const Scene coarse = parse_rad(grey + "grey " + GetParam().surface, {.curve_divisions = 1});
+    const Scene fine = parse_rad(grey + "grey " + GetParam().surface, {.curve_divisions = 8});
     const auto is_of_fine = [&](const V3f& x) {
         return std::any_of(fine.vertices.begin(), fine.vertices.end(),
                            [&](const V3f& y) { return (x - y).length() < 1e-5f; });
@@ -125,9 +125,9 @@ INSTANTIATE_TEST_SUITE_P(, RadCurve,
                          testing::PrintToStringParamName());
 
 TEST(Rad, LightEmitsFromItsFrontAlone) {
-    const Scene scene = read("void light lamp 0 0 3 10 20 30\nlamp polygon p 0 0 9 0 0 0  2 0 0  0 1 0\n");
+    const Scene scene = parse_rad("void light lamp 0 0 3 10 20 30\nlamp polygon p 0 0 9 0 0 0  2 0 0  0 1 0\n");
     const double radiance = 10, efficacy = 179;  // [W/(m^2 sr)], [lm/W]
-    EXPECT_NEAR(power(scene), pi * radiance * efficacy * 1, 1e-2);
+    EXPECT_NEAR(total_power(scene), pi * radiance * efficacy * 1, 1e-2);
     const Material& front = scene.materials[scene.patches[0].material];
     expect_near(front.exitance / front.exitance.x, {1, 2, 3});
     expect_near(scene.materials[scene.patches[1].material].exitance, {0, 0, 0});
@@ -137,7 +137,7 @@ TEST(Rad, ScaledAndMirroredLampsHaveTheirPower) {
     const TemporaryFolder folder;
     folder.write("lamp.rad", "void glow lamp 0 0 4 1 1 1 0\nlamp cone c 0 0 8 0 0 0 0 0 3 4 0\n");
     const Scene scene = load_scene(folder.write("room.rad", "!xform -s 2 -mx -rx 30 lamp.rad\n"));
-    EXPECT_NEAR(power(scene) / (179 * pi * 4 * 20 * pi), 1, 1e-5);
+    EXPECT_NEAR(total_power(scene) / (179 * pi * 4 * 20 * pi), 1, 1e-5);
 }
 
 struct MaterialCase {
@@ -198,9 +198,10 @@ TEST(Rad, TransmissivityOfGlassIsRadiances) {
 }
 
 TEST(Rad, WhatIsLeftOutIsCounted) {
-    const Scene scene = read(grey + square + "!gensurf grey box 1 1 1\n" + "grey source sky 0 0 4 0 0 1 180\n" +
-                             "void sphere nothing 0 0 4 0 0 0 1\nvoid BSDF x 6 0 a.xml 0 0 1 . 0 0\n" +
-                             "x polygon p 0 0 9 0 0 1  1 0 1  0 1 1\n");
+    const Scene scene =
+        parse_rad(grey + rad_square + "!gensurf grey box 1 1 1\n" + "grey source sky 0 0 4 0 0 1 180\n" +
+                  "void sphere nothing 0 0 4 0 0 0 1\nvoid BSDF x 6 0 a.xml 0 0 1 . 0 0\n" +
+                  "x polygon p 0 0 9 0 0 1  1 0 1  0 1 1\n");
     std::vector<std::string> kinds;
     for (const auto& warning : scene.warnings.entries()) kinds.push_back(warning.kind);
     EXPECT_EQ(kinds, (std::vector<std::string>{"unsupported-command", "unsupported-entity", "void-surface",
@@ -209,8 +210,9 @@ TEST(Rad, WhatIsLeftOutIsCounted) {
 }
 
 TEST(Rad, WhatACommandMayHaveDefinedIsGrey) {
-    const Scene scene = read("!mksource env.hdr\nskyfunc glow sky 0 0 4 1 1 1 0\nsky source dome 0 0 4 0 0 1 180\n" +
-                             grey + "paint polygon p 0 0 9 0 0 0  1 0 0  0 1 0\n");
+    const Scene scene =
+        parse_rad("!mksource env.hdr\nskyfunc glow sky 0 0 4 1 1 1 0\nsky source dome 0 0 4 0 0 1 180\n" + grey +
+                  "paint polygon p 0 0 9 0 0 0  1 0 0  0 1 0\n");
     expect_near(scene.materials[scene.patches[0].material].reflectance, Rgb(0.5f));
     EXPECT_EQ(scene.warnings.entries().back().kind, "unsupported-material");
     EXPECT_EQ(scene.warnings.entries().back().where, "room.rad:8");
@@ -221,7 +223,7 @@ TEST(Rad, WhatACommandMayHaveDefinedIsGrey) {
 TEST(Rad, XformPlacesCopiesOfAFile) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "parts");
-    folder.write("parts/chair.rad", square);
+    folder.write("parts/chair.rad", rad_square);
     const fs::path path =
         folder.write("room.rad", grey +
                                      "!xform -n row -a 2 -t 10 0 0 -i 1 -a 3 -t 0 5 0 -i 1 -s 2 -t 0 0 3 \\\n"
@@ -250,18 +252,18 @@ TEST(Rad, XformInvertsMirrorsAndReplacesModifiers) {
     folder.write("inverted.rad", "!xform -I -m grey ball.rad\n");
     const Scene twice = load_scene(folder.write("d.rad", grey + lamp + "!xform -m lamp -I inverted.rad"));
     EXPECT_GT(volume(twice), 0);
-    EXPECT_GT(power(twice), 0);
+    EXPECT_GT(total_power(twice), 0);
 }
 
 TEST(Rad, NoCommandIsEverRun) {
     const TemporaryFolder folder;
-    folder.write("part.rad", square);
+    folder.write("part.rad", rad_square);
     const std::string target = (folder.path() / "made").string();
     for (const std::string& command :
          {"touch " + target, "xform part.rad; touch " + target, "xform part.rad | tee " + target,
           "xform -n $(touch " + target + ") part.rad", "xform -n \"`touch " + target + "`\" part.rad",
           "xform part.rad > " + target, "xform -f " + target + " part.rad", std::string("xform -t 1 0 0")}) {
-        const Scene scene = load_scene(folder.write("room.rad", grey + square + "!" + command + "\n"));
+        const Scene scene = load_scene(folder.write("room.rad", grey + rad_square + "!" + command + "\n"));
         EXPECT_EQ(scene.patches.size(), 2u) << command;
         ASSERT_EQ(scene.warnings.entries().size(), 2u) << command;  // with no-light
         EXPECT_EQ(scene.warnings.entries()[0].kind, "unsupported-command");
@@ -275,8 +277,8 @@ TEST(Rad, LaterFilesSeeTheModifiersOfEarlierOnes) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "rooms");
     const fs::path materials = folder.write("grey.mat", grey);
-    folder.write("rooms/part.rad", square);
-    const fs::path room = folder.write("rooms/room.rad", square + "!xform -t 0 0 1 part.rad\n");
+    folder.write("rooms/part.rad", rad_square);
+    const fs::path room = folder.write("rooms/room.rad", rad_square + "!xform -t 0 0 1 part.rad\n");
     folder.write("rooms/room.views.json", R"({"views": [{"name": "in", "eye": [0, 0, 5], "look_at": [0, 1, 0]}]})");
     const Scene scene = load_scene(materials, {.further_files = {room}});
     EXPECT_EQ(scene.patches.size(), 4u);
@@ -291,7 +293,7 @@ TEST(Rad, LaterFilesSeeTheModifiersOfEarlierOnes) {
 
 /// Areas and volumes of the output of Radiance's own genbox and genprism.
 TEST(Rad, GeneratorsAreBuiltIn) {
-    const auto made = [](const std::string& command) { return read(grey + "!" + command + "\n"); };
+    const auto made = [](const std::string& command) { return parse_rad(grey + "!" + command + "\n"); };
     const Scene box = made("genbox grey box 4 3 2.5");
     EXPECT_EQ(box.patches.size(), 12u);
     EXPECT_NEAR(area(box), 59, 1e-5);
@@ -315,12 +317,12 @@ TEST(Rad, GeneratorsAreBuiltIn) {
 
 TEST(Rad, GeneratorsAreTransformedByPipes) {
     const Scene scene =
-        read(grey + "!genbox grey b 1 1 1 | xform -n in -t 1 0 0 | xform -n out -s 2 -a 2 -t 0 0 10 -\n");
+        parse_rad(grey + "!genbox grey b 1 1 1 | xform -n in -t 1 0 0 | xform -n out -s 2 -a 2 -t 0 0 10 -\n");
     EXPECT_EQ(scene.patches.size(), 24u);
     EXPECT_NEAR(area(scene), 2 * 24, 1e-4);
     EXPECT_EQ(scene.objects[scene.patches.back().object], "out.1.in.b.6457");
     const TemporaryFolder folder;
-    folder.write("part.rad", square);
+    folder.write("part.rad", rad_square);
     const Scene piped = load_scene(folder.write("room.rad", grey + "!xform -t 0 0 1 part.rad | xform -s 3\n"));
     EXPECT_NEAR(area(piped), 9, 1e-5);
     EXPECT_EQ(V3f(piped.origin).z + piped.vertices[piped.patches[0].vertices[0]].z, 3);
@@ -373,8 +375,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(RadSky, HasTheIlluminanceOfRadiances) {
     const std::string glow = "skyfunc glow bright 0 0 4 1 1 1 0\n";
     const Scene scene =
-        read("!" + std::string(GetParam().command) + "\n" + glow +
-             "bright source sky 0 0 4 0 0 1 180\nbright source ground 0 0 4 0 0 -1 180\n" + grey + square);
+        parse_rad("!" + std::string(GetParam().command) + "\n" + glow +
+                  "bright source sky 0 0 4 0 0 1 180\nbright source ground 0 0 4 0 0 -1 180\n" + grey + rad_square);
     ASSERT_EQ(scene.luminaires.size(), GetParam().sun > 0 ? 2u : 1u);
     const auto& dome = std::get<SkyDome>(scene.luminaires.back().kind);
     EXPECT_NEAR(dome.irradiance.x / GetParam().sky, 1, GetParam().tolerance);
@@ -384,14 +386,14 @@ TEST_P(RadSky, HasTheIlluminanceOfRadiances) {
         EXPECT_LT((sun.direction + GetParam().towards_sun).length(), 1e-4f);
         EXPECT_NEAR(sun.irradiance.x * GetParam().towards_sun.z / GetParam().sun, 1, GetParam().tolerance);
     }
-    const Scene alone = read("!" + std::string(GetParam().command) + "\n" + grey + square);
+    const Scene alone = parse_rad("!" + std::string(GetParam().command) + "\n" + grey + rad_square);
     EXPECT_EQ(alone.luminaires.size(), GetParam().sun > 0 ? 1u : 0u);
 }
 
 TEST(Rad, GendaylitWithIrradiancesIsASkyByPerez) {
     const std::string sky =
         "!gendaylit -ang 40 30 -W 500 150\nskyfunc glow g 0 0 4 1 1 1 0\ng source s 0 0 4 0 0 1 180\n";
-    const Scene scene = read(sky + grey + square);
+    const Scene scene = parse_rad(sky + grey + rad_square);
     ASSERT_EQ(scene.luminaires.size(), 2u);
     const auto& sun = std::get<DirectionalLight>(scene.luminaires[0].kind);
     const auto& dome = std::get<SkyDome>(scene.luminaires[1].kind);
@@ -400,12 +402,12 @@ TEST(Rad, GendaylitWithIrradiancesIsASkyByPerez) {
     EXPECT_EQ(dome.ground, 0);
     for (const char* command :
          {"gendaylit 6 21 12 -G 500 150", "gensky 6 21 12EST", "gensky 6 21 0 +s", "gensky -ang 40 0 -q"})
-        EXPECT_EQ(read("!" + std::string(command) + "\n" + grey + square).warnings.entries().at(0).kind,
+        EXPECT_EQ(parse_rad("!" + std::string(command) + "\n" + grey + rad_square).warnings.entries().at(0).kind,
                   "unsupported-command")
             << command;
-    expect_in(message_of([] { read("!gensky 13 1 12\n" + grey + square); }),
+    expect_in(message_of([] { parse_rad("!gensky 13 1 12\n" + grey + rad_square); }),
               "the month: expected a number from 1 to 12");
-    expect_in(message_of([] { read("!gensky 12 1\n" + grey + square); }), "gensky ends where");
+    expect_in(message_of([] { parse_rad("!gensky 12 1\n" + grey + rad_square); }), "gensky ends where");
 }
 
 /// 1,000 cd cos(gamma) from a disk, as ies2rad writes it. The light was the peak of the table (5.59) times too weak and
@@ -420,7 +422,7 @@ TEST(Rad, LuminairesOfIes2radHaveTheirIntensities) {
         "dist light lit 0 0 3 1 .5 1\n";
     folder.write("lamp.rad", light + "lit ring lens 0 0 8 0 0 0 0 0 -1 0 .1\n");
     const Scene scene = load_scene(
-        folder.write("room.rad", grey + square + "!xform -n a -ry 90 -t 0 0 2 lamp.rad\n!xform -s 2 lamp.rad\n"));
+        folder.write("room.rad", grey + rad_square + "!xform -n a -ry 90 -t 0 0 2 lamp.rad\n!xform -s 2 lamp.rad\n"));
     EXPECT_EQ(scene.patches.size(), 2u);
     EXPECT_TRUE(scene.warnings.entries().empty());
     ASSERT_EQ(scene.luminaires.size(), 2u);
@@ -437,8 +439,9 @@ TEST(Rad, LuminairesOfIes2radHaveTheirIntensities) {
     EXPECT_NEAR(large.web->opening.size.x, 0.4, 2e-3);
 
     const auto fault = [&](const std::string& text) {
-        return message_of(
-            [&] { load_scene(folder.write("bad.rad", grey + square + text + "lit ring l 0 0 8 0 0 0 0 0 -1 0 1")); });
+        return message_of([&] {
+            load_scene(folder.write("bad.rad", grey + rad_square + text + "lit ring l 0 0 8 0 0 0 0 0 -1 0 1"));
+        });
     };
     expect_in(fault("void brightdata dist 4 corr no.dat source.cal src_theta 0 0\ndist light lit 0 0 3 1 1 1\n"),
               "bad.rad:13: the luminaire's data file 'no.dat'");
@@ -452,7 +455,7 @@ TEST(Rad, LuminairesOfIes2radHaveTheirIntensities) {
 TEST(Rad, BoxesOfIes2radAreOneLight) {
     const TemporaryFolder folder;
     folder.write("box.dat", "2\n0 180 3\n0 0 3 0 20 90\n 1 1 1  1 3 1  1 1 1\n");
-    std::string text = grey + square +
+    std::string text = grey + rad_square +
                        "void brightdata dist 9 boxcorr box.dat source.cal src_theta src_phi4 -t 5 0 0\n"
                        "0 4 1 1.2 .4 .1\ndist light lit 0 0 3 1 1 1\n!genbox lit b 1.2 .4 .1 | xform -t 4.4 -.2 -.05\n";
     const Scene scene = load_scene(folder.write("room.rad", text));
@@ -476,8 +479,8 @@ TEST(Rad, BoxesOfIes2radAreOneLight) {
 }
 
 TEST(Rad, OtherPatternsOfLightsAreWarnedOf) {
-    const Scene scene =
-        read("void brightfunc dist 2 1+noise my.cal 0 0\ndist light lit 0 0 3 1 1 1\nlit sphere s 0 0 4 0 0 0 1\n");
+    const Scene scene = parse_rad(
+        "void brightfunc dist 2 1+noise my.cal 0 0\ndist light lit 0 0 3 1 1 1\nlit sphere s 0 0 4 0 0 0 1\n");
     ASSERT_EQ(scene.warnings.entries().size(), 1u);
     expect_in(scene.warnings.entries()[0].message, "the power of the light is probably wrong");
 }
@@ -490,7 +493,7 @@ TEST(Rad, PatternsOfManySurfacesAreReportedOnce) {
             "{0} brightfunc b{1}\n2 1 .\n0\n0\nb{1} plastic m{1}\n0\n0\n5 .5 .5 .5 0 0\n"
             "m{1} polygon f{1}\n0\n0\n9 0 0 {1} 1 0 {1} 0 1 {1}\n",
             i == 0 ? "void" : fmt::format("b{}", i - 1), i);
-    const Scene scene = read(text);
+    const Scene scene = parse_rad(text);
     EXPECT_EQ(scene.patches.size(), 2000u);
     EXPECT_EQ(scene.warnings.entries().at(0).count, 1000u);
 }
@@ -498,14 +501,14 @@ TEST(Rad, PatternsOfManySurfacesAreReportedOnce) {
 TEST(Rad, FilesThatIncludeThemselvesOrLeaveTheFolderAreRefused) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "scene");
-    folder.write("secret.rad", square);
+    folder.write("secret.rad", rad_square);
     const auto message = [&](const std::string& text, const ReadOptions& options = {}) {
         const fs::path path = folder.write("scene/room.rad", grey + text);
         return message_of([&] { load_scene(path, options); });
     };
     folder.write("scene/a.rad", "!xform b.rad\n");
     folder.write("scene/b.rad", "!xform a.rad\n");
-    folder.write("scene/part.rad", square);
+    folder.write("scene/part.rad", rad_square);
     fs::create_symlink("../secret.rad", folder.path() / "scene/link.rad");
     expect_in(message("!xform a.rad\n"), "a file includes itself");
     expect_in(message("!xform room.rad\n"), "a file includes itself");
@@ -538,7 +541,7 @@ TEST(Rad, FilesThatMultiplyEachOtherAreRefusedInTime) {
 class RadBadText : public testing::TestWithParam<BadText> {};
 
 TEST_P(RadBadText, IsNamedWithItsFault) {
-    const std::string error = message_of([] { read(grey + GetParam().text); });
+    const std::string error = message_of([] { parse_rad(grey + GetParam().text); });
     expect_in(error, "room.rad");
     expect_in(error, GetParam().expected);
 }
@@ -587,7 +590,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::PrintToStringParamName());
 
 TEST(Rad, WhatNoSurfaceUsesMayBeWrong) {
-    EXPECT_EQ(read(grey + "void plastic bad 0 0 3 -1 -1 -1\n" + square).patches.size(), 2u);
+    EXPECT_EQ(parse_rad(grey + "void plastic bad 0 0 3 -1 -1 -1\n" + rad_square).patches.size(), 2u);
 }
 
 }  // namespace

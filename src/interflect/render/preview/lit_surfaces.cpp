@@ -14,8 +14,6 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr float pi = std::numbers::pi_v<float>;
-
 V3f point_of(const Ray& ray, const Hit& hit) { return ray.origin + hit.distance * ray.direction; }
 
 }  // namespace
@@ -56,7 +54,7 @@ RayCounts LitSurfaces::draw(std::size_t begin, std::span<Rgb> pixels) const {
         const Hit& hit = rays.hits[shown[k]];
         const V3f x = point_of(rays.rays[shown[k]], hit);
         const std::optional<Rgb> light = light_at(hit, x, raster[k]);
-        const float per_light = shows_irradiance_ ? 1 : pi;
+        const float per_light = shows_irradiance_ ? 1 : std::numbers::pi_v<float>;
         const Rgb irradiance = light ? *light * per_light : irradiance_of_element(hit.patch, x);
         is_lit[shown[k]] = !light;
         sums[k / camera_rays_] += RgbD(per_irradiance(hit, x) * irradiance);
@@ -86,11 +84,11 @@ PathRays LitSurfaces::camera_rays(std::size_t begin, std::size_t count, std::vec
 Rgb LitSurfaces::emitted_light(const Ray& ray, const Hit& hit) const {
     if (shows_irradiance_) return Rgb(0);
     if (hit.patch == none) return scene_.sources.skies().seen(ray.direction);
-    return scene_.colours(hit.patch, point_of(ray, hit)).exitance / pi;
+    return scene_.colours(hit.patch, point_of(ray, hit)).exitance / std::numbers::pi_v<float>;
 }
 
 Rgb LitSurfaces::per_irradiance(const Hit& hit, const V3f& x) const {
-    return shows_irradiance_ ? Rgb(1) : scene_.colours(hit.patch, x).reflectance / pi;
+    return shows_irradiance_ ? Rgb(1) : scene_.colours(hit.patch, x).reflectance / std::numbers::pi_v<float>;
 }
 
 std::optional<Rgb> LitSurfaces::light_at(const Hit& hit, const V3f& x, const V2f& raster) const {
