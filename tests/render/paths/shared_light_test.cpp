@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "interflect/measure.h"
+#include "interflect/preview.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/render/shared_light.h"
@@ -23,7 +24,7 @@ namespace {
 
 using namespace testing_support;
 
-/// With a lamp, a point light, a window to an overcast sky and a mirror.
+/// With a lamp, a point light, a window to an overcast sky and a low sun, and a mirror.
 Scene room() {
     Scene scene = closed_box({4, 3, 2.5f}, 2, {{"wall", Rgb(0.6f, 0.4f, 0.5f), Rgb(0)}});
     scene.patches.pop_back();
@@ -32,7 +33,9 @@ Scene room() {
     scene.materials.back().specular_reflectance = Rgb(0.5f);
     add_rectangle(scene, {1, 1, 0.7f}, {1.5f, 0, 0}, {0, 1, 0}, 2, 1, 1, true);
     add_rectangle(scene, {2, 1, 2.4f}, {0, 0.5f, 0}, {0.5f, 0, 0}, 1, 1, 1, false);
-    scene.luminaires = {{"", 0, PointLight{{0.3f, 0.4f, 2.1f}, {20, 30, 20}}}, {"", 0, SkyDome{{4, -0.7f}, Rgb(30)}}};
+    scene.luminaires = {{"", 0, PointLight{{0.3f, 0.4f, 2.1f}, {20, 30, 20}}},
+                        {"", 0, SkyDome{{4, -0.7f}, Rgb(30)}},
+                        {"", 0, DirectionalLight{{-1, 0.3f, -0.4f}, Rgb(500)}}};
     scene.light_groups = {{"lamps", "lamp"}};
     return scene;
 }
@@ -115,6 +118,16 @@ TEST_P(SharedPicture, HasTheBitsOfOneProcess) {
                                  .light_walks = 1000};
     const Rendering alone = draw(options, {});
     with_helpers(3, [&](const Monitor& monitor) { expect_equal(draw(options, monitor), alone); });
+}
+
+/// Seen to fail if other ranks add the light of suns, which a preview adds by itself.
+TEST(SharedPreview, HasTheBitsOfOneProcess) {
+    const auto rough = [](const Monitor& monitor) {
+        return preview(lit().scene, lit().solution, lit().ray_caster, lit().view, {.width = 320, .height = 256},
+                       {.denoiser = Denoiser::own}, monitor);
+    };
+    const Rendering alone = rough({});
+    with_helpers(3, [&](const Monitor& monitor) { EXPECT_EQ(rough(monitor).image.pixels, alone.image.pixels); });
 }
 
 TEST(SharedMeasurement, HasTheBitsOfOneProcess) {

@@ -352,7 +352,8 @@ Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const P
                {.kind = LightOrder::Kind::picture,
                 .options = options,
                 .is_known = known != nullptr,
-                .is_interpolated = known && known->is_interpolated},
+                .is_interpolated = known && known->is_interpolated,
+                .has_suns = has_suns},
                start);
     StopRequest time_left;
     time_left.limit_time(StopRequest::Clock::now(), options.time);

@@ -23,6 +23,7 @@ struct LightOrder {
     PictureOptions options{};      ///< Options of the paths.
     bool is_known = false;         ///< Whether paths end at the solution.
     bool is_interpolated = false;  ///< Value of KnownIrradiance::is_interpolated.
+    bool has_suns = true;          ///< Value of PathPlan::has_suns.
     std::size_t group = 0;         ///< Index of the light group, for Kind::group.
 };
 
