@@ -263,10 +263,16 @@ void add_ball(Scene& scene, const V3f& centre, float radius) {
 }
 
 /// Below a black ball that rests on the floor of an evenly lit room, indirect irradiance is pi L (1 - (R / d)^3), where
-/// d is the distance from the centre of the ball. Texels of 5 cm. Seen to fail (1.27) if all
-/// records reach at least 10 cm.
-TEST(Hybrid, IsDarkWhereABallRestsOnTheFloor) {
-    constexpr float radius = 0.2f, texel = 0.05f;
+/// d is the distance from the centre of the ball. Texels of 5 cm; the value at their centres is up to 10% below their
+/// mean. Seen to fail (1.28 and 1.22) if all records reach at least 10 cm, and (1.14 and 1.11) if their least reach is
+/// min_spacings.
+class FloorBelowABall : public testing::TestWithParam<float> {};
+INSTANTIATE_TEST_SUITE_P(OfRadius, FloorBelowABall, testing::Values(0.2f, 0.13f),
+                         [](const auto& tested) { return tested.index == 0 ? "20cm" : "13cm"; });
+
+TEST_P(FloorBelowABall, IsDark) {
+    const float radius = GetParam();
+    constexpr float texel = 0.05f;
     const V3f contact(2, 1.5f, 0);
     Scene scene = closed_box({4, 3, 2.5f}, 16, {Material{"", Rgb(0.5f)}});
     add_ball(scene, contact + V3f(0, 0, radius), radius);
@@ -293,7 +299,7 @@ TEST(Hybrid, IsDarkWhereABallRestsOnTheFloor) {
             {.position = x + V3f(0, 0, 1e-3f), .normal = {0, 0, 1}, .side_u = {texel, 0, 0}, .side_v = {0, texel, 0}});
     }
     for (const auto& [near, far, tolerance] :
-         {std::array{0.03f, 0.1f, 0.18f}, {0.1f, 0.2f, 0.08f}, {0.2f, 1.0f, 0.02f}}) {
+         {std::array{0.03f, 0.1f, 0.11f}, {0.1f, 0.2f, 0.08f}, {0.2f, 1.0f, 0.02f}}) {
         double found = 0, exact = 0;
         for (std::uint64_t seed = 1; seed <= 8; ++seed) {
             PictureOptions options{.samples = 16, .quantity = PictureQuantity::irradiance};

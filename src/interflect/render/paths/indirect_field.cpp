@@ -45,12 +45,13 @@ constexpr std::size_t max_baked_groups = 256;
 /// spacings, the indirect light of a room of 160 x 90 pixels is another 0.3% too dark.
 constexpr float reach_over_length = 0.15f, min_spacings = 4, max_spacings = 100;
 /// A record and its neighbours halve their reach if the record differs from the fit of its neighbours by more than this
-/// share of all irradiance. The halved reach is at least min_halved_spacings, in bakes min_baked_spacings, because
-/// texels may be as wide as the gap beside a ball on the floor. At 20 texels per metre, irradiance 5 to 10 cm from the
-/// contact of a ball of radius 0.2 m is then 1.17 times too high, compared with 1.40 for min_halved_spacings. For a
-/// radius of 0.13 m, it is 1.22 times with both, because too few records find the difference. Bakes take up to 20%
-/// longer.
+/// share of all irradiance. The halved reach is at least min_halved_spacings, in bakes min_baked_spacings.
 constexpr float max_residual = 0.1f, min_halved_spacings = 2, min_baked_spacings = 1;
+/// Texels may be as wide as the gap beside a ball on the floor, so records of bakes may reach less than min_spacings:
+/// at least this share of the harmonic mean length of their rays. At 20 texels per metre, irradiance 5 to 10 cm from
+/// the contact of a ball of radius 0.2 m is 1.07 times too high, compared with 1.17 for min_spacings; 1.15 and 1.21
+/// times for 0.13 m in another room. With 1 or 0.25, it is 1.09 times in the first and 1.16 or 1.13 in the second.
+constexpr float min_baked_reach_over_length = 0.5f;
 /// Squared error of interpolation at a point, relative to the squared error at a record that is interpolated from its
 /// neighbours. Errors fall at least in proportion to the distance, and a point is half as far from the next record as
 /// that record is from its neighbours: (1/2)^2.
@@ -76,6 +77,19 @@ std::size_t least_groups(const PathPlan& plan) {
     constexpr float fewest = 2;
     return static_cast<std::size_t>(std::max(fewest, effort_of(plan) * static_cast<float>(full_least_groups)));
 }
+
+/// Returns the least reach of a record. @param length  Harmonic mean length of its rays.
+float least_reach(const PathPlan& plan, float length, float spacing) {
+    if (plan.start.camera) return min_spacings * spacing;
+    return std::clamp(min_baked_reach_over_length * length, min_baked_spacings * spacing, min_spacings * spacing);
+}
+/// Returns the standard error to which a record of a bake is gathered, relative to E: up to twice max_baked_error,
+/// where records reach one texel, because a smaller reach averages the errors of more records over an area.
+float baked_error(float reach, float spacing) {
+    return max_baked_error * std::sqrt(std::max(1.0f, min_spacings * spacing / reach));
+}
+
+float square(float x) { return x * x; }
 
 V3f nearest_on(const Contact& contact, const V3f& x) {
     const V3f along = contact.b - contact.a;
@@ -236,8 +250,9 @@ bool IndirectField::add_records(const PathPlan& plan, std::span<const SurfacePoi
     for (std::size_t i = 0; i < points.size(); ++i) {
         Record& r = records_[old_count + i];
         const float max_reach = max_spacings * r.spacing;
-        r.reach = lengths[i] > 0 ? std::clamp(reach_over_length * lengths[i], min_spacings * r.spacing, max_reach)
-                                 : max_reach;
+        r.reach = lengths[i] > 0
+                      ? std::clamp(reach_over_length * lengths[i], least_reach(plan, lengths[i], r.spacing), max_reach)
+                      : max_reach;
         r.reach_elsewhere = distance_to_contact(r.position, r.reach);
         r.irradiance = luminance(Rgb(r.gathered.mean));
         if (r.patch != none)
@@ -350,7 +365,7 @@ void IndirectField::refine_noisy_records(const PathPlan& plan, const CommonStop&
         const Record& r = records_[i];
         const float deviation = std::sqrt(r.group_variance) / std::max(min_irradiance, r.irradiance);
         needed[i] = groups_per_deviation * effort_of(plan) * deviation * r.reach / r.spacing;
-        if (is_bake) needed[i] = std::max(needed[i], (deviation * deviation) / (max_baked_error * max_baked_error));
+        if (is_bake) needed[i] = std::max(needed[i], square(deviation / baked_error(r.reach, r.spacing)));
     }
     // Each round doubles the number of groups of the noisy records.
     const std::size_t most = is_bake ? max_baked_groups : max_groups;
