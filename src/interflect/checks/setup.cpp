@@ -130,6 +130,7 @@ std::vector<Finding> validate_setup(const Scene& scene, const RayCaster& ray_cas
     add_unit(scene, shell, findings);
     add_up_axis(scene, findings);
     add_contradicting_normals(scene, options.places, findings);
+    std::stable_partition(findings.begin(), findings.end(), [](const Finding& f) { return f.is_problem; });
     return findings;
 }
 

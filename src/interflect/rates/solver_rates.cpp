@@ -52,7 +52,7 @@ struct Workload {
 
 /// Traces the rays in batches, as the solver does.
 void trace_in_batches(const RayCaster& ray_caster, std::span<const Ray> rays) {
-    constexpr std::size_t batch_rays = 4096;
+    constexpr std::size_t batch_rays = 1024;
     parallel_for_ranges(rays.size(), batch_rays, [&](std::size_t begin, std::size_t end) {
         std::array<Hit, batch_rays> hits;
         ray_caster.trace(rays.subspan(begin, end - begin), std::span(hits).first(end - begin));

@@ -40,12 +40,14 @@ fs::path target_of(fs::path path) {
 bool is_standard_output(const fs::path& path) { return path == "-"; }
 
 void copy_into(const fs::path& from, const fs::path& device) {
-    const auto fail = [&] {
-        throw std::runtime_error("cannot write '" + device.string() + "': " + std::strerror(errno));
+    int descriptor = is_standard_output(device) ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
+                                                : ::open(device.c_str(), O_WRONLY | O_CLOEXEC);
+    const auto fail = [&](const char* verb, const fs::path& path) {
+        const int error = errno;
+        if (descriptor >= 0) ::close(descriptor);
+        throw std::runtime_error(std::string("cannot ") + verb + " '" + path.string() + "': " + std::strerror(error));
     };
-    const int descriptor = is_standard_output(device) ? ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0)
-                                                      : ::open(device.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor < 0) fail();
+    if (descriptor < 0) fail("write", device);
     std::ifstream file(from, std::ios::binary);
     std::array<char, 1 << 16> block;
     while (file.read(block.data(), block.size()) || file.gcount() > 0) {
@@ -53,17 +55,13 @@ void copy_into(const fs::path& from, const fs::path& device) {
         for (std::streamsize left = file.gcount(); left > 0;) {
             const ssize_t written = ::write(descriptor, next, static_cast<std::size_t>(left));
             if (written < 0 && errno == EINTR) continue;
-            if (written < 0) {
-                const int error = errno;
-                ::close(descriptor);
-                errno = error;
-                fail();
-            }
+            if (written < 0) fail("write", device);
             next += written;
             left -= written;
         }
     }
-    if (::close(descriptor) != 0) fail();
+    if (!file.eof()) fail("read", from);
+    if (::close(std::exchange(descriptor, -1)) != 0) fail("write", device);
 }
 
 constexpr std::string_view temporary_mark = ".part";

@@ -23,7 +23,7 @@ constexpr std::size_t patches_per_task = 4096;
 
 /// Each face at an edge is compared with at most this number of others, because all pairs cost the square of the
 /// number.
-constexpr std::size_t max_faces_at_edge = 8;
+constexpr std::size_t max_compared_faces = 7;
 
 /// Relative difference up to which areas count as equal, because division into patches and rounding change them.
 constexpr double equal_areas = 1e-4;
@@ -109,7 +109,7 @@ std::vector<std::uint32_t> flat_surfaces(const Scene& scene) {
     DisjointSets surfaces(count);
     const std::vector<Edge> edges = sorted_edges(scene);
     for (std::size_t i = 1; i < edges.size(); ++i)
-        for (std::size_t j = i; j-- > 0 && i - j < max_faces_at_edge && edges[j].vertices == edges[i].vertices;)
+        for (std::size_t j = i; j-- > 0 && i - j <= max_compared_faces && edges[j].vertices == edges[i].vertices;)
             if (continues(edges[i].patch, edges[j].patch)) surfaces.unite(edges[i].patch, edges[j].patch);
 
     // Unite the pieces of cut surfaces, which have equal Patch::surface

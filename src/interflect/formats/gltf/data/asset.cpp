@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <optional>
 #include <system_error>
@@ -21,7 +22,8 @@ namespace {
 constexpr std::string_view data_scheme = "data:";
 
 std::uint32_t word(std::string_view bytes, std::size_t offset) {
-    std::uint32_t value = 0;  // the bytes are copied, which assumes a little-endian machine
+    static_assert(std::endian::native == std::endian::little);  // as in the file
+    std::uint32_t value = 0;
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
 }
