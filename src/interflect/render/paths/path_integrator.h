@@ -76,7 +76,7 @@ class PathIntegrator {
     void connect_to_virtual_lights(const Path& path);
     void add_light_of_shadow_rays();
 
-    /// Returns the expected density of the directions that continue paths [1/sr].
+    /// Returns the density of the directions that continue paths, times their expected number per path [1/sr].
     static float direction_density(const Path& path, const V3f& direction);
     /// Returns the radiance of the skies that shadow rays sample. They sample uniform skies only by a guide.
     Rgb sampled_sky(const Path& path, const V3f& direction) const;
