@@ -121,7 +121,8 @@ class Shown(RenderTest):
 
     def test_elements_have_flat_or_smooth_shading(self):
         def said(*options):
-            return self.interflect("render", "room.mgf", "-o", "out.png", *SMALL, *options, exit_code=WRONG_USAGE).stderr
+            render = ("render", "room.mgf", "-o", "out.png", *SMALL)
+            return self.interflect(*render, *options, exit_code=WRONG_USAGE).stderr
 
         for shading in ("hybrid", "gather"):
             for more in ((), ("--denoise", "own")):
