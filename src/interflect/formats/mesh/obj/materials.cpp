@@ -293,10 +293,10 @@ StoredImage ObjMaterials::read_mask(const Definition& definition) {
 
 void ObjMaterials::count_decoded(std::size_t pixels) {
     // Limits the work, because each material with a mask decodes its images again
-    constexpr std::uint64_t max_decoded = 32 * max_texels;
+    constexpr std::uint64_t max_decoded_pixels = 32 * max_texels;
     decoded_ += pixels;
-    if (decoded_ > max_decoded)
-        throw InputError(fmt::format("the images of all materials have more than {} pixels", max_decoded));
+    if (decoded_ > max_decoded_pixels)
+        throw InputError(fmt::format("the images of all materials have more than {} pixels", max_decoded_pixels));
 }
 
 std::uint32_t ObjMaterials::add_texture(Texture texture) {
