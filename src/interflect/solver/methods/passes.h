@@ -9,42 +9,45 @@
 
 namespace interflect::detail {
 
-/// Iterations that are passes ('incremental shooting', Neumann et al. 1995; docs/method/method.md, A run): unbiased
-/// estimates on the current mesh, independent of earlier passes.
+/// Method whose iterations are passes. A pass shoots the emitted power, then the power that each bounce has received,
+/// until little is left ('incremental shooting', Neumann et al. 1995; docs/method/method.md, A run). Each pass is an
+/// unbiased estimate of the light on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
-    /// Estimates importance and makes the initial mesh by two passes (Eq. 14, 15), whose light is not averaged.
+    /// Estimates the importance. Then two passes make the initial mesh (Eq. 14, 15). Their light is not part of the
+    /// mean.
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, TracedIteration& iteration) override;
     Estimate trace(SolverState& state, TracedIteration& iteration) override;
     void merge(SolverState& state, const Estimate& estimate, const TracedIteration& iteration) override;
     void refine(SolverState& state) override;
-    /// Keeps the light; ViewChange adapts its history in the next iteration.
+    /// Keeps the mean of earlier passes. The next iteration adapts its history weight to the new views (ViewChange).
     void change_views(SolverState& state) override;
     void archive(StateArchive& archive) override;
     bool is_consistent(const SolverState& state) const override;
 
-    /// Starts another method with prepare() and one pass.
+    /// Calls prepare(), then estimates the light by one pass. Methods that improve a first estimate start with it.
     void make_first_estimate(SolverState& state);
 
   protected:
-    /// Traces a bounce. @throws Interrupted
-    virtual Received trace_without_walks(SolverState& state, TransportStep step) {
+    /// Traces a bounce. The last bounce of a pass does not call it, because random walks complete that one. Global
+    /// lines override this function. @throws Interrupted
+    virtual Received trace_single_bounce(SolverState& state, TransportStep step) {
         return run_step(state, std::move(step));
     }
 
   private:
     struct Pass;
+    /// Estimates the importance for the new views, and the factor of the history.
+    void adapt_to_new_views(SolverState& state, TracedIteration& iteration);
+    /// @throws Interrupted
     Estimate trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
+    /// Traces the next bounce. Returns false if no unshot light is left. @throws Interrupted
     bool trace_bounce(SolverState& state, Pass& pass);
-    static TransportStep make_step(const SolverState& state, Pass& pass, RayPlan plan);
-    /// Adds the elements that a bounce created. @param old_elements  Number of elements before it.
-    static void grow_pass(const ElementForest& forest, std::uint32_t old_elements, Pass& pass);
 
-    /// BounceBudget::total_unshot() of the last pass; 0 before the first pass.
-    double total_unshot_ = 0;
-    bool needs_importance_ = false;  // whether the next iteration starts with transport_importance()
-    ViewChange view_change_;
+    double total_unshot_ = 0;        // BounceBudget::total_unshot() of the last pass; 0 before the first pass
+    bool needs_importance_ = false;  // whether the views have changed since the last estimate of importance
+    ViewChange view_change_;         // sampling for the views before the change; empty without a change
 };
 
 }  // namespace interflect::detail

@@ -204,7 +204,7 @@ class GlobalLines final : public Passes {
     }
 
   protected:
-    Received trace_without_walks(SolverState& state, TransportStep step) override {
+    Received trace_single_bounce(SolverState& state, TransportStep step) override {
         // In a sphere of cross section C, a line hits the front of surfaces of total area A on average A / (4 C) times.
         // Each of these hits takes two rays, and the escape a last one.
         const double rays_per_line = 1 + 2 * area_ / (4 * domain_.cross_section());
