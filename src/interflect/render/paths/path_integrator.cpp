@@ -17,52 +17,60 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// In hybrid shading, one in four paths also samples a direction at its first point, because close to a light source
+/// In hybrid shading, one in four paths continues from its first point to find light sources. Close to a source,
 /// sampled directions have less variance than shadow rays.
 constexpr std::uint32_t paths_per_direction = 4;
-constexpr std::uint64_t offset_stream = 2;  // argument of mix() for the choice of these paths
+/// Separates the random number that selects these paths from other uses of a path's key.
+constexpr std::uint64_t selection_stream = 2;
 /// Paths of a smaller throughput are subject to Russian roulette. Lower thresholds reduce variance but lengthen paths;
 /// values from 0.25 to 1 are equally efficient.
 constexpr float roulette_threshold = 0.5f;
 
 /// Returns a point of the gauge, lifted off its patch and moved along the normal by Gauge::offset.
-V3f start_on(const TracedScene& s, const Gauge& gauge, const V3f& normal, float u, float v) {
+/// @param u, v  Place on the patch, in [0, 1]; no effect for gauges in space.
+V3f start_on(const TracedScene& scene, const Gauge& gauge, const V3f& normal, float u, float v) {
     if (gauge.patch == none) return gauge.position + normal * gauge.offset;
-    return s.lifted(gauge.patch, gauge.point_on(s.geometry[gauge.patch], u, v)) + normal * gauge.offset;
+    return scene.lifted(gauge.patch, gauge.point_on(scene.geometry[gauge.patch], u, v)) + normal * gauge.offset;
+}
+
+LightStream stream_of(SourceKind kind) {
+    constexpr std::array streams{LightStream::patches, LightStream::lamps, LightStream::suns};  // by SourceKind
+    return streams[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace
 
 void PathIntegrator::trace(std::span<SampleBatch> batches) {
     vertex_ = 1;
-    keys_.clear();
     light_.assign(2 * batches.size(), {});
     paths_.clear();
     first_points_.clear();
     counts_ = {};
-    for (const SampleBatch& b : batches)
-        for (const std::uint64_t half : {0, 1})
-            keys_.push_back(mix(mix(plan_.options.seed, b.pixel), 2 * std::uint64_t{b.number} + half));
-
+    make_keys(batches);
     // Find the first points: points visible to the camera, or points on the gauges
     if (plan_.start.camera) {
         start_at_camera(batches);
-        arrive_at_surfaces();
+        find_next_vertices();
     } else {
         start_at_gauges(batches);
     }
     while (!paths_.paths.empty()) {
-        // Send shadow rays to light sources and to bright elements or virtual lights
         illuminate_vertices();
-        // Choose directions; Russian roulette ends some paths
-        leave_surfaces();
+        choose_directions();
         ++vertex_;
-        // Find the next surfaces; add the light that they emit; end paths at known light
-        arrive_at_surfaces();
+        find_next_vertices();
     }
-    // Combine shadow rays and unoccluded light of first points in hybrid shading
+    // In hybrid shading, combine the shadow rays of first points with their unoccluded light
     first_points_.add_direct(light_);
     store(batches);
+}
+
+void PathIntegrator::make_keys(std::span<const SampleBatch> batches) {
+    keys_.clear();
+    for (const SampleBatch& batch : batches) {
+        const std::uint64_t pixel_key = mix(plan_.options.seed, batch.pixel);
+        for (const std::uint64_t half : {0, 1}) keys_.push_back(mix(pixel_key, 2 * std::uint64_t{batch.number} + half));
+    }
 }
 
 void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
@@ -72,16 +80,16 @@ void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
     for (std::uint32_t h = 0; h < keys_.size(); ++h) {
         const SampleBatch& batch = batches[h / 2];
         fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.size, points);
-        const std::uint32_t column = batch.pixel % width, row = batch.pixel / width;
-        const auto left = static_cast<float>(column), top = static_cast<float>(row);
+        const auto& x_in_pixel = points.coordinate[0];
+        const auto& y_in_pixel = points.coordinate[1];
+        const auto column = static_cast<float>(batch.pixel % width), row = static_cast<float>(batch.pixel / width);
         path.half_batch = h;
         path.sampling.is_last = batch.ends_at_first_hit;
-        // Path::sample counts across batches, in the order of store()
         for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
             path.index_in_sequence = batch.first_index + i;
-            // The first path of a half gives the level for all
+            // Only the first path of a half batch looks up the level of its element. It stands for all paths.
             path.level_samples = i == 0 ? batch.size : 0;
-            paths_.add(path, plan_.start.camera->ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
+            paths_.add(path, plan_.start.camera->ray(column + x_in_pixel[i], row + y_in_pixel[i]));
         }
     }
     first_hits_.assign(path.sample, {});
@@ -94,273 +102,253 @@ void PathIntegrator::start_at_gauges(std::span<const SampleBatch> batches) {
         const SampleBatch& batch = batches[h / 2];
         const Gauge& gauge = plan_.start.gauges[batch.pixel];
         fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.size, points);
+        const auto& [place_on_arc, u, v, unused] = points.coordinate;
         path.half_batch = h;
         path.patch = gauge.patch;
-        path.lookup = start_on(plan_.scene, gauge, gauge.normal, 0.5f, 0.5f);
+        path.lookup = start_on(plan_.scene, gauge, gauge.normal, 0.5f, 0.5f);  // middle of the gauge
         for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
             path.index_in_sequence = batch.first_index + i;
-            path.normal = gauge.normal_at(points.coordinate[0][i]);
-            path.position = start_on(plan_.scene, gauge, path.normal, points.coordinate[1][i], points.coordinate[2][i]);
-            paths_.add(path, {path.position, path.normal});  // leave_surfaces() replaces the ray before it is traced
+            path.normal = gauge.normal_at(place_on_arc[i]);
+            path.position = start_on(plan_.scene, gauge, path.normal, u[i], v[i]);
+            paths_.add(path, {path.position, path.normal});  // choose_directions() replaces this ray
         }
     }
     first_hits_.assign(path.sample, {});
 }
 
-void PathIntegrator::arrive_at_surfaces() {
-    const bool is_first = vertex_ == 1;
-    // A picture of irradiance shows all first surfaces as white, also panes and mirrors.
-    const bool splits =
-        (!plan_.scene.panes.empty() || plan_.scene.has_mirrors) && !(is_first && plan_.shows_irradiance());
-    find_surfaces(plan_.scene, splits, is_first && plan_.options.mirrors, paths_, counts_);
-    std::size_t alive = 0;
+void PathIntegrator::find_next_vertices() {
+    const bool has_panes_or_mirrors = !plan_.scene.panes.empty() || plan_.scene.has_mirrors;
+    const bool splits_paths = has_panes_or_mirrors && !next_surfaces_are_white();
+    const bool mirrors_reflect = vertex_ == 1 && plan_.options.mirrors;
+    find_surfaces(plan_.scene, splits_paths, mirrors_reflect, paths_, counts_);
+    std::size_t kept = 0;
     for (std::size_t i = 0; i < paths_.paths.size(); ++i) {
         Path path = paths_.paths[i];
-        if (arrive(paths_.hits[i], paths_.rays[i], path)) paths_.paths[alive++] = path;
+        if (move_to_hit(paths_.hits[i], paths_.rays[i], path)) paths_.paths[kept++] = path;
     }
-    paths_.paths.resize(alive);
-    paths_.rays.resize(alive);
+    paths_.paths.resize(kept);
+    paths_.rays.resize(kept);
 }
 
-bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
-    const TracedScene& s = plan_.scene;
-    // Irradiance is drawn as the light of a white first surface that does not emit.
-    const bool is_white = vertex_ == 1 && plan_.shows_irradiance();
+bool PathIntegrator::move_to_hit(const Hit& hit, const Ray& ray, Path& path) {
     if (hit.patch == none) {
         ++counts_.escaped_rays;
-        if (!is_white) add_sky(path, ray.direction);
+        if (!next_surfaces_are_white()) add_sky(path, ray.direction);
         return false;
     }
+    const SurfaceHit surface = surface_hit(hit, ray, path);
+    record_first_hit(surface, path);
+    add_emission(surface, path);
+    if (vertex_ == 1 && plan_.hybrid) {
+        assert(plan_.known);  // plans with a camera and hybrid shading have it
+        const Rgb& irradiance = plan_.known->irradiance(plan_.known->place(surface.patch, surface.x));
+        add_prediction(path, surface.exitance / pi, surface.reflectance * irradiance / pi);
+    }
+    if (path.sampling.is_last || end_at_known_light(surface, path)) return false;
+    // Virtual lights have already contributed a part of the light from this surface
+    if (plan_.virtual_lights && vertex_ > 1) path.throughput *= share_beyond_virtual_lights(surface, path);
+    path.throughput *= surface.reflectance;
+    path.patch = surface.patch;
+    path.position = path.lookup = plan_.scene.lifted(surface.patch, surface.x);
+    // Later vertices are not visible, so they need no shading normal.
+    path.normal = vertex_ == 1 ? plan_.scene.shading_normal(surface.patch, surface.x)
+                               : plan_.scene.geometry[surface.patch].normal();
+    return largest_channel(path.throughput) > 0;
+}
+
+PathIntegrator::SurfaceHit PathIntegrator::surface_hit(const Hit& hit, const Ray& ray, const Path& path) const {
     const V3f x = ray.origin + hit.distance * ray.direction;
-    const float distance = path.travelled + hit.distance;
-    auto [exitance, reflectance] = s.colours(hit.patch, x);
-    if (is_white) {
-        exitance = Rgb(0);
-        reflectance = Rgb(1);
-    }
+    const SurfaceColours colours =
+        next_surfaces_are_white() ? SurfaceColours{Rgb(0), Rgb(1)} : plan_.scene.colours(hit.patch, x);
+    return {.patch = hit.patch,
+            .x = x,
+            .direction = ray.direction,
+            .distance = path.travelled + hit.distance,
+            .exitance = colours.exitance,
+            .reflectance = colours.reflectance};
+}
+
+void PathIntegrator::record_first_hit(const SurfaceHit& hit, const Path& path) {
     FirstHit& first_hit = first_hits_[path.sample];
-    // A path behind clear panes or in a mirror comes later in paths_ than the path that it was split from, so its hit
-    // overwrites that one.
+    // find_surfaces() appends paths that it splits at panes and mirrors. So the surface behind a clear pane, or in a
+    // pure mirror, replaces the hit of the pane or mirror.
     if (vertex_ == 1 && path.sets_first_hit) {
-        first_hit = {RgbD(reflectance), Imath::V3d(s.geometry[hit.patch].normal()), Imath::V3d(x), distance};
+        first_hit = {.albedo = RgbD(hit.reflectance),
+                     .normal = Imath::V3d(plan_.scene.geometry[hit.patch].normal()),
+                     .position = Imath::V3d(hit.x),
+                     .distance = hit.distance};
         if (plan_.known && path.level_samples > 0)
-            first_hit.level = path.level_samples * static_cast<double>(plan_.known->element_level(hit.patch, x));
+            first_hit.level = path.level_samples * static_cast<double>(plan_.known->element_level(hit.patch, hit.x));
     }
-    if (vertex_ == 2 && !plan_.start.camera) {
-        first_hit.inverse_length = 1 / static_cast<double>(distance);
+    const bool is_first_of_gauge = vertex_ == 2 && !plan_.start.camera;  // the gauge is vertex 1
+    if (is_first_of_gauge) {
+        first_hit.inverse_length = 1 / static_cast<double>(hit.distance);
         first_hit.hits = 1;
     }
+}
 
-    if (channel_sum(exitance) > 0) add_emission(hit, ray.direction, distance, path, exitance);
-    if (vertex_ == 1 && plan_.hybrid) {
-        assert(plan_.known);  // only plans for gauges may lack it, whose paths start at vertex 1 without a hit
-        add_prediction(path, exitance / pi,
-                       reflectance * plan_.known->irradiance(plan_.known->place(hit.patch, x)) / pi);
+void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
+    const Skies& skies = plan_.sources().skies();
+    if (vertex_ == 1) {
+        const Rgb visible = skies.seen(direction);
+        add_prediction(path, visible, Rgb(0));
+        add(path.half_batch, 0, path.throughput * visible);
+        return;
     }
-    if (path.sampling.is_last || end_at_known_light(hit, x, ray.direction, distance, path)) return false;
-    if (plan_.virtual_lights && vertex_ > 1)
-        path.throughput *= share_beyond_virtual_lights(hit, ray.direction, distance, path);
-    path.throughput *= reflectance;
-    path.patch = hit.patch;
-    path.position = path.lookup = s.lifted(hit.patch, x);
-    // Later vertices are not visible, so they need no shading normal.
-    path.normal = vertex_ == 1 ? s.shading_normal(hit.patch, x) : s.geometry[hit.patch].normal();
-    return largest_channel(path.throughput) > 0;
+    Rgb radiance = sampled_sky(path, direction);
+    if (channel_sum(radiance) > 0)
+        radiance *= balance(direction_density(path, direction), sky_density(path, direction));
+    // Without a guide, shadow rays do not sample uniform skies, so sampled directions contribute all their light
+    if (path.sampling.guide == none) radiance += skies.uniform_radiance();
+    add(path.half_batch, vertex_ - 1, path.throughput * radiance);
+}
+
+void PathIntegrator::add_emission(const SurfaceHit& hit, const Path& path) {
+    if (!(channel_sum(hit.exitance) > 0)) return;
+    const Rgb radiance = path.throughput * hit.exitance / pi;
+    if (vertex_ == 1) {
+        add(path.half_batch, 0, radiance);
+        return;
+    }
+    if (!path.sampling.directions_find_patches) return;  // shadow rays contribute all its light
+    const float source_density =
+        plan_.sources().density(hit.patch, path.position, path.normal, hit.direction, hit.distance * hit.distance);
+    const float weight =
+        balance(direction_density(path, hit.direction), static_cast<float>(path.sampling.rays) * source_density);
+    add(path.half_batch, vertex_ - 1, radiance * weight);
+}
+
+void PathIntegrator::add_prediction(const Path& path, const Rgb& emitted, const Rgb& predicted) {
+    PathLight& light = light_[path.half_batch];
+    light.predicted += RgbD(path.throughput * predicted);
+    const double first_hit = mean_channel(RgbD(path.throughput * (emitted + predicted)));
+    light.square_of_first_hit += first_hit * first_hit;
 }
 
 void PathIntegrator::illuminate_vertices() {
     for (Path& path : paths_.paths) {
         path.sampling = {};
         if (vertex_ == 1) path.sampling.rays = plan_.first_shadow_rays;
-        if (vertex_ == 1 && plan_.hybrid) {
-            light_first_point(path);
-            if (path.sampling.is_last) continue;  // records contain the light of the other connections
-        } else {
-            sample_sources(path);
-        }
+        // A record contains all reflected light, so its path needs no further connections
+        if (vertex_ == 1 && plan_.hybrid && light_first_point(path)) continue;
+        if (vertex_ > 1 || plan_.has_direct) connect_to_sources(path, none);
         if (plan_.known) connect_to_known_light(path);
         if (plan_.virtual_lights) connect_to_virtual_lights(path);
     }
     add_light_of_shadow_rays();
 }
 
-void PathIntegrator::light_first_point(Path& path) {
-    const LightSources& sources = plan_.sources();
-    const UnoccludedLight& unoccluded = plan_.scene.unoccluded;
-    // Look up recorded indirect light; the path continues if no record is in reach
+bool PathIntegrator::light_first_point(Path& path) {
     const FirstPoints::Lookup lookup = first_points_.add_indirect(path, light_[path.half_batch]);
-    if (!lookup.is_found) return sample_sources(path);
-    // Some paths also sample a direction. Directions find the sky and emitting patches; but if patches have unoccluded
-    // light, shadow rays alone sample them, as FirstPoints requires
-    const bool has_sky = sources.skies().can_sample() || channel_sum(sources.skies().uniform_radiance()) > 0;
-    SourceSampling& sampling = path.sampling;
-    sampling.is_last = true;
-    sampling.guide = lookup.guide;
-    sampling.directions_find_patches = !unoccluded.has(SourceKind::patches);
-    sampling.directions = sampling.directions_find_patches || has_sky ? 1.0f / paths_per_direction : 0;
+    if (!lookup.is_found) return false;
+    path.sampling = sampling_with_record(lookup.guide);
     // Compute unoccluded light; shadow rays estimate the occlusion
-    const LightSample numbers =
-        unoccluded.samples_sources()
-            ? light_sample(keys_[path.half_batch], vertex_, LightStream::unoccluded, path.index_in_sequence)
-            : LightSample{};
-    const std::uint32_t point = first_points_.add(path, numbers);
+    LightSample strata{};
+    if (plan_.scene.unoccluded.samples_sources())
+        strata = light_sample(keys_[path.half_batch], vertex_, LightStream::unoccluded, path.index_in_sequence);
+    connect_to_sources(path, first_points_.add(path, strata));
+    return true;
+}
+
+SourceSampling PathIntegrator::sampling_with_record(std::uint32_t guide) const {
+    // FirstPoints compares unoccluded light with the light of shadow rays, so these must sample it alone.
+    const bool directions_find_patches = !plan_.scene.unoccluded.has(SourceKind::patches);
+    const Skies& skies = plan_.sources().skies();
+    const bool directions_find_sky = skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
+    const bool needs_directions = directions_find_patches || directions_find_sky;
+    return {.rays = plan_.first_shadow_rays,
+            .guide = guide,
+            .directions = needs_directions ? 1.0f / paths_per_direction : 0,
+            .is_last = true,
+            .directions_find_patches = directions_find_patches};
+}
+
+void PathIntegrator::connect_to_sources(const Path& path, std::uint32_t first_point) {
     for (const SourceKind kind : source_kinds) {
-        const std::uint32_t rays = shadow_rays_to(kind, sampling.rays);
-        const std::uint32_t first_point = unoccluded.has(kind) ? point : none;  // none: the path gets the light
-        for (std::uint32_t k = 0; k < rays; ++k)
-            connect_to_source(path, kind, path.index_in_sequence * rays + k, rays, first_point);
+        if (kind == SourceKind::suns && vertex_ == 1 && !plan_.has_suns) continue;
+        const std::uint32_t count = plan_.sources().useful_rays(kind, path.sampling.rays);
+        const std::uint32_t receiver = plan_.scene.unoccluded.has(kind) ? first_point : none;
+        for (std::uint32_t number = 0; number < count; ++number)
+            connect_to_source(path, {kind, number, count}, receiver);
     }
-    for (std::uint32_t k = 0; k < sampling.rays; ++k) connect_to_sky(path, path.index_in_sequence * sampling.rays + k);
+    const std::uint32_t count = path.sampling.rays;
+    for (std::uint32_t number = 0; number < count; ++number)
+        connect_to_sky(path, path.index_in_sequence * count + number);
 }
 
-std::uint32_t PathIntegrator::shadow_rays_to(SourceKind kind, std::uint32_t most) const {
-    if (vertex_ == 1 && kind == SourceKind::suns && !plan_.has_suns) return 0;  // later vertices always see suns
-    return plan_.sources().useful_rays(kind, most);
-}
-
-void PathIntegrator::sample_sources(Path& path) {
-    if (vertex_ == 1 && !plan_.has_direct) return;
-    for (const SourceKind kind : source_kinds) {
-        const std::uint32_t rays = shadow_rays_to(kind, path.sampling.rays);
-        for (std::uint32_t k = 0; k < rays; ++k)
-            connect_to_source(path, kind, path.index_in_sequence * rays + k, rays, none);
-    }
-    for (std::uint32_t k = 0; k < path.sampling.rays; ++k)
-        connect_to_sky(path, path.index_in_sequence * path.sampling.rays + k);
-}
-
-void PathIntegrator::connect_to_source(const Path& path, SourceKind kind, std::uint32_t index, std::uint32_t rays,
-                                       std::uint32_t first_point) {
-    constexpr std::array streams{LightStream::patches, LightStream::lamps, LightStream::suns};  // by SourceKind
-    const LightSample numbers =
-        light_sample(keys_[path.half_batch], vertex_, streams[static_cast<std::size_t>(kind)], index);
-    const SourceSample source = plan_.sources().sample(kind, path.position, path.normal, numbers);
+void PathIntegrator::connect_to_source(const Path& path, const SourceRay& ray, std::uint32_t first_point) {
+    const LightSample numbers = light_sample(keys_[path.half_batch], vertex_, stream_of(ray.kind),
+                                             path.index_in_sequence * ray.count + ray.number);
+    const SourceSample source = plan_.sources().sample(ray.kind, path.position, path.normal, numbers);
     if (!(channel_sum(source.irradiance) > 0)) return;
-    const Rgb irradiance = source.irradiance / static_cast<float>(rays);
+    const auto count = static_cast<float>(ray.count);
+    const Rgb irradiance = source.irradiance / count;
     shadow_rays_.add({path.position, source.direction}, source.patch, source.distance);
+    Connection connection{.half_batch = path.half_batch, .bounces = vertex_};
     if (first_point != none) {
-        first_points_.add_sampled(first_point, kind, irradiance);
-        connections_.push_back({.half_batch = path.half_batch,
-                                .bounces = 1,
-                                .light = irradiance,
-                                .first_point = first_point,
-                                .kind = kind});
-        return;
+        first_points_.add_sampled(first_point, ray.kind, irradiance);
+        connection.light = irradiance;
+        connection.first_point = first_point;
+        connection.kind = ray.kind;
+    } else {
+        float weight = 1;
+        if (source.density > 0 && path.sampling.directions_find_patches)
+            weight = balance(count * source.density, direction_density(path, source.direction));
+        connection.light = path.throughput / pi * irradiance * weight;
     }
-    float weight = 1;
-    if (source.density > 0 && path.sampling.directions_find_patches)
-        weight = balance(static_cast<float>(rays) * source.density, direction_density(path, source.direction));
-    connections_.push_back({path.half_batch, vertex_, path.throughput / pi * irradiance * weight});
+    connections_.push_back(connection);
 }
 
 void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
-    const Skies& skies = plan_.sources().skies();
-    const std::uint32_t guide = path.sampling.guide;
-    if (!skies.can_sample() && guide == none) return;
-    // If both can sample the sky, even shadow rays follow the guide and odd ones the brightness of the sky.
-    const bool alternates = guide != none && skies.can_sample();
-    const bool is_guided = guide != none && (!alternates || index % 2 == 0);
-    const LightSample numbers =
-        light_sample(keys_[path.half_batch], vertex_, is_guided ? LightStream::guided_skies : LightStream::skies,
-                     alternates ? index / 2 : index);
-    const V3f direction = is_guided
-                              ? plan_.hybrid->guide->sample(guide, path.normal, numbers.choice, numbers.u, numbers.v)
-                              : skies.sample(numbers.choice, numbers.u, numbers.v).direction;
+    if (!plan_.sources().skies().can_sample() && path.sampling.guide == none) return;
+    const V3f direction = sample_sky_direction(path, index);
     const float cosine = path.normal.dot(direction), density = sky_density(path, direction);
     if (!(cosine > 0 && density > 0)) return;
     const float weight = balance(density, direction_density(path, direction));
+    const Rgb radiance = path.throughput * sampled_sky(path, direction) * (cosine / pi / density * weight);
     shadow_rays_.add({path.position, direction}, no_patch, std::numeric_limits<float>::infinity());
-    connections_.push_back(
-        {path.half_batch, vertex_, path.throughput * sampled_sky(path, direction) * (cosine / pi / density * weight)});
+    connections_.push_back({.half_batch = path.half_batch, .bounces = vertex_, .light = radiance});
+}
+
+V3f PathIntegrator::sample_sky_direction(const Path& path, std::uint32_t index) const {
+    const Skies& skies = plan_.sources().skies();
+    const bool has_guide = path.sampling.guide != none;
+    // If both can sample the sky, even shadow rays follow the guide and odd ones the brightness of the sky.
+    const bool alternates = has_guide && skies.can_sample();
+    const bool is_guided = alternates ? index % 2 == 0 : has_guide;
+    const std::uint32_t index_in_stream = alternates ? index / 2 : index;
+    const LightStream stream = is_guided ? LightStream::guided_skies : LightStream::skies;
+    const LightSample numbers = light_sample(keys_[path.half_batch], vertex_, stream, index_in_stream);
+    if (!is_guided) return skies.sample(numbers.choice, numbers.u, numbers.v).direction;
+    return plan_.hybrid->guide->sample(path.sampling.guide, path.normal, numbers.choice, numbers.u, numbers.v);
 }
 
 void PathIntegrator::add_light_of_shadow_rays() {
     const std::span<const Rgb> transmittance = shadow_rays_.trace(plan_.scene.ray_caster, plan_.scene.panes, counts_);
     for (std::size_t i = 0; i < connections_.size(); ++i) {
-        const Connection& c = connections_[i];
+        const Connection& connection = connections_[i];
         if (!(largest_channel(transmittance[i]) > 0)) continue;
-        const Rgb light = c.light * transmittance[i];
-        if (c.first_point != none)
-            first_points_.add_visible(c.first_point, c.kind, light);
+        const Rgb light = connection.light * transmittance[i];
+        if (connection.first_point != none)
+            first_points_.add_visible(connection.first_point, connection.kind, light);
         else
-            add(c.half_batch, c.bounces, light);
+            add(connection.half_batch, connection.bounces, light);
     }
     connections_.clear();
 }
 
-void PathIntegrator::leave_surfaces() {
-    std::size_t alive = 0;
-    for (Path path : paths_.paths) {
-        const std::uint64_t key = keys_[path.half_batch];
-        if (path.sampling.is_last) {
-            // One path in four samples a direction. A random offset chooses it, so all have the same probability.
-            const std::uint64_t offset = mix(key, offset_stream);
-            if (!(path.sampling.directions > 0) || (path.index_in_sequence + offset) % paths_per_direction != 0)
-                continue;
-            path.throughput /= path.sampling.directions;
-        }
-        const VertexSample sample = vertex_sample(key, vertex_, path.index_in_sequence);
-        const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
-        if (sample.roulette >= survival) continue;
-        path.throughput /= survival;
-        path.travelled = 0;
-        paths_.rays[alive] = {path.position, cosine_direction(path.normal, sample.direction_u, sample.direction_v)};
-        paths_.paths[alive++] = path;
-    }
-    paths_.paths.resize(alive);
-    paths_.rays.resize(alive);
-}
-
-void PathIntegrator::store(std::span<SampleBatch> batches) const {
-    // Irradiance = pi L of a white surface.
-    const double per_radiance = plan_.shows_irradiance() ? std::numbers::pi : 1;
-    std::size_t sample = 0;
-    for (std::size_t b = 0; b < batches.size(); ++b) {
-        SampleBatch& batch = batches[b];
-        for (std::size_t h = 0; h < 2; ++h) {
-            batch.halves[h] = light_[2 * b + h] * per_radiance;
-            batch.halves[h].square_of_first_hit *= per_radiance;  // a square has the factor twice
-        }
-        for (const std::size_t end = sample + 2 * std::size_t{batch.size}; sample < end; ++sample)
-            batch.first += first_hits_[sample];
-        batch.done = true;
-    }
-}
-
-void PathIntegrator::add_prediction(const Path& path, const Rgb& emitted, const Rgb& predicted) {
-    PathLight& light = light_[path.half_batch];
-    light.predicted += RgbD(path.throughput * predicted);
-    const double seen = mean_channel(RgbD(path.throughput * (emitted + predicted)));
-    light.square_of_first_hit += seen * seen;
-}
-
-void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
-    const Skies& skies = plan_.sources().skies();
-    if (vertex_ == 1) {
-        const Rgb seen = skies.seen(direction);
-        add_prediction(path, seen, Rgb(0));
-        return add(path.half_batch, 0, path.throughput * seen);
-    }
-    Rgb radiance = sampled_sky(path, direction);
-    if (channel_sum(radiance) > 0)
-        radiance *= balance(direction_density(path, direction), sky_density(path, direction));
-    if (path.sampling.guide == none) radiance += skies.uniform_radiance();
-    add(path.half_batch, vertex_ - 1, path.throughput * radiance);
-}
-
-void PathIntegrator::add_emission(const Hit& hit, const V3f& direction, float distance, const Path& path,
-                                  const Rgb& exitance) {
-    if (vertex_ > 1 && !path.sampling.directions_find_patches) return;  // shadow rays alone sample this light
-    const Rgb radiance = path.throughput * exitance / pi;
-    if (vertex_ == 1) return add(path.half_batch, 0, radiance);
-    const float density =
-        plan_.sources().density(hit.patch, path.position, path.normal, direction, distance * distance);
-    const float weight = balance(direction_density(path, direction), static_cast<float>(path.sampling.rays) * density);
-    add(path.half_batch, vertex_ - 1, radiance * weight);
-}
-
 float PathIntegrator::direction_density(const Path& path, const V3f& direction) {
     return path.normal.dot(direction) / pi * path.sampling.directions;
+}
+
+float PathIntegrator::sky_density(const Path& path, const V3f& direction) const {
+    const Skies& skies = plan_.sources().skies();
+    const auto rays = static_cast<float>(path.sampling.rays);
+    const float sky = skies.can_sample() ? skies.density(direction) : 0;
+    if (path.sampling.guide == none) return rays * sky;
+    const float guide = plan_.hybrid->guide->density(path.sampling.guide, path.normal, direction);
+    if (!skies.can_sample()) return rays * guide;
+    return rays * (sky + guide) / 2;  // half of the rays follow each of them
 }
 
 Rgb PathIntegrator::sampled_sky(const Path& path, const V3f& direction) const {
@@ -368,13 +356,27 @@ Rgb PathIntegrator::sampled_sky(const Path& path, const V3f& direction) const {
     return path.sampling.guide == none ? skies.sampled_radiance(direction) : skies.radiance(direction);
 }
 
-float PathIntegrator::sky_density(const Path& path, const V3f& direction) const {
-    const Skies& skies = plan_.sources().skies();
-    const auto rays = static_cast<float>(path.sampling.rays);
-    const float of_sky = skies.can_sample() ? skies.density(direction) : 0;
-    if (path.sampling.guide == none) return rays * of_sky;
-    const float of_guide = plan_.hybrid->guide->density(path.sampling.guide, path.normal, direction);
-    return skies.can_sample() ? rays * (of_sky + of_guide) / 2 : rays * of_guide;
+void PathIntegrator::choose_directions() {
+    std::size_t kept = 0;
+    for (Path path : paths_.paths) {
+        const std::uint64_t key = keys_[path.half_batch];
+        if (path.sampling.is_last) {
+            // Select one path in four. A random offset gives each path the same probability
+            const std::uint64_t offset = mix(key, selection_stream);
+            const bool is_selected = (path.index_in_sequence + offset) % paths_per_direction == 0;
+            if (!(path.sampling.directions > 0) || !is_selected) continue;
+            path.throughput /= path.sampling.directions;
+        }
+        const VertexSample sample = vertex_sample(key, vertex_, path.index_in_sequence);
+        const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);
+        if (sample.roulette >= survival) continue;
+        path.throughput /= survival;
+        path.travelled = 0;
+        paths_.rays[kept] = {path.position, cosine_direction(path.normal, sample.direction_u, sample.direction_v)};
+        paths_.paths[kept++] = path;
+    }
+    paths_.paths.resize(kept);
+    paths_.rays.resize(kept);
 }
 
 void PathIntegrator::add(std::uint32_t half_batch, std::uint32_t bounces, const Rgb& radiance) {
@@ -384,6 +386,23 @@ void PathIntegrator::add(std::uint32_t half_batch, std::uint32_t bounces, const 
         light.emitted += RgbD(radiance);
     else
         (bounces == 1 ? light.direct : light.indirect) += RgbD(radiance);
+}
+
+void PathIntegrator::store(std::span<SampleBatch> batches) const {
+    // Irradiance = pi L of a white surface.
+    const double factor = plan_.shows_irradiance() ? std::numbers::pi : 1;
+    std::size_t sample = 0;
+    for (std::size_t b = 0; b < batches.size(); ++b) {
+        SampleBatch& batch = batches[b];
+        for (std::size_t h = 0; h < 2; ++h) {
+            batch.halves[h] = light_[2 * b + h] * factor;
+            batch.halves[h].square_of_first_hit *= factor;  // squares are scaled by factor^2
+        }
+        // The samples of a batch are consecutive, as Path::sample counts them.
+        for (const std::size_t end = sample + 2 * std::size_t{batch.size}; sample < end; ++sample)
+            batch.first += first_hits_[sample];
+        batch.done = true;
+    }
 }
 
 }  // namespace interflect::detail

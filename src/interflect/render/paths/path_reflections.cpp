@@ -25,15 +25,14 @@ float density_towards(const PathPlan& plan, const KnownLight::Place& place, floa
 
 }  // namespace
 
-bool PathIntegrator::end_at_known_light(const Hit& hit, const V3f& x, const V3f& direction, float distance,
-                                        const Path& path) {
+bool PathIntegrator::end_at_known_light(const SurfaceHit& hit, const Path& path) {
     if (!plan_.known || vertex_ == 1) return false;
-    const KnownLight::Place place = plan_.known->place(hit.patch, x);
-    const float distance2 = distance * distance;
+    const KnownLight::Place place = plan_.known->place(hit.patch, hit.x);
+    const float distance2 = hit.distance * hit.distance;
     if (!plan_.known->is_far(place, distance2)) return false;
-    const float light_density =
-        density_towards(plan_, place, plan_.known->density(place, path.position, path.normal), direction, distance2);
-    const float weight = balance(path.normal.dot(direction) / std::numbers::pi_v<float>, light_density);
+    const float light_density = density_towards(plan_, place, plan_.known->density(place, path.position, path.normal),
+                                                hit.direction, distance2);
+    const float weight = balance(path.normal.dot(hit.direction) / std::numbers::pi_v<float>, light_density);
     add(path.half_batch, vertex_, path.throughput * plan_.known->reflected_radiance(place) * weight);
     return true;
 }
@@ -53,9 +52,9 @@ void PathIntegrator::connect_to_known_light(const Path& path) {
     if (!(direction_density > 0 && light_density > 0)) return;
     const float weight = balance(light_density, direction_density);
     shadow_rays_.add({path.position, direction}, place.patch, 0);
-    connections_.push_back(
-        {path.half_batch, vertex_ + 1,
-         path.throughput * plan_.known->reflected_radiance(place) * (direction_density / light_density * weight)});
+    const Rgb radiance =
+        path.throughput * plan_.known->reflected_radiance(place) * (direction_density / light_density * weight);
+    connections_.push_back({.half_batch = path.half_batch, .bounces = vertex_ + 1, .light = radiance});
 }
 
 void PathIntegrator::connect_to_virtual_lights(const Path& path) {
@@ -79,14 +78,14 @@ void PathIntegrator::connect_to_virtual_lights(const Path& path) {
         const float per_flux = bounded / (std::numbers::pi_v<float> * std::numbers::pi_v<float> * choice.probability *
                                           static_cast<float>(count));
         shadow_rays_.add({path.position, direction}, light.patch, 0);
-        connections_.push_back({path.half_batch, vertex_ + 1, path.throughput * light.flux * per_flux});
+        connections_.push_back(
+            {.half_batch = path.half_batch, .bounces = vertex_ + 1, .light = path.throughput * light.flux * per_flux});
     }
 }
 
-float PathIntegrator::share_beyond_virtual_lights(const Hit& hit, const V3f& direction, float distance,
-                                                  const Path& path) const {
-    const float other = -plan_.scene.geometry[hit.patch].normal().dot(direction);
-    const float geometric_term = path.normal.dot(direction) * std::max(0.0f, other) / (distance * distance);
+float PathIntegrator::share_beyond_virtual_lights(const SurfaceHit& hit, const Path& path) const {
+    const float other = -plan_.scene.geometry[hit.patch].normal().dot(hit.direction);
+    const float geometric_term = path.normal.dot(hit.direction) * std::max(0.0f, other) / (hit.distance * hit.distance);
     const float bound = plan_.virtual_lights->bound(hit.patch);
     return geometric_term > bound ? 1 - bound / geometric_term : 0;
 }
