@@ -12,6 +12,7 @@
 #include "interflect/render/paths/group_mean.h"
 #include "interflect/render/paths/surface_points.h"
 #include "interflect/render/rays/path_plan.h"
+#include "interflect/render/rays/sample_batch.h"
 #include "interflect/render/smooth/local_fit.h"
 #include "interflect/scene.h"
 
@@ -19,8 +20,8 @@ namespace interflect::detail {
 
 /// Indirect irradiance, interpolated between sparse records (irradiance caching, Ward et al. 1988), which average the
 /// noise of a solution. The reach of a record is a fixed fraction of the harmonic mean length of its rays that hit a
-/// surface, but at least least_reach(), which is smaller in bakes, and at most 100 spacings of the points. It ends at
-/// contacts between surfaces. Interpolated values are local linear fits. Immutable, thread-safe.
+/// surface, within limits in spacings of the points. It ends at contacts between surfaces. Interpolated values are
+/// local linear fits. Immutable, thread-safe.
 ///
 /// Values are biased by interpolation. Each record is compared with the fit of its neighbours. If they differ by more
 /// than a tenth of all irradiance plus their noise, the reach of both is halved. The remaining difference is part of
@@ -64,14 +65,14 @@ class IndirectField {
     struct Record {
         V3f position, normal;
         PatchIndex patch{};
-        float spacing = 0;          // distance between the points around it [m]
-        float reach = 0;            // reach on its own patch, which no contact crosses [m]
-        float reach_elsewhere = 0;  // reach on other patches, at most the distance to the nearest contact [m]
-        float irradiance = 0;       // luminance of direct and indirect irradiance, the scale of relative errors [as H]
-        GroupMean gathered{};       // mean indirect irradiance over groups of paths [as H]
-        double difference = 0;      // sum over groups of half the difference between their halves, mean channel [as H]
-        float group_variance = 0;   // variance of a group, mean channel, pooled over near records
-        float squared_bias = 0;     // squared error of interpolation near the record, mean channel
+        float spacing = 0;           // distance between the points around it [m]
+        float reach = 0;             // reach on its own patch, which no contact crosses [m]
+        float reach_elsewhere = 0;   // reach on other patches, at most the distance to the nearest contact [m]
+        float irradiance = 0;        // luminance of direct and indirect irradiance, the scale of relative errors [as H]
+        GroupMean gathered{};        // mean indirect irradiance over groups of paths [as H]
+        double half_difference = 0;  // sum over groups of half the difference between their halves, mean channel [as H]
+        float group_variance = 0;    // variance of a group, mean channel, pooled over near records
+        float squared_bias = 0;      // squared error of interpolation near the record, mean channel
 
         float variance() const { return group_variance / static_cast<float>(gathered.groups); }
     };
@@ -97,25 +98,34 @@ class IndirectField {
     void cover(const PathPlan& plan, std::span<const SurfacePoint> points, const Monitor& monitor,
                const CommonStop& stop);
     std::vector<SurfacePoint> uncovered_among(std::span<const SurfacePoint> points, Ranks* ranks) const;
+    /// Returns the batches of the next groups of each chosen record.
+    std::vector<SampleBatch> next_groups(std::span<const std::uint32_t> chosen, std::size_t groups) const;
     /// Gathers light at the chosen records. Returns whether a stop was due.
-    /// @param lengths  Receives the harmonic mean length of the rays of each chosen record, or 0 if no ray hit a
+    /// @param groups        Number of groups of paths for each record.
+    /// @param mean_lengths  Receives the harmonic mean length of the rays of each chosen record, or 0 if no ray hit a
     /// surface [m].
     bool gather(const PathPlan& plan, std::span<const std::uint32_t> chosen, std::size_t groups, const CommonStop& stop,
-                std::vector<float>* lengths = nullptr);
+                std::vector<float>* mean_lengths = nullptr);
     /// Adds a record at each point. Returns whether a stop was due.
     bool add_records(const PathPlan& plan, std::span<const SurfacePoint> points, const CommonStop& stop);
+    /// Updates tree_ and reaches_ to the records.
     void arrange_tree();
     /// Computes Record::group_variance.
     void pool_variances();
     struct Residual {
-        double square, variance;
+        double square;    // squared difference from the fit
+        double variance;  // variance of the difference by noise
     };
     /// Compares record i with the fit of its neighbours, in the mean channel; nullopt if it has too few neighbours.
     std::optional<Residual> residual(std::uint32_t i) const;
+    /// Returns 1 for each new record that differs from the fit of its neighbours by more than max_residual and noise.
+    std::vector<std::uint8_t> find_misfits(std::size_t first_new) const;
     /// Halves the reach of new records that differ from their fit, and of the records near them.
     void shorten_reaches(const PathPlan& plan, std::size_t first_new);
     /// Computes Record::squared_bias.
     void estimate_bias();
+    /// Returns the number of groups that each record needs.
+    std::vector<float> needed_groups(const PathPlan& plan) const;
     /// Gathers more groups for records whose noise is large.
     void refine_noisy_records(const PathPlan& plan, const CommonStop& stop);
     /// Returns the mean over the records.
