@@ -229,7 +229,7 @@ void PathIntegrator::illuminate_vertices() {
     for (Path& path : paths_.paths) {
         path.sampling = {};
         if (vertex_ == 1) path.sampling.rays = plan_.first_shadow_rays;
-        // A record contains all reflected light, so its path needs no further connections
+        // A record contains the indirect light, so its path needs no further connections
         if (vertex_ == 1 && plan_.hybrid && light_first_point(path)) continue;
         if (vertex_ > 1 || plan_.has_direct) connect_to_sources(path, none);
         if (plan_.known) connect_to_known_light(path);
@@ -251,7 +251,8 @@ bool PathIntegrator::light_first_point(Path& path) {
 }
 
 SourceSampling PathIntegrator::sampling_with_record(std::uint32_t guide) const {
-    // FirstPoints compares unoccluded light with the light of shadow rays, so these must sample it alone.
+    // FirstPoints compares the unoccluded light of patches with that of shadow rays, so shadow rays alone must sample
+    // it.
     const bool directions_find_patches = !plan_.scene.unoccluded.has(SourceKind::patches);
     const Skies& skies = plan_.sources().skies();
     const bool directions_find_sky = skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
