@@ -177,7 +177,7 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
         words = words.subspan(option_length(words));
     }
     std::string name = fmt::format("{}", fmt::join(words, " "));
-    std::replace(name.begin(), name.end(), '\\', '/');
+    std::replace(name.begin(), name.end(), '\\', '/');  // names written on Windows
     const fs::path folder = location.file->parent_path();
     std::error_code ignored;
     if (!fs::exists(folder / name, ignored)) name = std::string(name_before_comment(name));
