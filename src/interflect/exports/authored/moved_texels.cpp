@@ -127,17 +127,17 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
     const std::uint32_t number = object_of_chart_[chart];
     const AuthoredObject& object = authored_.objects[number];
     for (TexelPlace& place : places)
-        if (!place.is_near) place.patch = no_patch;
+        if (!place.is_evaluated) place.patch = no_patch;
     std::vector<Faces> faces(places.size());
-    const auto for_each_near = [&](const auto& use) {
+    const auto for_each_evaluated = [&](const auto& use) {
         constexpr std::size_t texels_per_task = 1 << 10;
         parallel_for_ranges(places.size(), texels_per_task, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                if (places[i].is_near) use(i);
+                if (places[i].is_evaluated) use(i);
         });
     };
     // Find the patches at each texel
-    for_each_near([&](std::size_t i) {
+    for_each_evaluated([&](std::size_t i) {
         const auto& [u, v, x] = surface_of(object, places[i].patch, places[i].at);
         faces[i] = find(x, front_of(object, u, v), object.object);
     });
@@ -147,14 +147,14 @@ void TexelMover::move(std::size_t chart, std::span<TexelPlace> places) {
     const auto backs = count([&](const Faces& f) { return shows(f.back); });
     const bool takes_back = backs > 0 && (fronts == 0 || is_inverted_[chart]), is_unlit = fronts == 0 && backs == 0;
     // Move the texels to the patches of this side
-    for_each_near([&](std::size_t i) {
+    for_each_evaluated([&](std::size_t i) {
         TexelPlace& place = places[i];
         const auto& [u, v, x] = surface_of(object, place.patch, place.at);
         const PatchIndex patch = takes_back ? faces[i].back : faces[i].front;
         const bool is_covered =
             (!takes_back && faces[i].meets_front) || ((takes_back || is_unlit) && faces[i].meets_back);
         const bool is_open = patch != none && (visibility_.lit[patch] || !faces[i].touches);
-        place.is_near = is_open && !is_covered && !visibility_.hidden[patch];
+        place.is_evaluated = is_open && !is_covered && !visibility_.hidden[patch];
         place.patch = patch;
         if (patch == none) return;
         const PatchGeometry& geometry = geometries_[patch];

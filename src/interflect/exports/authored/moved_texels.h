@@ -14,8 +14,8 @@ namespace interflect::detail {
 
 /// Moves texels from the triangles of a file to the patches of the solved scene, which contacts have cut into pieces.
 /// A texel gets the light of the front, or of the back in charts with unlit fronts and on solids turned inside out.
-/// Texels that are hidden, between two objects, or unlit where another face touches theirs, lose TexelPlace::is_near:
-/// they copy the light beside them.
+/// Texels that are hidden, between two objects, or unlit where another face touches theirs, lose
+/// TexelPlace::is_evaluated: they copy the light beside them.
 class TexelMover {
   public:
     /// Refers to its arguments. @param visibility  Visibility of the patches of `solved`.

@@ -25,100 +25,133 @@ namespace interflect::detail {
 
 namespace {
 
-/// Noise of 3% a texel is 0.5% after the filter, in a furnished room with a window; 6% left visible grain on its walls.
-constexpr DirectSampling texel_sampling{&DefaultSamples::texel, 0.03, /*needs_direct=*/false};
+/// Direct light is sampled until its noise is about 3% per texel. In a furnished room with a window, the filter reduced
+/// this noise to 0.5%. A noise of 6% left visible grain on the walls.
+constexpr DirectSampling texel_sampling{&DefaultSamples::texel, /*max_noise=*/0.03, /*needs_direct=*/false};
 
-Rgb content_of(const Scene& scene, const BakedPoint& place, const Rgb& irradiance, LightmapContent content) {
+/// Returns the irradiance of a point, or the radiance that leaves it.
+Rgb texel_value(LightmapContent content, const Scene& scene, const BakedPoint& point, const Rgb& irradiance) {
     if (content == LightmapContent::irradiance) return irradiance;
-    const Patch& patch = scene.patches[place.patch];
-    const Rgb radiosity = exitance_at(scene, patch, place.at) + reflectance_at(scene, patch, place.at) * irradiance;
+    const Patch& patch = scene.patches[point.patch];
+    const Rgb radiosity = exitance_at(scene, patch, point.at) + reflectance_at(scene, patch, point.at) * irradiance;
     return radiosity / std::numbers::pi_v<float>;
 }
 
-/// Texels of all charts. Texels that are far from patches copy the light of an evaluated texel.
+V3f position_of(const Scene& scene, const BakedPoint& point) {
+    return PatchGeometry(scene, scene.patches[point.patch]).point(point.at);
+}
+
+/// Finds the point that is nearest to a position.
+class PointSearch {
+  public:
+    /// Refers to its arguments.
+    PointSearch(const Scene& scene, std::span<const BakedPoint> points) : scene_(scene), points_(points) {
+        for (std::uint32_t i = 0; i < points.size(); ++i)
+            tree_.push_back({Imath::Box3f(position_of(scene, points[i])), i});
+        arrange_box_tree(tree_);
+    }
+    /// Returns the index of the point that is nearest to x; of equally near points, the lowest index.
+    std::uint32_t find_nearest(const V3f& x) const {
+        std::uint32_t nearest = none;
+        float least_distance2 = std::numeric_limits<float>::max();
+        const auto may_be_nearest = [&](const Imath::Box3f& box) {
+            return (Imath::closestPointInBox(x, box) - x).length2() <= least_distance2;
+        };
+        visit_box_tree(std::span<const Boxed>(tree_), may_be_nearest, [&](std::uint32_t i) {
+            const float distance2 = (position_of(scene_, points_[i]) - x).length2();
+            if (distance2 > least_distance2 || (distance2 == least_distance2 && i > nearest)) return;
+            nearest = i;
+            least_distance2 = distance2;
+        });
+        return nearest;
+    }
+
+  private:
+    const Scene& scene_;
+    const std::span<const BakedPoint> points_;
+    std::vector<Boxed> tree_;
+};
+
+/// Pixel of an image of the lightmap.
+struct TexelPosition {
+    std::size_t page;
+    int column, row;
+};
+
+struct LitTexel {
+    TexelPosition position;
+    std::size_t point;  // index of the evaluated point whose light the texel shows
+};
+
+/// Texels of all charts, and the points at which light is evaluated for them.
 class LightmapTexels {
   public:
+    /// Refers to its argument.
     explicit LightmapTexels(const LightmapOptions& options) : options_(options) {}
 
-    void add(const LightmapChart& chart, std::span<const TexelPlace> places) {
+    /// @param places  Texels of the chart and its gutter, row by row.
+    void add_chart(const LightmapChart& chart, std::span<const TexelPlace> places) {
         const int columns = chart.columns + 2 * options_.gutter;
         const std::vector<std::size_t> copied = copied_texels(places, static_cast<std::size_t>(columns));
-        if (std::find_if(copied.begin(), copied.end(), [](std::size_t i) { return i != no_texel; }) == copied.end())
-            return add_hidden(chart, places, columns);
-        std::vector<std::size_t> place_index(places.size());  // index in places_ of each evaluated texel
+        const bool is_hidden = std::all_of(copied.begin(), copied.end(), [](std::size_t i) { return i == no_texel; });
+        if (is_hidden) return add_hidden_chart(chart, places, columns);
         PointGrid grid{columns, std::vector<std::uint32_t>(places.size(), none)};
         for (std::size_t i = 0; i < places.size(); ++i) {
-            place_index[i] = places_.size();
             texels_inside_ += places[i].is_inside;
-            if (copied[i] != i) continue;
-            grid.points[i] = static_cast<std::uint32_t>(places_.size());
-            places_.push_back(places[i]);
+            if (!places[i].is_evaluated) continue;
+            grid.points[i] = static_cast<std::uint32_t>(points_.size());
+            points_.push_back(places[i]);
         }
+        for (std::size_t i = 0; i < places.size(); ++i)
+            texels_.push_back({position_in_image(chart, i, columns), grid.points[copied[i]]});
         grids_.push_back(std::move(grid));
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            targets_.push_back(target_of(chart, i, columns));
-            targets_.back().place = place_index[copied[i]];
-        }
     }
-    /// Makes hidden texels copy the nearest visible ones. Call it after all charts have been added.
-    void fill_hidden(const Scene& scene) {
-        if (hidden_.empty() || places_.empty()) return;
-        std::vector<Boxed> tree;
-        for (std::uint32_t i = 0; i < places_.size(); ++i)
-            tree.push_back({Imath::Box3f(position_of(scene, places_[i])), i});
-        arrange_box_tree(tree);
-        for (auto& [target, point] : hidden_) {
-            const V3f x = position_of(scene, point);
-            std::pair nearest(std::numeric_limits<float>::max(), none);  // squared distance [m^2], and place
-            const auto is_near = [&](const Imath::Box3f& box) {
-                return (Imath::closestPointInBox(x, box) - x).length2() <= nearest.first;
-            };
-            visit_box_tree(std::span<const Boxed>(tree), is_near, [&](std::uint32_t i) {
-                nearest = std::min(nearest, std::pair((position_of(scene, places_[i]) - x).length2(), i));
-            });
-            target.place = nearest.second;
-            targets_.push_back(target);
-        }
+    /// Assigns the nearest evaluated point in space to each texel of hidden charts. Requires that all charts are added.
+    void assign_hidden_texels(const Scene& scene) {
+        if (hidden_texels_.empty() || points_.empty()) return;
+        const PointSearch search(scene, points_);
+        for (const auto& [position, place] : hidden_texels_)
+            texels_.push_back({position, search.find_nearest(position_of(scene, place))});
     }
+    /// Writes the light of all texels to images.
     void evaluate(const Scene& scene, const BakedLight& light, const Monitor& monitor,
                   std::vector<Image>& images) const {
-        const std::vector<Rgb> irradiance = light.irradiance(places_, grids_, 1 / options_.texels_per_metre, monitor);
-        for (const Target& target : targets_)
-            images[target.page].at(target.column, target.row) =
-                content_of(scene, places_[target.place], irradiance[target.place], options_.content);
+        const float spacing = 1 / options_.texels_per_metre;  // [m]
+        const std::vector<Rgb> irradiance = light.irradiance(points_, grids_, spacing, monitor);
+        for (const auto& [position, point] : texels_)
+            images[position.page].at(position.column, position.row) =
+                texel_value(options_.content, scene, points_[point], irradiance[point]);
     }
-    std::size_t count() const { return targets_.size(); }
+    std::size_t count() const { return texels_.size(); }
     std::int64_t count_inside() const { return texels_inside_; }
 
   private:
-    /// Texel of an image, and the index in places_ of the point whose light it shows.
-    struct Target {
-        std::size_t page, place;
-        int column, row;
+    struct HiddenTexel {
+        TexelPosition position;
+        BakedPoint place;
     };
 
-    Target target_of(const LightmapChart& chart, std::size_t i, int columns) const {
+    /// @param i        Index of a texel of a chart and its gutter.
+    /// @param columns  Width of the chart and its gutter [texels].
+    TexelPosition position_in_image(const LightmapChart& chart, std::size_t i, int columns) const {
         const int column = chart.left - options_.gutter + static_cast<int>(i) % columns;
         const int row = chart.top - options_.gutter + static_cast<int>(i) / columns;
-        return {static_cast<std::size_t>(chart.page), 0, column, row};
+        return {static_cast<std::size_t>(chart.page), column, row};
     }
-    void add_hidden(const LightmapChart& chart, std::span<const TexelPlace> places, int columns) {
+    void add_hidden_chart(const LightmapChart& chart, std::span<const TexelPlace> places, int columns) {
         for (std::size_t i = 0; i < places.size(); ++i)
-            if (places[i].patch != none) hidden_.push_back({target_of(chart, i, columns), places[i]});
-    }
-    static V3f position_of(const Scene& scene, const BakedPoint& point) {
-        return PatchGeometry(scene, scene.patches[point.patch]).point(point.at);
+            if (places[i].patch != none) hidden_texels_.push_back({position_in_image(chart, i, columns), places[i]});
     }
 
     const LightmapOptions& options_;
-    std::vector<BakedPoint> places_;
-    std::vector<PointGrid> grids_;  // one for each chart
-    std::vector<Target> targets_;
-    std::vector<std::pair<Target, BakedPoint>> hidden_;  // texels of charts whose texels are all hidden
-    std::int64_t texels_inside_ = 0;
+    std::vector<BakedPoint> points_;          // points at which light is evaluated
+    std::vector<PointGrid> grids_;            // one for each visible chart, with indices of points_
+    std::vector<LitTexel> texels_;            // texels that get light
+    std::vector<HiddenTexel> hidden_texels_;  // texels of charts in which no texel is evaluated
+    std::int64_t texels_inside_ = 0;          // number of texels whose centres are on patches of visible charts
 };
 
-void add(const std::vector<Image>& images, std::vector<Image>& sum) {
+void add_images(const std::vector<Image>& images, std::vector<Image>& sum) {
     for (std::size_t page = 0; page < sum.size(); ++page)
         for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
 }
@@ -131,51 +164,72 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
     for (std::size_t g = 0; g < count; ++g) {
         const LightOfGroup group = light_of_group(scene, solution, g);
         const auto fraction = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(count); };
-        baked.groups.push_back(baked.images);  // these images are still black
+        const Monitor monitor = monitor_section(options.monitor, fraction(g), fraction(g + 1));
+        baked.groups.push_back(baked.images);  // these images are black until all groups are evaluated
+        // The other ranks share the light of this group until end_shared_light()
         give_order(ranks, {.kind = LightOrder::Kind::group, .group = g});
         try {
-            texels.evaluate(group.scene, BakedLight(group.scene, group.solution, options.bake, texel_sampling),
-                            monitor_section(options.monitor, fraction(g), fraction(g + 1)), baked.groups.back());
+            texels.evaluate(group.scene, BakedLight(group.scene, group.solution, options.bake, texel_sampling), monitor,
+                            baked.groups.back());
         } catch (const Stopped&) {
             end_shared_light(ranks);
             throw;
         }
         end_shared_light(ranks);
     }
-    for (const std::vector<Image>& images : baked.groups) add(images, baked.images);
+    for (const std::vector<Image>& images : baked.groups) add_images(images, baked.images);
 }
 
-double texel_count(const LightmapChart& chart, int gutter) {
-    return static_cast<double>(chart.columns + 2 * gutter) * (chart.rows + 2 * gutter);
+/// Numbers of texels, which determine the memory.
+struct TexelCounts {
+    double charts = 0;  // texels of charts with gutters
+    double images = 0;  // texels of images, which include those between charts
+};
+
+double texels_of_charts(std::span<const LightmapChart> charts, int gutter) {
+    double texels = 0;
+    for (const LightmapChart& chart : charts)
+        texels += static_cast<double>(chart.columns + 2 * gutter) * (chart.rows + 2 * gutter);
+    return texels;
 }
 
-/// Requires that the lightmap fits into the limit of memory.
-/// @param image_texels  Number of texels of all images.
-/// @param chart_texels  Number of texels of all charts with gutters.
-void require_memory(double image_texels, double chart_texels, const LightmapOptions& options, Shading shading,
-                    std::size_t groups) {
-    constexpr double encoded_bytes = 16;  // a texel has at most four channels in single precision
-    constexpr double target_bytes = 24;   // size of two indices, a column and a row
-    // Memory per texel of an image: the texel, its copy for the encoder, and its encoded bytes.
-    constexpr double image_bytes = 2 * sizeof(Rgb) + encoded_bytes, group_bytes = 2 * sizeof(Rgb);
-    // A texel of a chart needs two copies of its place, its target, its light, and an entry in a tree (fill_hidden()).
-    constexpr double texel_bytes = 2 * sizeof(TexelPlace) + target_bytes + sizeof(Rgb) + sizeof(Boxed),
-                     hybrid_bytes = sizeof(SurfacePoint) + sizeof(Gauge) + sizeof(GaugeLight) + sizeof(Rgb),
-                     gathered_bytes =
-                         path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);
-    const bool gathers = shading == Shading::gather;
-    const double shading_bytes = gathers ? gathered_bytes : shading == Shading::hybrid ? hybrid_bytes : 0;
-    const double bytes =
-        image_texels * (image_bytes + (options.groups ? static_cast<double>(groups) * group_bytes : 0)) +
-        chart_texels * (texel_bytes + shading_bytes);
-    if (bytes > static_cast<double>(options.max_bytes))
-        throw InputError(Fault{
-            .text = fmt::format(
-                "lightmap: {:.3g} million texels need {:.0f} MiB of memory, more than the limit of {} MiB (max_bytes): "
-                "expected fewer than {:g} texels_per_metre{}",
-                image_texels / 1e6, bytes / (1 << 20), options.max_bytes >> 20, options.texels_per_metre,
-                gathers ? ", or a shading other than gather" : ""),
-            .setting = "texels_per_metre"});
+double texels_of_images(std::span<const Imath::V2i> sizes) {
+    double texels = 0;
+    for (const Imath::V2i& size : sizes) texels += static_cast<double>(size.x) * size.y;
+    return texels;
+}
+
+/// Returns the memory for the light of one texel of a chart [bytes].
+double light_bytes(Shading shading) {
+    if (shading == Shading::hybrid) return sizeof(SurfacePoint) + sizeof(Gauge) + sizeof(GaugeLight) + sizeof(Rgb);
+    if (shading == Shading::gather)
+        return path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);
+    return 0;
+}
+
+/// Returns the memory that a lightmap needs [bytes].
+double lightmap_bytes(const TexelCounts& texels, const ExportOptions& options, std::size_t group_count) {
+    constexpr double encoded_bytes = 16;  // four channels in single precision, the largest encoding of a texel
+    constexpr double copied_bytes = 2 * sizeof(Rgb);  // a texel of an image, and its copy for the encoder
+    double image_bytes = copied_bytes + encoded_bytes;
+    if (options.lightmap->groups) image_bytes += static_cast<double>(group_count) * copied_bytes;
+    // Two copies of a texel's place, its entries in LightmapTexels and PointSearch, and its irradiance
+    constexpr double place_bytes = 2 * sizeof(TexelPlace) + sizeof(LitTexel) + sizeof(Boxed) + sizeof(Rgb);
+    return texels.images * image_bytes + texels.charts * (place_bytes + light_bytes(options.bake.shading));
+}
+
+void require_lightmap_memory(const TexelCounts& texels, const ExportOptions& options, std::size_t group_count) {
+    const LightmapOptions& lightmap = *options.lightmap;
+    const double bytes = lightmap_bytes(texels, options, group_count);
+    if (bytes <= static_cast<double>(lightmap.max_bytes)) return;
+    constexpr std::uint64_t mebibyte = 1 << 20;
+    throw InputError(Fault{
+        .text = fmt::format(
+            "lightmap: {:.3g} million texels need {:.0f} MiB of memory, more than the limit of {} MiB (max_bytes): "
+            "expected fewer than {:g} texels_per_metre{}",
+            texels.images / 1e6, bytes / mebibyte, lightmap.max_bytes / mebibyte, lightmap.texels_per_metre,
+            options.bake.shading == Shading::gather ? ", or a shading other than gather" : ""),
+        .setting = "texels_per_metre"});
 }
 
 }  // namespace
@@ -183,31 +237,34 @@ void require_memory(double image_texels, double chart_texels, const LightmapOpti
 BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pack, const MoveTexels& move,
                         const Scene& scene, const Solution& solution, const ExportOptions& options) {
     const LightmapOptions& lightmap = *options.lightmap;
-    double image_texels = 0, chart_texels = 0;
-    for (const LightmapChart& chart : charts) chart_texels += texel_count(chart, lightmap.gutter);
-    const auto require_memory_of_images = [&](double texels) {
-        require_memory(texels, chart_texels, lightmap, options.bake.shading, solution.groups.size());
-    };
-    require_memory_of_images(chart_texels);  // check a lower bound first, because packing many charts takes minutes
+
+    // Check a lower bound of the memory first, because packing many charts takes minutes
+    TexelCounts texel_counts;
+    texel_counts.charts = texels_of_charts(charts, lightmap.gutter);
+    texel_counts.images = texel_counts.charts;
+    require_lightmap_memory(texel_counts, options, solution.groups.size());
+
     const std::vector<Imath::V2i> sizes = pack(charts);
-    for (const Imath::V2i& size : sizes) image_texels += static_cast<double>(size.x) * size.y;
-    require_memory_of_images(image_texels);
+    texel_counts.images = texels_of_images(sizes);
+    require_lightmap_memory(texel_counts, options, solution.groups.size());
     BakedImages baked;
     for (const Imath::V2i& size : sizes) baked.images.emplace_back(size.x, size.y);
+
     LightmapTexels texels(lightmap);
     for (std::size_t i = 0; i < charts.size(); ++i) {
         std::vector<TexelPlace> places = places_of(charts[i], lightmap.gutter);
         move(i, places);
-        texels.add(charts[i], places);
+        texels.add_chart(charts[i], places);
     }
-    texels.fill_hidden(scene);
+    texels.assign_hidden_texels(scene);
+
     if (lightmap.groups)
         evaluate_groups(texels, scene, solution, options, baked);
     else
         texels.evaluate(scene, BakedLight(scene, solution, options.bake, texel_sampling), options.monitor,
                         baked.images);
-    baked.used = static_cast<double>(texels.count()) / image_texels;
-    baked.covered = static_cast<double>(texels.count_inside()) / image_texels;
+    baked.used = static_cast<double>(texels.count()) / texel_counts.images;
+    baked.covered = static_cast<double>(texels.count_inside()) / texel_counts.images;
     return baked;
 }
 

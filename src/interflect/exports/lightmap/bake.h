@@ -10,23 +10,28 @@
 
 namespace interflect::detail {
 
+/// Images of a lightmap.
 struct BakedImages {
     std::vector<Image> images;               ///< Irradiance [lm/m^2] or radiance [cd/m^2]; 0 between charts.
-    std::vector<std::vector<Image>> groups;  ///< Images of each light group, [group][image].
-    double used = 0;                         ///< Share of texels in charts and gutters.
-    double covered = 0;                      ///< Share of texels on patches.
+    std::vector<std::vector<Image>> groups;  ///< Images of each light group, [group][image]; or empty.
+    double used = 0;                         ///< Fraction of the texels of all images that are in charts and gutters.
+    double covered = 0;                      ///< Fraction of the texels of all images whose centres are on patches.
 };
 
-/// Packs charts into images; returns the sizes of the images.
+/// Packs charts into images. Sets the positions of the charts and returns the sizes of the images.
 using PackCharts = std::function<std::vector<Imath::V2i>(std::vector<LightmapChart>& charts)>;
 
-/// Moves the texels of a chart, given by its index, to patches of the solved scene. Hidden texels lose
-/// TexelPlace::is_near; if all of a chart are hidden, they copy the nearest light in space.
+/// Moves the places of a chart's texels to patches of the solved scene. Clears TexelPlace::is_evaluated of hidden
+/// texels, which then copy the light of a neighbour. In charts without any visible texel, each copies the nearest
+/// evaluated texel in space.
+/// @param chart  Index of the chart.
 using MoveTexels = std::function<void(std::size_t chart, std::span<TexelPlace> places)>;
 
 /// Packs charts, then evaluates light at texel centres or, outside the patches, at the nearest point of a patch. Direct
 /// light of hybrid shading is the mean over the texel.
-/// @param options  Must include a lightmap. @throws InputError beyond LightmapOptions::max_bytes; Stopped
+/// @param charts   Receive their positions in the images.
+/// @param options  Must include a lightmap.
+/// @throws InputError above LightmapOptions::max_bytes; Stopped
 BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pack, const MoveTexels& move,
                         const Scene& scene, const Solution& solution, const ExportOptions& options);
 

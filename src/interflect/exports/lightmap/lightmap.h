@@ -8,14 +8,16 @@
 
 namespace interflect::detail {
 
+/// Images of a lightmap, and the positions of the patches in them.
 struct Lightmap : BakedImages {
     std::vector<LightmapChart> charts;
-    std::vector<std::uint32_t> chart_of_patch;  ///< Chart of each patch; `none` if it is hidden.
+    std::vector<std::uint32_t> chart_of_patch;  ///< Index of each patch's chart; `none` if the patch is hidden.
     std::vector<std::uint32_t> index_in_chart;  ///< Index of each patch in LightmapChart::patches.
 
-    /// Returns the coordinate of a point in its image; (0, 0) is the upper left corner.
+    /// Returns the texture coordinate of a point in its image. (0, 0) is the upper left corner, (1, 1) the lower right
+    /// one. The patch must not be hidden.
     V2f coordinate(PatchIndex patch, Parameters at) const;
-    /// Returns the index of the patch's image. @param patch  Must not be hidden, as in coordinate().
+    /// Returns the index of the patch's image. The patch must not be hidden.
     int page(PatchIndex patch) const { return charts[chart_of_patch[patch]].page; }
 };
 

@@ -13,70 +13,23 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns the two sides of a texel in the parameters of the patch, by Cramer's rule. The patch is treated as the
-/// parallelogram of its edges at corner 0.
+/// Returns the sides of a texel along the columns and rows of a chart, in the parameters of a patch. A quadrilateral
+/// is treated as the parallelogram of its edges at corner 0.
 /// @param spacing  Width and height of a texel [m].
 std::array<Parameters, 2> texel_sides(const FlatPatch& flat, const Imath::V2d& spacing) {
     const Imath::V2d u = flat.corners[1] - flat.corners[0],
                      v = flat.corners[static_cast<std::size_t>(flat.count) - 1] - flat.corners[0];
-    const double area = u.cross(v);
+    // Solve side = a u + b v by Cramer's rule
+    const double determinant = u.cross(v);
     const auto parameters = [&](const Imath::V2d& side) {
-        return Parameters{static_cast<float>(side.cross(v) / area), static_cast<float>(u.cross(side) / area)};
+        return Parameters{static_cast<float>(side.cross(v) / determinant),
+                          static_cast<float>(u.cross(side) / determinant)};
     };
     return {parameters({spacing.x, 0}), parameters({0, spacing.y})};
 }
 
-class NearestPatch {
-  public:
-    explicit NearestPatch(const LightmapChart& chart) : patches_(chart.patches) {
-        for (std::uint32_t i = 0; i < patches_.size(); ++i) {
-            geometries_.push_back(geometry_of(patches_[i]));
-            sides_.push_back(texel_sides(patches_[i], chart.spacing()));
-            const PatchGeometry& geometry = geometries_.back();
-            Imath::Box3f box;
-            for (const Parameters p : {Parameters{0, 0}, {1, 0}, {0, 1}}) box.extendBy(geometry.point(p));
-            if (!geometry.is_triangle()) box.extendBy(geometry.point({1, 1}));
-            tree_.push_back({box, i});
-        }
-        arrange_box_tree(tree_);
-    }
-
-    /// Returns the place on the patches that is nearest to a point of the chart.
-    /// @param at          Position in the chart [m].
-    /// @param texel_size  Larger side of a texel [m].
-    TexelPlace find(const Imath::V2d& at, float texel_size) const {
-        const V3f x(static_cast<float>(at.x), static_cast<float>(at.y), 0);
-        TexelPlace nearest;
-        float least2 = std::numeric_limits<float>::max();
-        const auto is_near = [&](const Imath::Box3f& box) {
-            return (Imath::closestPointInBox(x, box) - x).length2() <= least2;
-        };
-        visit_box_tree(std::span<const Boxed>(tree_), is_near, [&](std::uint32_t i) {
-            const Parameters p = nearest_parameters(geometries_[i], x);
-            const float distance2 = (geometries_[i].point(p) - x).length2();
-            const bool precedes = nearest.patch == none || patches_[i].patch < nearest.patch;
-            if (distance2 < least2 || (distance2 == least2 && precedes)) {
-                least2 = distance2;
-                nearest = {{patches_[i].patch, p, sides_[i]}};
-            }
-        });
-        constexpr float rounding = 1e-3f;  // [texels]
-        nearest.is_inside = least2 <= rounding * rounding * texel_size * texel_size;
-        nearest.is_near = least2 < (1 - rounding) * (1 - rounding) * texel_size * texel_size;
-        return nearest;
-    }
-
-  private:
-    static PatchGeometry geometry_of(const FlatPatch& flat);
-    static Parameters nearest_parameters(const PatchGeometry& geometry, const V3f& x);
-
-    const FlatPatches& patches_;
-    std::vector<PatchGeometry> geometries_;
-    std::vector<std::array<Parameters, 2>> sides_;
-    std::vector<Boxed> tree_;
-};
-
-PatchGeometry NearestPatch::geometry_of(const FlatPatch& flat) {
+/// Returns a patch of a chart as a patch in the plane z = 0 of space.
+PatchGeometry geometry_in_chart(const FlatPatch& flat) {
     Scene plane;
     Patch patch;
     for (std::uint32_t c = 0; c < flat.outline().size(); ++c) {
@@ -91,28 +44,81 @@ V3f nearest_on_segment(const V3f& a, const V3f& b, const V3f& x) {
     return a + along * std::clamp((x - a).dot(along) / along.length2(), 0.0f, 1.0f);
 }
 
-Parameters NearestPatch::nearest_parameters(const PatchGeometry& geometry, const V3f& x) {
+/// Returns the parameters of the point of a convex patch that is nearest to x.
+/// @param x  Point in the plane of the patch.
+Parameters nearest_parameters(const PatchGeometry& geometry, const V3f& x) {
     const std::span<const Parameters> corners = corners_of(geometry.is_triangle());
-    const std::size_t count = corners.size();
     V3f nearest = x;
-    float least2 = std::numeric_limits<float>::max();
-    bool is_inside = true;
-    for (std::size_t c = 0; c < count; ++c) {
-        const V3f a = geometry.point(corners[c]), b = geometry.point(corners[(c + 1) % count]);
-        if (geometry.normal().dot((b - a).cross(x - a)) >= 0) continue;
-        is_inside = false;
+    float least_distance2 = std::numeric_limits<float>::max();
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+        const V3f a = geometry.point(corners[c]), b = geometry.point(corners[(c + 1) % corners.size()]);
+        const bool is_on_inner_side = geometry.normal().dot((b - a).cross(x - a)) >= 0;
+        if (is_on_inner_side) continue;
         const V3f candidate = nearest_on_segment(a, b, x);
-        if ((candidate - x).length2() >= least2) continue;
-        least2 = (candidate - x).length2();
+        const float distance2 = (candidate - x).length2();
+        if (distance2 >= least_distance2) continue;
+        least_distance2 = distance2;
         nearest = candidate;
     }
-    return geometry.parameters_of(is_inside ? x : nearest);
+    return geometry.parameters_of(nearest);
 }
+
+/// Finds the places of texels on the patches of a chart.
+class PlaceFinder {
+  public:
+    /// Refers to its argument.
+    explicit PlaceFinder(const LightmapChart& chart) : patches_(chart.patches) {
+        for (std::uint32_t i = 0; i < patches_.size(); ++i) {
+            const PatchGeometry& geometry = geometries_.emplace_back(geometry_in_chart(patches_[i]));
+            sides_.push_back(texel_sides(patches_[i], chart.spacing()));
+            Imath::Box3f box;
+            for (const Parameters& corner : corners_of(geometry.is_triangle())) box.extendBy(geometry.point(corner));
+            tree_.push_back({box, i});
+        }
+        arrange_box_tree(tree_);
+    }
+
+    /// Returns the place of a texel. If several patches are equally near, it is on the one with the lowest index.
+    /// @param centre      Centre of the texel in the chart [m].
+    /// @param texel_size  Larger side of a texel [m].
+    TexelPlace find(const Imath::V2d& centre, float texel_size) const {
+        const V3f x(static_cast<float>(centre.x), static_cast<float>(centre.y), 0);
+        TexelPlace place;
+        float least_distance2 = std::numeric_limits<float>::max();
+        const auto may_be_nearest = [&](const Imath::Box3f& box) {
+            return (Imath::closestPointInBox(x, box) - x).length2() <= least_distance2;
+        };
+        visit_box_tree(std::span<const Boxed>(tree_), may_be_nearest, [&](std::uint32_t i) {
+            const PatchIndex patch = patches_[i].patch;
+            const Parameters at = nearest_parameters(geometries_[i], x);
+            const float distance2 = (geometries_[i].point(at) - x).length2();
+            const bool precedes = place.patch == none || patch < place.patch;
+            if (distance2 < least_distance2 || (distance2 == least_distance2 && precedes)) {
+                least_distance2 = distance2;
+                place.patch = patch;
+                place.at = at;
+                place.sides = sides_[i];
+            }
+        });
+        constexpr float rounding = 1e-3f;  // tolerance of distances [texels]
+        place.is_inside = least_distance2 <= rounding * rounding * texel_size * texel_size;
+        // Bilinear interpolation reads no texel at a distance of 1 texel, even if rounding makes it seem nearer
+        constexpr float read_distance = 1 - rounding;  // [texels]
+        place.is_evaluated = least_distance2 < read_distance * read_distance * texel_size * texel_size;
+        return place;
+    }
+
+  private:
+    const FlatPatches& patches_;
+    std::vector<PatchGeometry> geometries_;         // one entry per patch, like sides_
+    std::vector<std::array<Parameters, 2>> sides_;  // results of texel_sides()
+    std::vector<Boxed> tree_;
+};
 
 }  // namespace
 
 std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
-    const NearestPatch nearest(chart);
+    const PlaceFinder finder(chart);
     const int columns = chart.columns + 2 * gutter, rows = chart.rows + 2 * gutter;
     const auto texel_size = static_cast<float>(std::max(chart.spacing().x, chart.spacing().y));
     std::vector<TexelPlace> places(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
@@ -121,7 +127,7 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto column = static_cast<int>(i % static_cast<std::size_t>(columns)) - gutter;
             const auto row = static_cast<int>(i / static_cast<std::size_t>(columns)) - gutter;
-            places[i] = nearest.find(Imath::V2d(column, row) * chart.spacing(), texel_size);
+            places[i] = finder.find(Imath::V2d(column, row) * chart.spacing(), texel_size);
         }
     });
     return places;
@@ -130,7 +136,7 @@ std::vector<TexelPlace> places_of(const LightmapChart& chart, int gutter) {
 std::vector<std::size_t> copied_texels(std::span<const TexelPlace> places, std::size_t columns) {
     std::vector<std::size_t> copied(places.size(), no_texel), reached;
     for (std::size_t i = 0; i < places.size(); ++i)
-        if (places[i].is_near) {
+        if (places[i].is_evaluated) {
             copied[i] = i;
             reached.push_back(i);
         }

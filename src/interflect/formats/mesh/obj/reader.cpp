@@ -52,7 +52,7 @@ void ObjReader::read(std::string_view text) {
     while (lines.next()) {
         const Location where{&model_.file, lines.line()};
         try {
-            if (const Words words = without_comment(lines.words()); !words.empty()) read_line(lines, words, where);
+            if (const Words words = words_before_comment(lines.words()); !words.empty()) read_line(lines, words, where);
         } catch (const std::invalid_argument& fault) {
             throw where.error(fault);
         }
@@ -78,7 +78,7 @@ void ObjReader::read_line(const LineReader& line, Words words, const Location& w
     } else if (key == "g") {
         group_ = begin_mesh_named();
     } else if (key == "usemtl") {
-        material_ = materials_.find(begin_mesh_named(), where);
+        material_ = materials_.index_of(begin_mesh_named(), where);
     } else if (key == "mtllib") {
         libraries(line, words, where);
     } else if (key != "s" && key != "vp") {
@@ -102,7 +102,7 @@ void ObjReader::read_ahead() {
     for (LineReader lines = *lines_; lines.next();) {
         const Location where{&model_.file, lines.line()};
         try {
-            if (const Words words = without_comment(lines.words()); !words.empty()) read_vertex_data(words, where);
+            if (const Words words = words_before_comment(lines.words()); !words.empty()) read_vertex_data(words, where);
         } catch (const std::invalid_argument& fault) {
             throw where.error(fault);
         }
@@ -254,9 +254,10 @@ std::uint32_t ObjReader::object() {
 void ObjReader::libraries(const LineReader& line, Words words, const Location& where) {
     const std::filesystem::path folder = model_.file.parent_path();
     std::error_code ignored;
-    if (std::filesystem::exists(folder / line.rest(), ignored)) return materials_.read(folder / line.rest(), where);
-    if (words.size() == 2) return materials_.read(folder / without_comment(line.rest()), where);
-    for (const std::string_view name : words.subspan(1)) materials_.read(folder / name, where);
+    if (std::filesystem::exists(folder / line.rest(), ignored))
+        return materials_.read_library(folder / line.rest(), where);
+    if (words.size() == 2) return materials_.read_library(folder / name_before_comment(line.rest()), where);
+    for (const std::string_view name : words.subspan(1)) materials_.read_library(folder / name, where);
 }
 
 }  // namespace interflect::detail
