@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,7 @@
 #include "interflect/image.h"
 #include "interflect/image/files/pending_image.h"
 #include "interflect/plots.h"
+#include "interflect/prepare.h"
 #include "interflect/preview.h"
 #include "interflect/render.h"
 #include "interflect/scene.h"
@@ -87,16 +89,21 @@ struct RenderArguments {
     }
 };
 
-/// Returns the requested view, else the first view of the scene, else an overview.
-View view_to_draw(const Scene& scene, const RenderArguments& options) {
+/// Returns the requested view, else the first view of the scene, if any.
+std::optional<View> find_given_view(const Scene& scene, const RenderArguments& options) {
     if (options.cut.is_given()) return options.cut.view(scene, options.size.width, options.rows());
     const std::vector<View> views = options.view.views(scene);
     if (!views.empty()) return views.front();
     if (!scene.views.empty()) return scene.views.front();
+    return std::nullopt;
+}
+
+/// Returns an overview and warns about it.
+View make_overview(const Scene& scene, const RayCaster& ray_caster) {
     spdlog::warn(
         "{} names no view, and the command line has none: drawing an overview (--eye and --look-at choose another)",
         scene.name);
-    return overview(scene);
+    return overview(scene, ray_caster);
 }
 
 /// A picture with its metadata.
@@ -328,16 +335,23 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     const bool solved_before = is_solution_file(options.scene.path);
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
     require_no_scene_files(solved.scene, outputs_of(options));
-    const View view = view_to_draw(solved.scene, options);
-    require_picture(view, options.size.width, options.size.height, solved.scene.origin);
+    const std::optional<View> given_view = find_given_view(solved.scene, options);
+    if (given_view) require_picture(*given_view, options.size.width, options.size.height, solved.scene.origin);
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
-    // A plan drawing shows the whole scene equally, so importance has no benefit.
-    const std::vector<View> important = options.cut.is_given() ? std::vector<View>() : std::vector{view};
+    // A plan drawing shows the whole scene equally, so importance has no benefit. An overview replaces the default View
+    // below, since it needs the divided scene, whose division depends on the other settings.
+    const std::vector<View> important =
+        options.cut.is_given() ? std::vector<View>() : std::vector{given_view.value_or(View())};
     SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
     StatsFile stats(options.solver.threads, options.solver.stats);
     const RayCaster ray_caster = make_ray_caster(solved.scene);
+    const View view = given_view ? *given_view : make_overview(solved.scene, ray_caster);
+    if (!given_view) {
+        require_picture(view, options.size.width, options.size.height, solved.scene.origin);
+        solve_options.views.front().view = view;
+    }
     warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
 
     // --time limits the whole command.
@@ -395,8 +409,9 @@ void run_paths(const RenderArguments& options, PendingFile& output) {
     Scene scene = read_scene_or_solution(options.scene, options.dimming).scene;
     require_no_scene_files(scene, outputs_of(options));
     if (!is_solution_file(options.scene.path)) scene = options.mesh.cut(std::move(scene), options.scene.read);
-    const View view = view_to_draw(scene, options);
+    const std::optional<View> given_view = find_given_view(scene, options);
     const RayCaster ray_caster = make_ray_caster(scene);
+    const View view = given_view ? *given_view : make_overview(scene, ray_caster);
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     warn_of_camera_outside(scene, ray_caster, view, aspect);
     const Picture picture = draw_paths(scene, nullptr, ray_caster, view, options);
