@@ -49,19 +49,20 @@ using namespace detail;
 
 namespace {
 
-constexpr int usual_reduction = 4;  // of previews
+constexpr int usual_reduction = 4;  // previews trace light for one in 4 x 4 pixels
+constexpr int preview_samples = 4;  // camera rays per pixel of smooth previews, which need them for edges only
 
 struct RenderArguments {
     SceneOptions scene;
     MeshOptions mesh;
     ViewOptions view;
-    CutOptions cut;
+    CutOptions section;  // floor plan or section
     DimmingOptions dimming;
     SolverOptions solver;
     PathTracerArguments path;
     std::filesystem::path output;
     Size size;               // size of the picture with its legend
-    PictureOptions picture;  // options of the view, see complete()
+    PictureOptions picture;  // options of the renderer, see complete()
     Exposure exposure;
     Tonemap tonemap = Tonemap::srgb;
     float display_luminance = usual_display_luminance;
@@ -75,13 +76,13 @@ struct RenderArguments {
     bool is_in_false_colours() const { return is_quantity(shown) || false_colour.measured; }
     /// Height of the view, above the legend [pixels].
     int rows() const { return size.height - legend_rows; }
-    /// Time left for the command [s]; infinite without --time.
+    /// Time left for the command [s]; infinite without --time, negative after its limit.
     double seconds_left() const { return solver.time() - seconds_of_process(); }
-    /// Derives the options of the view from the other options.
+    /// Derives the options of the renderer from the other options.
     void complete() {
         picture.width = size.width;
         picture.height = rows();
-        has_default_samples = picture.samples == 0;
+        has_default_samples = picture.samples == 0;  // 0: --samples is not given
         picture.samples = require_samples(picture.shading, &DefaultSamples::pixel, picture.samples);
         picture.until = solver.until();
         picture.seed = solver.seed();
@@ -91,7 +92,7 @@ struct RenderArguments {
 
 /// Returns the requested view, else the first view of the scene, if any.
 std::optional<View> find_given_view(const Scene& scene, const RenderArguments& options) {
-    if (options.cut.is_given()) return options.cut.view(scene, options.size.width, options.rows());
+    if (options.section.is_given()) return options.section.view(scene, options.size.width, options.rows());
     const std::vector<View> views = options.view.views(scene);
     if (!views.empty()) return views.front();
     if (!scene.views.empty()) return scene.views.front();
@@ -112,7 +113,7 @@ struct Picture {
     std::string quantity = "radiance [cd/m^2]";
     std::optional<float> exposure;  // [stops]; empty for false colours
     std::int64_t non_finite_pixels = 0;
-    bool is_dark = false;    // whether no light is visible
+    bool is_black = false;   // whether no light is visible
     TracedPicture traced{};  // result of path tracing, from which layers are written
 };
 
@@ -127,8 +128,8 @@ bool is_black(const Image& image) {
 /// Returns the exposure [stops]. The automatic exposure is 0 for operators of absolute luminance, which choose the
 /// brightness themselves.
 float exposure_of(const Image& light, const RenderArguments& options) {
-    const bool automatic = options.exposure.relative && !is_absolute(options.tonemap);
-    return options.exposure.stops + (automatic ? automatic_exposure(light) : 0);
+    const bool is_automatic = options.exposure.relative && !is_absolute(options.tonemap);
+    return options.exposure.stops + (is_automatic ? automatic_exposure(light) : 0);
 }
 
 /// Draws false colours in display formats; other formats contain the values.
@@ -154,7 +155,7 @@ Picture picture_of(const Image& light, std::int64_t non_finite_pixels, const Ren
     Picture picture = options.false_colour.measured ? picture_of_numbers(luminances(light), options)
                                                     : picture_of_light(light, options);
     picture.non_finite_pixels = non_finite_pixels;
-    picture.is_dark = is_black(light);
+    picture.is_black = is_black(light);
     return picture;
 }
 
@@ -172,29 +173,28 @@ void write_preview(const Picture& picture, const View& view, const Scene& scene,
     spdlog::info("{}: picture so far; a better one will replace it", options.output.string());
 }
 
-/// Draws the light in about a second, as a preview of hybrid shading or by smooth shading.
-Rendering draw_roughly(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+/// Draws the light in about a second: by preview() for hybrid shading, else by smooth shading with few samples.
+Rendering draw_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                        const RenderArguments& options, int reduction, const Monitor& monitor) {
     if (options.picture.shading == Shading::hybrid)
         return preview(scene, solution, ray_caster, view, options.picture,
                        {reduction, options.path.denoise.value_or(Denoiser::automatic)}, monitor);
-    constexpr int few_samples = 4;
-    PictureOptions few = options.picture;
-    few.samples = std::min(few.samples, few_samples);
-    few.shading = Shading::smooth;
-    return interflect::render(scene, solution, ray_caster, view, few, monitor);
+    PictureOptions smooth = options.picture;
+    smooth.samples = std::min(smooth.samples, preview_samples);
+    smooth.shading = Shading::smooth;
+    return interflect::render(scene, solution, ray_caster, view, smooth, monitor);
 }
 
 /// Draws the light by tracing paths. @param solution  Null for shading without a solution.
 Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, const View& view,
                    const RenderArguments& options) {
-    std::function<void(const Image&)> write_so_far;
+    std::function<void(const Image&)> write_as_preview;
     if (options.progressive)
-        write_so_far = [&](const Image& so_far) {
+        write_as_preview = [&](const Image& so_far) {
             write_preview(picture_of(so_far, count_non_finite(so_far), options), view, scene, options);
         };
     TracedPicture traced =
-        run_path_tracer(scene, solution, ray_caster, view, options.picture, options.path, write_so_far);
+        run_path_tracer(scene, solution, ray_caster, view, options.picture, options.path, write_as_preview);
     Picture picture = picture_of(traced.image, traced.non_finite_pixels, options);
     picture.traced = std::move(traced);
     return picture;
@@ -261,8 +261,8 @@ bool is_replaceable(const std::filesystem::path& output) {
     return !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
 }
 
-/// Whether rough pictures precede the last one. Without --progressive, they are omitted under a time limit, in .exr
-/// and .hdr, and for small pictures.
+/// Whether previews precede the last picture. Without --progressive, they are omitted under a time limit, with --show,
+/// in .exr and .hdr, for small pictures, and for pipes and devices.
 bool takes_previews(const RenderArguments& options) {
     constexpr std::size_t fewest_pixels = 1 << 16;  // smaller pictures take less than a second
     if (options.progressive) return true;
@@ -270,21 +270,20 @@ bool takes_previews(const RenderArguments& options) {
            options.size.pixels() >= fewest_pixels && is_replaceable(options.output);
 }
 
-/// Writes a rough picture of the light so far.
-void write_light_so_far(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                        const RenderArguments& options, int reduction) {
-    const Rendering rough = draw_roughly(scene, solution, ray_caster, view, options, reduction, {{}, &stop_flag()});
-    if (!rough.interrupted)
-        write_preview(picture_of(rough.image, rough.non_finite_pixels, options), view, scene, options);
+/// Draws and writes a preview of the light so far.
+void write_preview_of(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                      const RenderArguments& options, int reduction) {
+    const Rendering drawn = draw_preview(scene, solution, ray_caster, view, options, reduction, {{}, &stop_flag()});
+    if (!drawn.interrupted)
+        write_preview(picture_of(drawn.image, drawn.non_finite_pixels, options), view, scene, options);
 }
 
 /// Predicts the time of drawing. Chooses a preview, or smooth shading with few samples, if the time is too short.
-DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                         RenderArguments& options) {
-    constexpr int few_samples = 4;
+DrawingTime schedule_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
+                             const View& view, RenderArguments& options) {
     if (traces_paths(options.picture.shading)) {
-        const double limit = options.path.needs_paths() ? std::numeric_limits<double>::infinity()
-                                                        : largest_drawing_share * options.seconds_left();
+        const double limit = options.path.has_path_outputs() ? std::numeric_limits<double>::infinity()
+                                                             : largest_drawing_share * options.seconds_left();
         const DrawingTime paths =
             predict_time_of_paths(scene, solution, ray_caster, view, options.picture, options.path.denoise, limit);
         const double left = options.seconds_left();
@@ -295,7 +294,7 @@ DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const Ray
                 "--time is too short for all pixels: light is traced for one in {} x {}, so small shadows are "
                 "blurred; a smaller --size takes less time",
                 paths.reduction, paths.reduction);
-        if (is_in_time || options.picture.shading == Shading::hybrid || options.path.needs_paths()) {
+        if (is_in_time || options.picture.shading == Shading::hybrid || options.path.has_path_outputs()) {
             if (!is_in_time)
                 spdlog::warn("drawing takes about {}, but --time leaves {}: the picture will be late",
                              duration(paths.total()), duration(std::max(0.0, left)));
@@ -306,27 +305,27 @@ DrawingTime plan_drawing(const Scene& scene, const Solution& solution, const Ray
             "smooth; a smaller --size takes less time",
             duration(paths.total()), duration(std::max(0.0, left)));
         options.picture.shading = Shading::smooth;
-        options.picture.samples = std::min(options.picture.samples, few_samples);
+        options.picture.samples = std::min(options.picture.samples, preview_samples);
     }
     return predict_time_of_elements(scene, solution, ray_caster, view, options.picture);
 }
 
-/// Draws the light of a solution. If a signal stops path tracing before every pixel has light, draws it roughly.
+/// Draws the light of a solution. If a signal stops path tracing before every pixel has light, draws a preview.
 Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                       const RenderArguments& options) {
     if (is_quantity(options.shown)) return draw_quantity(solved, ray_caster, view, options);
     if (!traces_paths(options.picture.shading)) return draw_light(solved, ray_caster, view, options);
-    // A signal that ended the solver would end gathering before its first ray.
-    if (options.path.needs_paths() || (options.reduction == 1 && !is_stop_requested())) {
+    // After a signal, path tracing would end before its first ray, so only its own outputs need it.
+    if (options.path.has_path_outputs() || (options.reduction == 1 && !is_stop_requested())) {
         Picture picture = draw_paths(solved.scene, &solved.solution, ray_caster, view, options);
-        if (options.path.needs_paths() || has_every_pixel(picture.traced)) return picture;
+        if (options.path.has_path_outputs() || has_every_pixel(picture.traced)) return picture;
     }
     if (options.reduction == 1) spdlog::warn("stopped before each pixel had enough light: the picture is a rough one");
     DrawingProgress progress;
-    const Rendering rough =
-        draw_roughly(solved.scene, solved.solution, ray_caster, view, options,
+    const Rendering drawn =
+        draw_preview(solved.scene, solved.solution, ray_caster, view, options,
                      options.reduction > 1 ? options.reduction : usual_reduction, progress.monitor());
-    return picture_of(rough.image, rough.non_finite_pixels, options);
+    return picture_of(drawn.image, drawn.non_finite_pixels, options);
 }
 
 /// Draws the light of a solution. If the input is a scene, solves it first.
@@ -338,10 +337,10 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     const std::optional<View> given_view = find_given_view(solved.scene, options);
     if (given_view) require_picture(*given_view, options.size.width, options.size.height, solved.scene.origin);
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
-    // A plan drawing shows the whole scene equally, so importance has no benefit. An overview replaces the default View
-    // below, since it needs the divided scene, whose division depends on the other settings.
+    // A floor plan or section shows the whole scene equally, so importance has no benefit. An overview replaces the
+    // default View below, since it needs the divided scene, whose division depends on the other settings.
     const std::vector<View> important =
-        options.cut.is_given() ? std::vector<View>() : std::vector{given_view.value_or(View())};
+        options.section.is_given() ? std::vector<View>() : std::vector{given_view.value_or(View())};
     SolveOptions solve_options = options.solver.resolved(important, aspect, options.size.height);
     if (!solved_before)
         solved.scene = options.mesh.divide(std::move(solved.scene), options.scene.read, solve_options.method.refines);
@@ -355,51 +354,53 @@ void run_solution(RenderArguments& options, PendingFile& output) {
     warn_of_camera_outside(solved.scene, ray_caster, view, aspect);
 
     // --time limits the whole command.
-    constexpr double shortest_time = 1e-3;  // [s]
+    constexpr double shortest_time = 1e-3;  // [s]; replaces times that are 0 or negative
     const bool is_limited = !solved_before && std::isfinite(options.solver.time());
+    // The first preview takes about a second itself; with --progressive, a viewer waits for it.
     double seconds_to_preview = options.progressive ? 0.25 : 1;
     if (is_limited) {
         const double left = std::max(shortest_time, options.seconds_left());
-        seconds_to_preview = std::min(seconds_to_preview, left / 10);
+        seconds_to_preview = std::min(seconds_to_preview, left / 10);  // when drawing is scheduled
         solve_options.limits.time = left / 3;  // provisional, until the drawing time is predicted
     }
 
-    std::optional<DrawingTime> planned;
+    std::optional<DrawingTime> scheduled;
     // Called with the first light of the run. Writes a preview; with --time, predicts the drawing time and returns
     // the time limit that remains for solving.
-    const auto preview_and_plan_time = [&](const Solution& so_far) -> std::optional<Limits> {
-        if (takes_previews(options))
-            write_light_so_far(solved.scene, so_far, ray_caster, view, options, usual_reduction);
+    const auto preview_and_schedule = [&](const Solution& so_far) -> std::optional<Limits> {
+        if (takes_previews(options)) write_preview_of(solved.scene, so_far, ray_caster, view, options, usual_reduction);
         if (!is_limited) return std::nullopt;
-        planned = plan_drawing(solved.scene, so_far, ray_caster, view, options);
+        scheduled = schedule_drawing(solved.scene, so_far, ray_caster, view, options);
         const double left = options.seconds_left(),
                      spent = so_far.iterations.empty() ? 0 : so_far.iterations.back().seconds;
         Limits limits = solve_options.limits;
+        // Only path tracing of all pixels uses the time that is left.
         const bool is_refined = traces_paths(options.picture.shading) && options.reduction == 1;
-        limits.time = spent + std::max(shortest_time, left - reserved_for(*planned, is_refined, left));
+        limits.time = spent + std::max(shortest_time, left - reserved_for(*scheduled, is_refined, left));
         return limits;
     };
     if (!solved_before)
         solved.solution =
             run_solve(solved.scene, ray_caster, solve_options, options.solver.memory, {},
-                      {.after = seconds_to_preview, .repeats = options.progressive, .use = preview_and_plan_time});
+                      {.after = seconds_to_preview, .repeats = options.progressive, .use = preview_and_schedule});
 
-    // Write a better preview, or predict the drawing time of a finished solution.
+    // Write a preview with more pixels, or the first preview of a run that ended before it or of a solution file.
     if (options.progressive && options.picture.shading == Shading::hybrid && !is_stop_requested())
-        write_light_so_far(solved.scene, solved.solution, ray_caster, view, options, usual_reduction / 2);
-    else if (traces_paths(options.picture.shading) && !planned && !is_stop_requested())
-        preview_and_plan_time(solved.solution);
+        write_preview_of(solved.scene, solved.solution, ray_caster, view, options, usual_reduction / 2);
+    else if (traces_paths(options.picture.shading) && !scheduled && !is_stop_requested())
+        preview_and_schedule(solved.solution);
 
     // Draw within the remaining time.
-    if (is_limited && planned && options.reduction == 1) {
+    if (is_limited && scheduled && options.reduction == 1) {
         PictureOptions& picture = options.picture;
-        picture.time = std::max(shortest_time, options.seconds_left() - planned->finishing);
+        picture.time = std::max(shortest_time, options.seconds_left() - scheduled->finishing);
+        // Without --samples, time alone limits the number.
         if (!options.has_default_samples) picture.max_samples = picture.samples;
         if (picture.shading == Shading::hybrid)
-            picture.samples = std::min(picture.samples, planned->samples_within(picture.time));
+            picture.samples = std::min(picture.samples, scheduled->samples_within(picture.time));
     }
     const Picture picture = draw_solution(solved, ray_caster, view, options);
-    if (picture.is_dark) warn_of_darkness(solved.scene, ray_caster, view, aspect);
+    if (picture.is_black) warn_of_darkness(solved.scene, ray_caster, view, aspect);
     write_picture(output, picture, view, solved.scene, solved.solution.options.seed, options);
     if (!solved_before) stats.write(solved.scene, solved.solution);
 }
@@ -415,7 +416,7 @@ void run_paths(const RenderArguments& options, PendingFile& output) {
     const float aspect = static_cast<float>(options.size.width) / static_cast<float>(options.size.height);
     warn_of_camera_outside(scene, ray_caster, view, aspect);
     const Picture picture = draw_paths(scene, nullptr, ray_caster, view, options);
-    if (picture.is_dark) warn_of_darkness(scene, ray_caster, view, aspect);
+    if (picture.is_black) warn_of_darkness(scene, ray_caster, view, aspect);
     write_picture(output, picture, view, scene, options.solver.seed(), options);
 }
 
@@ -427,7 +428,7 @@ void require_memory_for_elements(Size size) {
                         "a smaller --size needs less");
 }
 
-/// Warns about options without effect. @throws UsageError for a display luminance that no operator uses.
+/// Warns about options of brightness without effect. @throws UsageError for --display-luminance without effect.
 void check_tone_options(const RenderArguments& options, const CLI::App& command) {
     if (command.get_option("--display-luminance")->count() > 0 && !is_absolute(options.tonemap))
         throw UsageError("--display-luminance has no effect: it is for --tonemap ward, tumblin and ferwerda");
@@ -444,7 +445,7 @@ void check_tone_options(const RenderArguments& options, const CLI::App& command)
 void check_false_colours(const RenderArguments& options) {
     options.false_colour.check();
     if (options.false_colour.measured && options.shown != Shown::light)
-        throw UsageError("it measures the light, which --show does not draw");
+        throw UsageError("--false-colour", "only pictures of light are measured, and --show draws something else");
     const bool is_drawn =
         options.false_colour.scale || options.false_colour.logarithmic || options.false_colour.isolines;
     if (is_drawn && !is_display_format(options))
@@ -466,15 +467,23 @@ void check_progress(const RenderArguments& options) {
 
 /// Checks all options before it traces the first ray, then draws the picture.
 void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
-    // Refuse options that the output or the shading does not use.
     const ThreadLimit threads(options.solver.threads);
+    // Refuse options that the output or the shading does not use.
     check_option("--output", [&] { return require_image_format(options.output); });
     Shading& shading = options.picture.shading;
     const bool uses_solution = needs_solution(shading);
-    if (options.shown != Shown::light && uses_solution && traces_paths(shading))
-        shading = Shading::smooth;  // quantities of elements are drawn without tracing paths
+    const bool shows_elements = options.shown != Shown::light && uses_solution;
+    if (shows_elements && traces_paths(shading)) {
+        if (command.get_option("--shading")->count() > 0)
+            throw UsageError("--shading", fmt::format("--show draws the elements without tracing paths: expected flat "
+                                                      "or smooth, found {}",
+                                                      label(shading)));
+        shading = Shading::smooth;
+    }
     if (!uses_solution)
         refuse_solver_options(command);
+    else if (shows_elements)
+        refuse_path_options(command, "--show draws the elements without tracing paths");
     else if (!traces_paths(shading))
         refuse_path_options(command);
     if (shading != Shading::instant && command.get_option("--light-walks")->count() > 0)
@@ -494,12 +503,13 @@ void run(RenderArguments& options, const CLI::App& command, int& exit_code) {
     options.view.check();
     if (options.view.count() > 1) throw UsageError("--view", "a picture has one view, but several were given");
     options.dimming.require_solution(options.scene.path);
+    // By default, pictures for display are filtered.
     if (uses_solution && command.get_option("--denoise")->count() == 0 && is_display_format(options))
         options.path.denoise = Denoiser::automatic;
     check_tone_options(options, command);
     check_false_colours(options);
     check_progress(options);
-    options.cut.check();
+    options.section.check();
     options.path.check();
     options.legend_rows = legend_rows(options);
     options.complete();
@@ -554,7 +564,7 @@ void add_render(CLI::App& app, int& exit_code) {
         ->required()
         ->type_name("FILE");
     options->view.add_to(command);
-    options->cut.add_to(command, {"--view", "--view-file", "--eye"});
+    options->section.add_to(command, {"--view", "--view-file", "--eye"});
     add_parsed(command, "--size", options->size, parse_size, "Picture size in pixels")
         ->type_name("WxH")
         ->default_str("1280x720");

@@ -147,7 +147,7 @@ TracedPicture run_path_tracer(const Scene& scene, const Solution* solution, cons
         static_cast<Rendering&>(traced) = solution ? render(scene, *solution, ray_caster, view, options, monitor)
                                                    : render(scene, ray_caster, view, options, monitor);
     });
-    if (solution && !has_every_pixel(traced) && !arguments.needs_paths()) return traced;
+    if (solution && !has_every_pixel(traced) && !arguments.has_path_outputs()) return traced;
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
         spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());
     if (arguments.denoise && traced.paths > 0) {

@@ -30,7 +30,7 @@ struct PathTracerArguments {
     /// that or without --until.
     static void check_samples(const CLI::App& app, int samples);
     /// Whether the output contains results of path tracing other than the picture.
-    bool needs_paths() const { return layers || !error_image.empty(); }
+    bool has_path_outputs() const { return layers || !error_image.empty(); }
 };
 
 /// Whether each pixel has two batches of paths.

@@ -50,9 +50,9 @@ void refuse_solver_options(const CLI::App& command) {
     refuse_options(command, options_of_solving({"--show"}), "--shading path and instant make no solution", of_paths);
 }
 
-void refuse_path_options(const CLI::App& command) {
+void refuse_path_options(const CLI::App& command, const std::string& reason) {
     constexpr std::array<std::string_view, 1> of_paths = {path_group};
-    refuse_options(command, of_paths, "only --shading hybrid, gather, path and instant take it");
+    refuse_options(command, of_paths, reason);
 }
 
 void refuse_scene_options(const CLI::App& command, const std::filesystem::path& scene, bool traces_paths) {

@@ -20,7 +20,8 @@ void refuse_options(const CLI::App& command, std::span<const std::string_view> r
 /// Refuses options of solving and of solutions, for path tracing.
 void refuse_solver_options(const CLI::App& command);
 /// Refuses options of path tracing.
-void refuse_path_options(const CLI::App& command);
+void refuse_path_options(const CLI::App& command,
+                         const std::string& reason = "only --shading hybrid, gather, path and instant take it");
 /// Refuses options of reading, dividing and solving a scene, if `scene` is a solution.
 /// @param traces_paths  Accepts --seed and --until, which path tracing uses.
 void refuse_scene_options(const CLI::App& command, const std::filesystem::path& scene, bool traces_paths);

@@ -119,6 +119,18 @@ class Shown(RenderTest):
         self.assertIn(".png", result.stderr)
         self.assertEqual(self.files(), ["room.h5", "room.mgf", "room.views.json"])
 
+    def test_elements_have_flat_or_smooth_shading(self):
+        def said(*options):
+            render = ("render", "room.mgf", "-o", "out.png", *SMALL)
+            return self.interflect(*render, *options, exit_code=WRONG_USAGE).stderr
+
+        for shading in ("hybrid", "gather"):
+            for more in ((), ("--denoise", "own")):
+                text = said("--shading", shading, "--show", "mesh", *more)
+                for word in ("--shading", "--show", shading):
+                    self.assertIn(word, text, (shading, more))
+        self.assertIn("--show draws", said("--show", "mesh", "--denoise", "own"))
+
 
 class FalseColours(RenderTest):
     def test_exr_has_the_numbers(self):
@@ -159,7 +171,8 @@ class FalseColours(RenderTest):
         for options in (("--scale", "1..2"), ("--logarithmic",), ("--isolines", "auto")):
             self.assertIn("--false-colour", said(*options))
         lux = ("--false-colour", "lux")
-        self.assertIn("--show", said(*lux, "--show", "mesh"))
+        for word in ("--false-colour", "--show"):
+            self.assertIn(word, said(*lux, "--show", "mesh"))
         self.assertIn("logarithmic", said(*lux, "--scale", "0..5", "--logarithmic"))
         self.assertIn("--isolines", said(*lux, "--isolines", "5", exit_code=0, name="out.exr"))
         self.assertIn("--tonemap has no effect", said(*lux, "--tonemap", "agx", exit_code=0))

@@ -116,10 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, RoomLightmap,
                          testing::Values(V3f(3, 4, 2.5f), V3f(6, 8, 2.7f), V3f(12, 5, 3), V3f(2, 2, 2)),
                          testing_support::printed_name);
 
-// A lightmap with texels smaller than the elements matches smooth shading, at borders too. The difference is that of
-// bilinear interpolation between texels: about a tenth of the change over an element. Fails with charts that are
-// shifted by half a texel, mirrored or stretched.
-/// Packing them takes longer than a fast test may.
+// Packing the charts takes longer than a fast test may.
 TEST(Lightmap, TooFineOnesAreRefusedBeforeTheyArePacked) {
     Scene scene;
     add_material(scene, Rgb(0.5f), Rgb(1));
@@ -131,6 +128,9 @@ TEST(Lightmap, TooFineOnesAreRefusedBeforeTheyArePacked) {
     EXPECT_EQ(testing_support::refused_setting([&] { make_lightmap(scene, solution, options); }), "texels_per_metre");
 }
 
+// A lightmap with texels smaller than the elements matches smooth shading, at borders too. The difference is the
+// error of bilinear interpolation between texels: about a tenth of the change over an element. Fails with charts that
+// are shifted by half a texel, mirrored or stretched.
 TEST(Lightmap, IsWhatSmoothShadingHas) {
     const Scene scene = turned_floor();
     const Solution solution = solution_of(

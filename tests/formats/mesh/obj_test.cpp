@@ -100,6 +100,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Finish{"Diffuse", "Ka 1 1 1\nKd .2 .4 .6\nNs 10\nillum 2\n", Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
                     Finish{"Grey", "Kd .3\n", Rgb(.3f), Rgb(0), Rgb(0)},
                     Finish{"Nothing", "", Rgb(.5f), Rgb(0), Rgb(0)},
+                    Finish{"Comments", "Kd .2 .4 .6 # blue\nKe 0 # off\nd .5 #half\n", Rgb(.1f, .2f, .3f), Rgb(0),
+                           Rgb(.5f)},
                     Finish{"TooWhite", "Kd 1 1 1\n", Rgb(.99f), Rgb(0), Rgb(0)},
                     Finish{"Emission", "Kd 0 0 0\nKe 10 20 30\n", Rgb(0), Rgb(10, 20, 30) * pi_f, Rgb(0)},
                     Finish{"Dissolve", "Kd .4 .4 .4\nd .25\n", Rgb(.1f), Rgb(0), Rgb(.75f)},
@@ -107,8 +109,6 @@ INSTANTIATE_TEST_SUITE_P(
                     Finish{"DissolveBeforeTransparency", "Kd .4 .4 .4\nTr 1\nd 1\n", Rgb(.4f), Rgb(0), Rgb(0)}),
     testing::PrintToStringParamName());
 
-/// A triangle 2 mm long and 3 um wide, six float steps at its position, beside a floor of 8 x 8 m. It is negligible,
-/// not a sign of too coarse coordinates. Seen to be refused when its length counts.
 TEST(ObjNames, MayBeFollowedByComments) {
     const TemporaryFolder folder;
     folder.write("a.mtl", "newmtl Material #25\nKd .25 .25 .25\nnewmtl red\nKd .75 0 0\n");
@@ -120,6 +120,23 @@ TEST(ObjNames, MayBeFollowedByComments) {
     for (const Warnings::Entry& warning : scene.warnings.entries()) EXPECT_NE(warning.kind, "missing-material");
 }
 
+TEST(ObjNames, MayBeFollowedByCommentsWhereTheyAreDefined) {
+    const TemporaryFolder folder;
+    folder.write("a.mtl", "newmtl Material #25\nKd .25\nnewmtl wood # oak\nKd .5\nnewmtl Material #26\nKd .75\n");
+    const Scene scene = load_scene(folder.write(
+        "room.obj", "mtllib a.mtl\n" + obj_square +
+                        "usemtl wood\nf 1 2 3\nusemtl wood # floor\nf 1 3 4\nusemtl Material #25\nf 1 2 4\n"));
+    ASSERT_EQ(scene.patches.size(), 4u) << "two triangles of one material are a square";
+    EXPECT_EQ(scene.materials[scene.patches[0].material].name, "wood");
+    EXPECT_EQ(scene.materials[scene.patches[2].material].name, "Material #25");
+    for (const Warnings::Entry& warning : scene.warnings.entries()) EXPECT_NE(warning.kind, "missing-material");
+    const Scene other =
+        load_scene(folder.write("other.obj", "mtllib a.mtl\n" + obj_square + "usemtl Material\nf 1 2 3\n"));
+    EXPECT_EQ(other.warnings.entries().at(0).kind, "missing-material") << "two materials have this name";
+}
+
+/// A triangle 2 mm long and 3 um wide, six float steps at its position, beside a floor of 8 x 8 m. It is negligible,
+/// not a sign of too coarse coordinates. Seen to be refused when its length counts.
 TEST(Obj, SliversThatRoundingFlattensAreLeftOut) {
     const Scene scene = parse_obj(
         "v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 7.1 7.3 2\nv 7.102 7.3 2\nv 7.101 7.300003 2\nf 1 2 3 4\nf 5 6 7\n");
@@ -140,6 +157,62 @@ TEST(Obj, TextureMultipliesTheReflectance) {
     EXPECT_FLOAT_EQ(wood.reflectance.x, 0.99f);
     EXPECT_FLOAT_EQ(wood.reflectance.z, 0.5f);
     EXPECT_EQ(scene.texture_coordinates[scene.patches[0].vertices[2]], V2f(.5f, 1));
+}
+
+const std::string textured_face = "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl wood\nf 1/1 2/2 3/3 4/4\n";
+
+/// Returns a scene of one face with the material "wood", which has these lines.
+Scene scene_of_wood(const TemporaryFolder& folder, const std::string& lines) {
+    folder.write("a.mtl", "newmtl wood\n" + lines);
+    return load_scene(folder.write("room.obj", "mtllib a.mtl\n" + obj_square + textured_face));
+}
+
+std::int64_t warning_count(const Scene& scene, const std::string& kind) {
+    std::int64_t count = 0;
+    for (const Warnings::Entry& warning : scene.warnings.entries())
+        if (warning.kind == kind) count += warning.count;
+    return count;
+}
+
+TEST(Obj, NamesOfTexturesMayBeFollowedByComments) {
+    const TemporaryFolder folder;
+    for (const std::string name : {"wood.png", "wood#2.png", "wood #3.png"})
+        write_texture(folder.path() / name, {"", 1, 1, {Rgb(1)}});
+    for (const std::string words : {"wood.png # oak", "wood.png\t#oak", "-s 2 2 wood#2.png # oak", "wood #3.png"}) {
+        const Scene scene = scene_of_wood(folder, "Kd .5\nmap_Kd " + words + "\n");
+        EXPECT_NE(scene.materials[scene.patches[0].material].reflectance_texture, none) << words;
+        EXPECT_EQ(warning_count(scene, "missing-texture"), 0) << words;
+    }
+}
+
+TEST(Obj, TexturesAboveOneLimitTheReflectanceWithAWarning) {
+    const TemporaryFolder folder;
+    write_texture(folder.path() / "bright.exr", {"", 1, 1, {Rgb(2)}});
+    write_texture(folder.path() / "white.png", {"", 1, 1, {Rgb(1)}});
+    const Scene bright = scene_of_wood(folder, "Kd .8\nmap_Kd bright.exr\n");
+    EXPECT_FLOAT_EQ(bright.materials[bright.patches[0].material].reflectance.x, 0.495f);
+    EXPECT_EQ(warning_count(bright, "reflectance-clamped"), 1);
+    const std::string mask = "map_d white.png\n";
+    EXPECT_EQ(warning_count(scene_of_wood(folder, "Kd .8\nmap_Kd bright.exr\n" + mask), "reflectance-clamped"), 1);
+    EXPECT_EQ(warning_count(scene_of_wood(folder, "Kd .8\nmap_Kd white.png\n"), "reflectance-clamped"), 0);
+    EXPECT_EQ(warning_count(scene_of_wood(folder, "Kd .8\nmap_Kd white.png\n" + mask), "reflectance-clamped"), 0);
+}
+
+TEST(Obj, LightThatIsLeftOutGivesAWarning) {
+    const TemporaryFolder folder;
+    const auto count = [&](const std::string& lines, const std::string& kind) {
+        return warning_count(scene_of_wood(folder, lines), kind);
+    };
+    EXPECT_EQ(count("Ke 1 1 1\nmap_Ke lamp.png\n", "emission-texture"), 1);
+    EXPECT_EQ(count("Ke 1 1 1\n", "emission-texture"), 0);
+    EXPECT_EQ(count("Ks .5 .5 .5\nmap_Ks gloss.png\n", "specular-reflection"), 1);
+    EXPECT_EQ(count("map_Ks gloss.png\n", "specular-reflection"), 1);
+    EXPECT_EQ(count("Ks 0 0 0\n", "specular-reflection"), 0);
+    EXPECT_EQ(count("map_Tr holes.png\n", "transmission-texture"), 1);
+    for (const std::string filter : {"Tf .9 .9 .9\n", "Tf 0 1 0\n", "Tf spectral glass.rfl\n"})
+        EXPECT_EQ(count(filter, "transmission-filter"), 1) << filter;
+    for (const std::string filter : {"Tf 1 1 1\n", "Tf 0 0 0\n"})
+        EXPECT_EQ(count(filter, "transmission-filter"), 0) << filter;
 }
 
 /// The alpha of a mask, or its greys without alpha, as stored: not decoded from sRGB.

@@ -1,6 +1,6 @@
-// Tests of every method in the table that traces light to its end. The mean over many seeds must be the exact solution,
-// escaped power is counted, and the error decreases with the rays and is estimated. A new row of the table is tested
-// automatically.
+// Tests of the methods of variants_of_other_methods(): iwdrs, random walks, photon mesh, global lines and progressive
+// refinement. The mean over many seeds must be the exact solution, escaped power is counted, and the error decreases
+// with the rays and is estimated. A new stochastic row of the table is tested automatically.
 //
 // Each test that compares samples with a true value fails for correct code with probability `false_alarm`, once and for
 // all, because the seeds are fixed.

@@ -111,8 +111,8 @@ TEST_P(DenseSolution, IsTheMeanInAnOpenBoxAndWhatEscapesIsCounted) {
     }
 }
 
-// Every method and variant on a mesh that is divided once and then fixed: payloads differ, and receivers are found from
-// the root. The leaves are converted to a scene, whose dense solution is exact.
+// Variants of passes and of kept rays on a mesh that is divided once and then fixed: payloads differ, and receivers are
+// found from the root. The leaves are converted to a scene, whose dense solution is exact.
 class DenseSolutionOfMethod : public testing::TestWithParam<Variant> {};
 INSTANTIATE_TEST_SUITE_P(All, DenseSolutionOfMethod, testing::ValuesIn(stochastic_variants()),
                          [](const auto& test) { return test.param.name; });

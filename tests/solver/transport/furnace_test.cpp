@@ -151,7 +151,7 @@ TEST(Furnace, RadiosityOfBlackWallsIsTheirExitanceExactly) {
         EXPECT_EQ(b, Rgb(static_cast<float>(exitance)));
 }
 
-// The furnace on a deep mesh imposed on every method: six walls, each with a final grid of 8 x 8 leaves.
+// The furnace for all stochastic_variants(): six walls, which hierarchical methods divide into 8 x 8 leaves each.
 class DeepFurnace : public testing::TestWithParam<Variant> {};
 INSTANTIATE_TEST_SUITE_P(All, DeepFurnace, testing::ValuesIn(stochastic_variants()),
                          [](const auto& test) { return test.param.name; });

@@ -16,10 +16,10 @@ struct Variant {
 };
 std::ostream& operator<<(std::ostream& out, const Variant& variant);
 
-/// Returns wdrs and hwdrs, which keep every ray.
+/// Returns wdrs, hwdrs and ihwdrs.
 std::vector<Variant> variants_that_keep_every_ray();
-/// Returns every method that averages iterations, with all variants. Statements about the mean over many seeds apply to
-/// each.
+/// Returns srr, isrr, hsrr and ihsrr, with the variants of the paper. Statements about the mean over many seeds apply
+/// to each.
 std::vector<Variant> stochastic_variants();
 /// Returns the stochastic methods of neither kind, without options. Each traces light to its end.
 std::vector<Variant> variants_of_other_methods();

@@ -13,19 +13,21 @@ V2f Lightmap::coordinate(PatchIndex patch, Parameters at) const {
 }
 
 Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options) {
-    const LightmapOptions& chosen = *options.lightmap;
-    for (const auto& [pattern, density] : chosen.densities)
+    const LightmapOptions& lightmap_options = *options.lightmap;
+    for (const auto& [pattern, density] : lightmap_options.densities)
         if (density == 0)
             throw InputError(
-                fmt::format("lightmap: the density of '{}' is 0: only lightmaps in the scene's own glTF file "
-                            "leave surfaces out, and this file is written anew",
+                fmt::format("lightmap: the density of '{}' is 0, which leaves surfaces out: this needs the "
+                            "scene's own glTF file",
                             pattern));
     Lightmap lightmap;
-    lightmap.charts = make_charts(scene, shown_patches(scene, solution), chosen, options.warnings);
+    lightmap.charts = make_charts(scene, shown_patches(scene, solution), lightmap_options, options.warnings);
     const PackCharts pack = [&](std::vector<LightmapChart>& charts) {
-        return pack_charts(charts, chosen.gutter, chosen.max_size);
+        return pack_charts(charts, lightmap_options.gutter, lightmap_options.max_size);
     };
+    // The charts are on patches of the solved scene already, so texels need no move.
     const MoveTexels stay = [](std::size_t, std::span<TexelPlace>) {};
+    // Assign the images, which are the base of Lightmap.
     static_cast<BakedImages&>(lightmap) = bake_charts(lightmap.charts, pack, stay, scene, solution, options);
     lightmap.chart_of_patch.assign(scene.patches.size(), none);
     lightmap.index_in_chart.assign(scene.patches.size(), none);

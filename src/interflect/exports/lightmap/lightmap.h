@@ -15,6 +15,7 @@ struct Lightmap : BakedImages {
 
     /// Returns the coordinate of a point in its image; (0, 0) is the upper left corner.
     V2f coordinate(PatchIndex patch, Parameters at) const;
+    /// Returns the index of the patch's image. @param patch  Must not be hidden, as in coordinate().
     int page(PatchIndex patch) const { return charts[chart_of_patch[patch]].page; }
 };
 

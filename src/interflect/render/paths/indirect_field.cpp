@@ -29,15 +29,16 @@ constexpr std::uint32_t record_paths_per_place = 2;
 /// deviation of a group and E the irradiance at the record, at least min_share_of_mean times the mean E. This number
 /// minimises the squared error of the picture per ray (Neyman allocation), because a record affects all pixels in its
 /// reach. Bakes use the geometric mean of E, so that a sunlit ground does not hide the noise of rooms, and limit the
-/// error of each record to max_baked_error.
+/// error of each record to baked_error().
 ///
 /// groups_per_deviation is between 8 and 16, which has 0.64 to 0.82 of the squared error in blocks of 9 pixels for 1.01
 /// to 1.29 times the processor time (four scenes, 3 M rays); 4 has 1.2 to 1.5 times that of 8.
 constexpr float groups_per_deviation = 12, min_share_of_mean = 0.25f;
 /// Pictures with fewer samples than this gather fewer groups, too, to balance the noise of pixels and of records.
 constexpr float full_effort_samples = 8;
-/// Standard error of a record relative to E, unless it needs more than max_baked_groups. With 10%, bakes of two rooms
-/// take 0.63 and 0.97 of the time, but walls that only lamps light are visibly blotchy.
+/// Standard error of a record of a bake, relative to E, for a reach of at least min_spacings; baked_error() is larger
+/// for a shorter reach. A record gathers at most max_baked_groups. With 10%, bakes of two rooms take 0.63 and 0.97 of
+/// the time, but walls that only lamps light are visibly blotchy.
 constexpr float max_baked_error = 0.05f;
 constexpr std::size_t max_baked_groups = 256;
 /// Reach of a record, relative to the harmonic mean length of its rays, and its limits in spacings of the points. With

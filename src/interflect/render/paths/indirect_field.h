@@ -19,7 +19,8 @@ namespace interflect::detail {
 
 /// Indirect irradiance, interpolated between sparse records (irradiance caching, Ward et al. 1988), which average the
 /// noise of a solution. The reach of a record is a fixed fraction of the harmonic mean length of its rays that hit a
-/// surface, and ends at contacts between surfaces. Interpolated values are local linear fits. Immutable, thread-safe.
+/// surface, but at least least_reach(), which is smaller in bakes, and at most 100 spacings of the points. It ends at
+/// contacts between surfaces. Interpolated values are local linear fits. Immutable, thread-safe.
 ///
 /// Values are biased by interpolation. Each record is compared with the fit of its neighbours. If they differ by more
 /// than a tenth of all irradiance plus their noise, the reach of both is halved. The remaining difference is part of

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 #include <numbers>
 
@@ -19,11 +20,12 @@ constexpr float pi = std::numbers::pi_v<float>;
 /// In hybrid shading, one in four paths also samples a direction at its first point, because close to a light source
 /// sampled directions have less variance than shadow rays.
 constexpr std::uint32_t paths_per_direction = 4;
+constexpr std::uint64_t offset_stream = 2;  // argument of mix() for the choice of these paths
 /// Paths of a smaller throughput are subject to Russian roulette. Lower thresholds reduce variance but lengthen paths;
 /// values from 0.25 to 1 are equally efficient.
 constexpr float roulette_threshold = 0.5f;
 
-/// Returns a point of the gauge, lifted off its patch.
+/// Returns a point of the gauge, lifted off its patch and moved along the normal by Gauge::offset.
 V3f start_on(const TracedScene& s, const Gauge& gauge, const V3f& normal, float u, float v) {
     if (gauge.patch == none) return gauge.position + normal * gauge.offset;
     return s.lifted(gauge.patch, gauge.point_on(s.geometry[gauge.patch], u, v)) + normal * gauge.offset;
@@ -51,7 +53,7 @@ void PathIntegrator::trace(std::span<SampleBatch> batches) {
     }
     while (!paths_.paths.empty()) {
         // Send shadow rays to light sources and to bright elements or virtual lights
-        light_vertices();
+        illuminate_vertices();
         // Choose directions; Russian roulette ends some paths
         leave_surfaces();
         ++vertex_;
@@ -74,8 +76,10 @@ void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
         const auto left = static_cast<float>(column), top = static_cast<float>(row);
         path.half_batch = h;
         path.sampling.is_last = batch.ends_at_first_hit;
+        // Path::sample counts across batches, in the order of store()
         for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
             path.index_in_sequence = batch.first_index + i;
+            // The first path of a half gives the level for all
             path.level_samples = i == 0 ? batch.size : 0;
             paths_.add(path, plan_.start.camera->ray(left + points.coordinate[0][i], top + points.coordinate[1][i]));
         }
@@ -97,7 +101,7 @@ void PathIntegrator::start_at_gauges(std::span<const SampleBatch> batches) {
             path.index_in_sequence = batch.first_index + i;
             path.normal = gauge.normal_at(points.coordinate[0][i]);
             path.position = start_on(plan_.scene, gauge, path.normal, points.coordinate[1][i], points.coordinate[2][i]);
-            paths_.add(path, {path.position, path.normal});
+            paths_.add(path, {path.position, path.normal});  // leave_surfaces() replaces the ray before it is traced
         }
     }
     first_hits_.assign(path.sample, {});
@@ -134,38 +138,43 @@ bool PathIntegrator::arrive(const Hit& hit, const Ray& ray, Path& path) {
         exitance = Rgb(0);
         reflectance = Rgb(1);
     }
-    FirstHit& first = first_hits_[path.sample];
-    // A path seen through clear panes or in a mirror follows the path that it was split from, and replaces its hit.
+    FirstHit& first_hit = first_hits_[path.sample];
+    // A path behind clear panes or in a mirror comes later in paths_ than the path that it was split from, so its hit
+    // overwrites that one.
     if (vertex_ == 1 && path.sets_first_hit) {
-        first = {RgbD(reflectance), Imath::V3d(s.geometry[hit.patch].normal()), Imath::V3d(x), distance};
+        first_hit = {RgbD(reflectance), Imath::V3d(s.geometry[hit.patch].normal()), Imath::V3d(x), distance};
         if (plan_.known && path.level_samples > 0)
-            first.level = path.level_samples * static_cast<double>(plan_.known->level(hit.patch, x));
+            first_hit.level = path.level_samples * static_cast<double>(plan_.known->element_level(hit.patch, x));
     }
     if (vertex_ == 2 && !plan_.start.camera) {
-        first.inverse_length = 1 / static_cast<double>(distance);
-        first.hits = 1;
+        first_hit.inverse_length = 1 / static_cast<double>(distance);
+        first_hit.hits = 1;
     }
 
     if (channel_sum(exitance) > 0) add_emission(hit, ray.direction, distance, path, exitance);
-    if (vertex_ == 1 && plan_.hybrid)
-        add_first_hit(path, exitance / pi,
-                      reflectance * plan_.known->irradiance(plan_.known->place(hit.patch, x)) / pi);
+    if (vertex_ == 1 && plan_.hybrid) {
+        assert(plan_.known);  // only plans for gauges may lack it, whose paths start at vertex 1 without a hit
+        add_prediction(path, exitance / pi,
+                       reflectance * plan_.known->irradiance(plan_.known->place(hit.patch, x)) / pi);
+    }
     if (path.sampling.is_last || end_at_known_light(hit, x, ray.direction, distance, path)) return false;
-    if (plan_.virtual_lights && vertex_ > 1) path.throughput *= share_beyond_bound(hit, ray.direction, distance, path);
+    if (plan_.virtual_lights && vertex_ > 1)
+        path.throughput *= share_beyond_virtual_lights(hit, ray.direction, distance, path);
     path.throughput *= reflectance;
     path.patch = hit.patch;
     path.position = path.lookup = s.lifted(hit.patch, x);
+    // Later vertices are not visible, so they need no shading normal.
     path.normal = vertex_ == 1 ? s.shading_normal(hit.patch, x) : s.geometry[hit.patch].normal();
     return largest_channel(path.throughput) > 0;
 }
 
-void PathIntegrator::light_vertices() {
+void PathIntegrator::illuminate_vertices() {
     for (Path& path : paths_.paths) {
         path.sampling = {};
         if (vertex_ == 1) path.sampling.rays = plan_.first_shadow_rays;
         if (vertex_ == 1 && plan_.hybrid) {
             light_first_point(path);
-            if (path.sampling.is_last) continue;
+            if (path.sampling.is_last) continue;  // records contain the light of the other connections
         } else {
             sample_sources(path);
         }
@@ -181,7 +190,8 @@ void PathIntegrator::light_first_point(Path& path) {
     // Look up recorded indirect light; the path continues if no record is in reach
     const FirstPoints::Lookup lookup = first_points_.add_indirect(path, light_[path.half_batch]);
     if (!lookup.is_found) return sample_sources(path);
-    // Sample directions as well if they may find light that shadow rays sample badly
+    // Some paths also sample a direction. Directions find the sky and emitting patches; but if patches have unoccluded
+    // light, shadow rays alone sample them, as FirstPoints requires
     const bool has_sky = sources.skies().can_sample() || channel_sum(sources.skies().uniform_radiance()) > 0;
     SourceSampling& sampling = path.sampling;
     sampling.is_last = true;
@@ -196,7 +206,7 @@ void PathIntegrator::light_first_point(Path& path) {
     const std::uint32_t point = first_points_.add(path, numbers);
     for (const SourceKind kind : source_kinds) {
         const std::uint32_t rays = shadow_rays_to(kind, sampling.rays);
-        const std::uint32_t first_point = unoccluded.has(kind) ? point : none;
+        const std::uint32_t first_point = unoccluded.has(kind) ? point : none;  // none: the path gets the light
         for (std::uint32_t k = 0; k < rays; ++k)
             connect_to_source(path, kind, path.index_in_sequence * rays + k, rays, first_point);
     }
@@ -204,7 +214,7 @@ void PathIntegrator::light_first_point(Path& path) {
 }
 
 std::uint32_t PathIntegrator::shadow_rays_to(SourceKind kind, std::uint32_t most) const {
-    if (vertex_ == 1 && kind == SourceKind::suns && !plan_.has_suns) return 0;
+    if (vertex_ == 1 && kind == SourceKind::suns && !plan_.has_suns) return 0;  // later vertices always see suns
     return plan_.sources().useful_rays(kind, most);
 }
 
@@ -221,7 +231,7 @@ void PathIntegrator::sample_sources(Path& path) {
 
 void PathIntegrator::connect_to_source(const Path& path, SourceKind kind, std::uint32_t index, std::uint32_t rays,
                                        std::uint32_t first_point) {
-    constexpr std::array streams{LightStream::patches, LightStream::lamps, LightStream::suns};
+    constexpr std::array streams{LightStream::patches, LightStream::lamps, LightStream::suns};  // by SourceKind
     const LightSample numbers =
         light_sample(keys_[path.half_batch], vertex_, streams[static_cast<std::size_t>(kind)], index);
     const SourceSample source = plan_.sources().sample(kind, path.position, path.normal, numbers);
@@ -230,7 +240,11 @@ void PathIntegrator::connect_to_source(const Path& path, SourceKind kind, std::u
     shadow_rays_.add({path.position, source.direction}, source.patch, source.distance);
     if (first_point != none) {
         first_points_.add_sampled(first_point, kind, irradiance);
-        connections_.push_back({path.half_batch, 1, irradiance, first_point, kind});
+        connections_.push_back({.half_batch = path.half_batch,
+                                .bounces = 1,
+                                .light = irradiance,
+                                .first_point = first_point,
+                                .kind = kind});
         return;
     }
     float weight = 1;
@@ -243,6 +257,7 @@ void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
     const Skies& skies = plan_.sources().skies();
     const std::uint32_t guide = path.sampling.guide;
     if (!skies.can_sample() && guide == none) return;
+    // If both can sample the sky, even shadow rays follow the guide and odd ones the brightness of the sky.
     const bool alternates = guide != none && skies.can_sample();
     const bool is_guided = guide != none && (!alternates || index % 2 == 0);
     const LightSample numbers =
@@ -278,8 +293,9 @@ void PathIntegrator::leave_surfaces() {
     for (Path path : paths_.paths) {
         const std::uint64_t key = keys_[path.half_batch];
         if (path.sampling.is_last) {
-            // The random offset gives each path the same probability, whatever the number of paths.
-            if (!(path.sampling.directions > 0) || (path.index_in_sequence + mix(key, 2)) % paths_per_direction != 0)
+            // One path in four samples a direction. A random offset chooses it, so all have the same probability.
+            const std::uint64_t offset = mix(key, offset_stream);
+            if (!(path.sampling.directions > 0) || (path.index_in_sequence + offset) % paths_per_direction != 0)
                 continue;
             path.throughput /= path.sampling.directions;
         }
@@ -311,7 +327,7 @@ void PathIntegrator::store(std::span<SampleBatch> batches) const {
     }
 }
 
-void PathIntegrator::add_first_hit(const Path& path, const Rgb& emitted, const Rgb& predicted) {
+void PathIntegrator::add_prediction(const Path& path, const Rgb& emitted, const Rgb& predicted) {
     PathLight& light = light_[path.half_batch];
     light.predicted += RgbD(path.throughput * predicted);
     const double seen = mean_channel(RgbD(path.throughput * (emitted + predicted)));
@@ -322,7 +338,7 @@ void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
     const Skies& skies = plan_.sources().skies();
     if (vertex_ == 1) {
         const Rgb seen = skies.seen(direction);
-        add_first_hit(path, seen, Rgb(0));
+        add_prediction(path, seen, Rgb(0));
         return add(path.half_batch, 0, path.throughput * seen);
     }
     Rgb radiance = sampled_sky(path, direction);
@@ -364,7 +380,10 @@ float PathIntegrator::sky_density(const Path& path, const V3f& direction) const 
 void PathIntegrator::add(std::uint32_t half_batch, std::uint32_t bounces, const Rgb& radiance) {
     if (bounces == 1 && !plan_.has_direct) return;
     PathLight& light = light_[half_batch];
-    (bounces == 0 ? light.emitted : bounces == 1 ? light.direct : light.indirect) += RgbD(radiance);
+    if (bounces == 0)
+        light.emitted += RgbD(radiance);
+    else
+        (bounces == 1 ? light.direct : light.indirect) += RgbD(radiance);
 }
 
 }  // namespace interflect::detail

@@ -46,7 +46,7 @@ class PathIntegrator {
     void arrive_at_surfaces();
     /// Moves the path to its hit and adds the light emitted there. Returns whether the path continues.
     bool arrive(const Hit& hit, const Ray& ray, Path& path);
-    void light_vertices();
+    void illuminate_vertices();
     void leave_surfaces();
     void store(std::span<SampleBatch> batches) const;
 
@@ -54,12 +54,12 @@ class PathIntegrator {
     void add_sky(const Path& path, const V3f& direction);
     /// Adds to PathLight::predicted and square_of_first_hit. @param emitted, predicted  Radiance of the first surface
     /// or the sky.
-    void add_first_hit(const Path& path, const Rgb& emitted, const Rgb& predicted);
+    void add_prediction(const Path& path, const Rgb& emitted, const Rgb& predicted);
     void add_emission(const Hit& hit, const V3f& direction, float distance, const Path& path, const Rgb& exitance);
     /// Adds the known light of the hit if the path ends there. Returns whether it does.
     bool end_at_known_light(const Hit& hit, const V3f& x, const V3f& direction, float distance, const Path& path);
     /// Returns the share of the light from the hit to the path's last vertex that virtual lights do not represent.
-    float share_beyond_bound(const Hit& hit, const V3f& direction, float distance, const Path& path) const;
+    float share_beyond_virtual_lights(const Hit& hit, const V3f& direction, float distance, const Path& path) const;
 
     // Shadow rays from a vertex:
     void light_first_point(Path& path);
@@ -70,12 +70,13 @@ class PathIntegrator {
     /// @param first_point  Point of FirstPoints that receives the light, or none.
     void connect_to_source(const Path& path, SourceKind kind, std::uint32_t index, std::uint32_t rays,
                            std::uint32_t first_point);
+    /// Adds a shadow ray to the sky. @param index  As for connect_to_source().
     void connect_to_sky(const Path& path, std::uint32_t index);
     void connect_to_known_light(const Path& path);
     void connect_to_virtual_lights(const Path& path);
     void add_light_of_shadow_rays();
 
-    /// Returns the expected density of the directions that continue paths [1/sr].
+    /// Returns the density of the directions that continue paths, times their expected number per path [1/sr].
     static float direction_density(const Path& path, const V3f& direction);
     /// Returns the radiance of the skies that shadow rays sample. They sample uniform skies only by a guide.
     Rgb sampled_sky(const Path& path, const V3f& direction) const;

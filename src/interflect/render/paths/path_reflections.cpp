@@ -83,7 +83,8 @@ void PathIntegrator::connect_to_virtual_lights(const Path& path) {
     }
 }
 
-float PathIntegrator::share_beyond_bound(const Hit& hit, const V3f& direction, float distance, const Path& path) const {
+float PathIntegrator::share_beyond_virtual_lights(const Hit& hit, const V3f& direction, float distance,
+                                                  const Path& path) const {
     const float other = -plan_.scene.geometry[hit.patch].normal().dot(direction);
     const float geometric_term = path.normal.dot(direction) * std::max(0.0f, other) / (distance * distance);
     const float bound = plan_.virtual_lights->bound(hit.patch);

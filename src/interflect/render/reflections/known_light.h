@@ -37,7 +37,7 @@ class KnownLight {
         Parameters parameters;
     };
     Place place(PatchIndex patch, const V3f& x) const;
-    int level(PatchIndex patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
+    int element_level(PatchIndex patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
     const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
     Rgb reflected_radiance(const Place& place) const;

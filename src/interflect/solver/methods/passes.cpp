@@ -26,7 +26,8 @@ namespace {
 constexpr std::int64_t fewest_rays_with_preparation = 4;
 
 /// Returns beta p + (1 - beta) w, where p is the unshot power and w the importance-weighted unshot power, both relative
-/// to the first bounce. Returns p if no power is weighted by importance.
+/// to the first bounce, and beta is the share of rays that ignore importance. Returns p if no power is weighted by
+/// importance.
 double relative_unshot(const PowerPlan& bounce, double first_power, double first_weighted_power, double beta) {
     const auto relative = [](double a, double b) { return b > 0 ? a / b : 0; };
     const double power = relative(bounce.power, first_power);
@@ -44,7 +45,7 @@ Estimate zero_estimate(const RunInputs& inputs, const LightState& light) {
     return zero;
 }
 
-/// Adds the received light to the sum. The first call moves `received.variance`.
+/// Adds the received light to the sum. The first call moves the variance; the irradiance is also the next unshot light.
 void add(Estimate& sum, Received& received) {
     sum.escaped_power += received.escaped_power;
     accumulate(sum.groups, received.groups);
@@ -61,6 +62,7 @@ void add(Estimate& sum, Received& received) {
     });
 }
 
+/// Replaces the light of the solution. The variance is left out, because only iterations estimate noise.
 void set_estimate(LightState& light, Estimate estimate) {
     light.solution.irradiance = std::move(estimate.irradiance);
     light.solution.groups = std::move(estimate.groups);
@@ -70,6 +72,7 @@ void set_estimate(LightState& light, Estimate estimate) {
 
 std::int64_t rays_so_far(const RayTotals& rays) { return rays.power + rays.importance; }
 
+/// Returns whether the oracle refines in iterations. It always refines in prepare(), where the variance is unknown.
 bool oracle_refines_passes(const LightState& light) {
     return light.options().method.refines && !refines_by_variance(light.options());
 }
@@ -81,13 +84,14 @@ void Passes::prepare(SolverState& state) {
     set_estimate(state.light, zero_estimate(state.inputs, state.light));
     if (state.light.options().limits.rays < fewest_rays_with_preparation) return;
     const bool uses_importance = importance_use(state.light.solution) == ImportanceUse::full;
-    // With importance, the passes share an eighth of all rays. Without importance, each pass gets an eighth, because
-    // runs of 20,000 rays need this number for the initial mesh.
-    const std::int64_t passes = !uses_importance ? 1 : state.light.options().method.refines ? 3 : 1;
-    const std::int64_t rays = state.rays.schedule.start_rays(passes);
+    // Importance and two passes share an eighth of all rays. Without importance, each pass gets an eighth, because runs
+    // of 20,000 rays need this number for the initial mesh.
+    std::int64_t shares = 1;
+    if (uses_importance && state.light.options().method.refines) shares = 3;
+    const std::int64_t rays = state.rays.schedule.start_rays(shares);
     total_unshot_ = 0;
     if (uses_importance) transport_importance(state, rays);
-    aim_outdoor_light(state);
+    aim_outdoor_light(state);  // from skies and suns to important surfaces
     // Trace one pass on the initial mesh, for the light that the oracle needs, then one pass that refines.
     if (state.light.options().method.refines)
         for (const bool oracle_refines : {false, true})
@@ -106,14 +110,16 @@ void Passes::update_importance(SolverState& state, TracedIteration& iteration) {
         if (!view_change_.empty()) iteration.history_factor = view_change_.history_factor(state, outdoor_light);
         iteration.rays_for_new_views = rays_so_far(state.rays) - rays_before;
     }
+    // By default, the first bounce transports importance. Else trace a step here with the share alpha of the rays, and
+    // leave the other rays to trace().
     if (!state.light.options().experimental.separate_iterations) return;
     iteration.importance_rays =
         std::llround(state.light.options().experimental.alpha * static_cast<double>(iteration.plan.rays));
     if (iteration.importance_rays == 0) return;
-    const Importance psi = importance_of(state.light.solution);
-    const Received received = run_step(
-        state,
-        TransportStep(plan_importance(state.inputs.materials, state.light.solution, psi, iteration.importance_rays)));
+    const Importance importance = importance_of(state.light.solution);
+    const Received received =
+        run_step(state, TransportStep(plan_importance(state.inputs.materials, state.light.solution, importance,
+                                                      iteration.importance_rays)));
     merge_importance(state.light, state.rays, received.importance, iteration);
     state.rays.importance += iteration.importance_rays;
 }
@@ -123,6 +129,7 @@ Estimate Passes::trace(SolverState& state, TracedIteration& iteration) {
     const std::int64_t rays_before = rays_so_far(state.rays);
     Estimate estimate =
         trace_pass(state, iteration.plan.rays - iteration.importance_rays, oracle_refines_passes(state.light));
+    // The weight must be positive, but without light no rays are traced
     iteration.rays = std::max<std::int64_t>(1, iteration.importance_rays + rays_so_far(state.rays) - rays_before);
     iteration.weight = iteration.rays;
     return estimate;
@@ -163,15 +170,16 @@ struct Passes::Pass {
 
 /// @throws Interrupted
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
-    state.sampling.payloads = {};  // the report describes the last pass only
+    state.sampling.payloads = {};  // the report contains the payloads of the last pass only
     Pass pass{rays, oracle_refines, BounceBudget(rays, total_unshot_),
               importance_weights(state.light.solution, state.sampling.neighbourhoods, state.inputs.emission,
                                  state.sampling.part_importance)};
     pass.unshot.assign(state.light.forest->size(), Rgb(0));
     pass.unshot_groups.assign(state.inputs.groups.size(), pass.unshot);
     if (!oracle_refines) pass.reflecting_where_received = leaves_reflecting_where_received(state);
-    while (!pass.budget.has_planned_last_bounce() && trace_bounce(state, pass)) {
-    }
+    // trace_bounce() plans the last bounce when few rays or little unshot power are left
+    bool has_traced = true;
+    while (has_traced && !pass.budget.has_planned_last_bounce()) has_traced = trace_bounce(state, pass);
     total_unshot_ = pass.budget.total_unshot();
     Estimate& sum = pass.sum;
     if (sum.irradiance.empty()) sum = zero_estimate(state.inputs, state.light);  // no bounce had power to shoot
@@ -191,8 +199,8 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     // Only the first bounce transports importance, because it has the most rays.
     const bool carries_importance = pass.emits && importance_use(solution) == ImportanceUse::full &&
                                     !state.light.options().experimental.separate_iterations;
-    const Radiosity light(state.inputs.materials, pass.unshot, pass.emits);
-    PowerPlan bounce = plan_power(state.inputs.materials, state.inputs.emission, solution, light, pass.weights,
+    const Radiosity radiosity(state.inputs.materials, pass.unshot, pass.emits);
+    PowerPlan bounce = plan_power(state.inputs.materials, state.inputs.emission, solution, radiosity, pass.weights,
                                   carries_importance, /*rays=*/0);
     solution.non_finite += bounce.non_finite_leaves;
     if (pass.emits) {
@@ -204,7 +212,8 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     const BounceRays rays = bounce.power > 0 ? pass.budget.next(unshot) : BounceRays();
     if (rays.expected == 0) return false;
 
-    bounce.plan.rays = rays.started;  // random walks continue with the other expected rays
+    // The last bounce starts fewer rays, which continue as random walks to the end
+    bounce.plan.rays = rays.started;
     TransportStep step = make_step(state, pass, std::move(bounce.plan));
     const std::uint32_t old_elements = state.light.forest->size();
     Received received =
@@ -221,7 +230,8 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
         pass.sum.direct = received.groups.empty() ? GroupLight{received.irradiance} : received.groups;
     add(pass.sum, received);
     if (carries_importance)  // merge now, because the oracle uses importance in the next bounces
-        merge_importance(state.light, state.rays, received.importance, TracedIteration{{.rays = rays.expected}});
+        merge_importance(state.light, state.rays, received.importance,
+                         TracedIteration{.plan = {.rays = rays.expected}});
     pass.emits = false;
     pass.start_points = std::move(received.start_points);
     pass.unshot = std::move(received.irradiance);
@@ -244,20 +254,21 @@ TransportStep Passes::make_step(const SolverState& state, Pass& pass, RayPlan pl
     return step;
 }
 
-void Passes::grow_pass(const ElementForest& forest, std::uint32_t first, Pass& pass) {
+void Passes::grow_pass(const ElementForest& forest, std::uint32_t old_elements, Pass& pass) {
     if (!pass.sum.irradiance.empty()) {
-        inherit(forest, first, pass.sum.irradiance);
-        inherit(forest, first, pass.sum.variance);
-        inherit(forest, first, pass.sum.groups);
-        inherit(forest, first, pass.sum.direct);
+        inherit(forest, old_elements, pass.sum.irradiance);
+        inherit(forest, old_elements, pass.sum.variance);
+        inherit(forest, old_elements, pass.sum.groups);
+        inherit(forest, old_elements, pass.sum.direct);
     }
-    if (!pass.weights.elements.empty()) inherit(forest, first, pass.weights.elements);
+    if (!pass.weights.elements.empty()) inherit(forest, old_elements, pass.weights.elements);
 }
 
 void Passes::make_first_estimate(SolverState& state) {
     prepare(state);
     set_estimate(state.light, trace_pass(state, state.rays.schedule.start_rays(), false));
     state.light.solution.direct.clear();  // the method that continues does not separate direct light
+    // Replaces the record of prepare(), whose rays are included
     state.rays.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state.rays));
     append_report(state, 0);
 }

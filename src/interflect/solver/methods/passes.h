@@ -38,7 +38,8 @@ class Passes : public IterationMethod {
     Estimate trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines);
     bool trace_bounce(SolverState& state, Pass& pass);
     static TransportStep make_step(const SolverState& state, Pass& pass, RayPlan plan);
-    static void grow_pass(const ElementForest& forest, std::uint32_t first, Pass& pass);
+    /// Adds the elements that a bounce created. @param old_elements  Number of elements before it.
+    static void grow_pass(const ElementForest& forest, std::uint32_t old_elements, Pass& pass);
 
     /// BounceBudget::total_unshot() of the last pass; 0 before the first pass.
     double total_unshot_ = 0;

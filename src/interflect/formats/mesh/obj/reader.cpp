@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <stdexcept>
@@ -38,12 +37,6 @@ std::uint32_t index_of(std::int64_t number, std::size_t count) {
     return exists ? static_cast<std::uint32_t>(index) : none;
 }
 
-/// Returns the words of a line before a comment.
-Words words_of(const LineReader& lines) {
-    const Words all = lines.words();
-    return {all.begin(), std::find_if(all.begin(), all.end(), [](auto word) { return word.starts_with('#'); })};
-}
-
 }  // namespace
 
 ObjReader::ObjReader(const std::filesystem::path& path, const ReadOptions& options)
@@ -59,7 +52,7 @@ void ObjReader::read(std::string_view text) {
     while (lines.next()) {
         const Location where{&model_.file, lines.line()};
         try {
-            if (const Words words = words_of(lines); !words.empty()) read_line(lines, words, where);
+            if (const Words words = without_comment(lines.words()); !words.empty()) read_line(lines, words, where);
         } catch (const std::invalid_argument& fault) {
             throw where.error(fault);
         }
@@ -109,7 +102,7 @@ void ObjReader::read_ahead() {
     for (LineReader lines = *lines_; lines.next();) {
         const Location where{&model_.file, lines.line()};
         try {
-            if (const Words words = words_of(lines); !words.empty()) read_vertex_data(words, where);
+            if (const Words words = without_comment(lines.words()); !words.empty()) read_vertex_data(words, where);
         } catch (const std::invalid_argument& fault) {
             throw where.error(fault);
         }
