@@ -17,12 +17,31 @@ namespace {
 
 constexpr double shortest_time = 1e-3;  // [s]; replaces times that are 0 or negative
 
-/// Returns the time limit of the whole run [s] for which drawing ends in time.
-double time_of_solving(const Solution& so_far, const DrawingPlan& plan, const RenderArguments& options) {
+/// Returns the time limit of solving [s] that leaves enough time for drawing.
+double time_limit_of_solving(const Solution& so_far, const DrawingPlan& plan, const RenderArguments& options) {
     const double left = options.seconds_left();
     const double spent = so_far.iterations.empty() ? 0 : so_far.iterations.back().seconds;
-    const bool more_samples_refine = traces_paths(plan.picture.shading) && plan.reduction() == 1;
-    return spent + std::max(shortest_time, left - reserved_for(*plan.predicted, more_samples_refine, left));
+    const bool is_refined = traces_paths(plan.picture.shading) && plan.reduction() == 1;
+    return spent + std::max(shortest_time, left - reserved_for(*plan.predicted, is_refined, left));
+}
+
+void warn_of_reduction(int reduction) {
+    spdlog::warn(
+        "--time is too short for all pixels: light is traced for one in {} x {}, so small shadows are "
+        "blurred; a smaller --size takes less time",
+        reduction, reduction);
+}
+
+void warn_of_late_picture(double predicted, double left) {
+    spdlog::warn("drawing takes about {}, but --time leaves {}: the picture will be late", duration(predicted),
+                 duration(std::max(0.0, left)));
+}
+
+void warn_of_smooth_shading(double predicted, double left) {
+    spdlog::warn(
+        "per-pixel shading takes about {}, but --time leaves {}: the light is drawn as with --shading "
+        "smooth; a smaller --size takes less time",
+        duration(predicted), duration(std::max(0.0, left)));
 }
 
 /// Predicts the time of drawing from smaller pictures. If --time leaves less, plans a preview for hybrid shading, and
@@ -30,35 +49,24 @@ double time_of_solving(const Solution& so_far, const DrawingPlan& plan, const Re
 DrawingPlan plan_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                          const RenderArguments& options) {
     DrawingPlan plan{options.picture};
-    const Shading shading = options.picture.shading;
-    if (!traces_paths(shading)) {
-        plan.predicted = predict_time_of_elements(scene, solution, ray_caster, view, plan.picture);
-        return plan;
+    if (traces_paths(plan.picture.shading)) {
+        // Layers and error images need path tracing of all pixels, however long it takes.
+        const bool needs_all_pixels = options.path.has_path_outputs();
+        const double limit =
+            needs_all_pixels ? std::numeric_limits<double>::infinity() : largest_drawing_share * options.seconds_left();
+        plan.predicted =
+            predict_time_of_paths(scene, solution, ray_caster, view, plan.picture, options.path.denoise, limit);
+        const double predicted = plan.predicted->total();
+        const double left = options.seconds_left();
+        if (plan.reduction() > 1) warn_of_reduction(plan.reduction());
+        if (predicted <= largest_drawing_share * left) return plan;
+        if (plan.picture.shading == Shading::hybrid || needs_all_pixels) {
+            warn_of_late_picture(predicted, left);
+            return plan;
+        }
+        warn_of_smooth_shading(predicted, left);
+        plan.picture = quick_options(plan.picture);
     }
-    // Only a picture of all pixels has layers and an error image.
-    const bool needs_all_pixels = options.path.has_path_outputs();
-    const double limit =
-        needs_all_pixels ? std::numeric_limits<double>::infinity() : largest_drawing_share * options.seconds_left();
-    plan.predicted =
-        predict_time_of_paths(scene, solution, ray_caster, view, plan.picture, options.path.denoise, limit);
-    const double predicted = plan.predicted->total();
-    const double left = options.seconds_left();
-    if (plan.reduction() > 1)
-        spdlog::warn(
-            "--time is too short for all pixels: light is traced for one in {} x {}, so small shadows are "
-            "blurred; a smaller --size takes less time",
-            plan.reduction(), plan.reduction());
-    if (predicted <= largest_drawing_share * left) return plan;
-    if (shading == Shading::hybrid || needs_all_pixels) {
-        spdlog::warn("drawing takes about {}, but --time leaves {}: the picture will be late", duration(predicted),
-                     duration(std::max(0.0, left)));
-        return plan;
-    }
-    spdlog::warn(
-        "per-pixel shading takes about {}, but --time leaves {}: the light is drawn as with --shading "
-        "smooth; a smaller --size takes less time",
-        duration(predicted), duration(std::max(0.0, left)));
-    plan.picture = quick_options(plan.picture);
     plan.predicted = predict_time_of_elements(scene, solution, ray_caster, view, plan.picture);
     return plan;
 }
@@ -85,7 +93,7 @@ PlannedSolution solve_in_time(const Scene& scene, const RayCaster& ray_caster, c
     const auto plan_and_limit = [&](const Solution& so_far) -> std::optional<Limits> {
         plan = plan_drawing(scene, so_far, ray_caster, view, options);
         Limits limits = solve_options.limits;
-        limits.time = time_of_solving(so_far, plan, options);
+        limits.time = time_limit_of_solving(so_far, plan, options);
         return limits;
     };
     Solution solution = run_solve(scene, ray_caster, solve_options, options.solver.memory, {},
