@@ -64,11 +64,11 @@ SolveOptions solve_options_for(const View& view, const RenderArguments& options)
 /// Solves without a time limit, and writes previews of the light so far.
 Solution solve_with_previews(const Scene& scene, const RayCaster& ray_caster, const View& view,
                              const SolveOptions& solve_options, const RenderArguments& options) {
-    // The first preview takes about a second itself; with --progressive, a viewer waits for it.
+    // A preview takes about a second itself. With --progressive, a viewer waits for the first one.
     const double seconds_to_preview = options.progressive ? 0.25 : 1;
     const auto write_light = [&](const Solution& so_far) -> std::optional<Limits> {
-        write_preview_of(scene, so_far, ray_caster, view, options, usual_reduction);
-        return std::nullopt;  // the limits stay
+        write_preview(scene, so_far, ray_caster, view, options, usual_reduction);
+        return std::nullopt;  // the limits remain
     };
     return run_solve(scene, ray_caster, solve_options, options.solver.memory, {},
                      {.after = seconds_to_preview, .repeats = options.progressive, .use = write_light});
@@ -79,7 +79,7 @@ void write_preview_of_solution(const SolvedScene& solved, const RayCaster& ray_c
                                const RenderArguments& options) {
     if (!traces_paths(options.picture.shading) || is_stop_requested()) return;
     const int reduction = options.progressive ? usual_reduction / 2 : usual_reduction;
-    write_preview_of(solved.scene, solved.solution, ray_caster, view, options, reduction);
+    write_preview(solved.scene, solved.solution, ray_caster, view, options, reduction);
 }
 
 /// Draws a solution. If the input is a scene, solves it first.

@@ -6,7 +6,7 @@
 
 namespace interflect::command {
 
-/// Checks all options, then derives the others from them. Warns about options without effect.
+/// Checks the options and sets the members that depend on other options. Warns about options without effect.
 /// @throws UsageError for invalid options; std::runtime_error for a picture that does not fit into memory.
 void complete_options(RenderArguments& options, const CLI::App& command);
 

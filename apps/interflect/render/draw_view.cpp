@@ -53,7 +53,7 @@ Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster
     std::function<void(const Image&)> on_picture;
     if (options.progressive)
         on_picture = [&](const Image& so_far) {
-            write_preview(picture_of_light(so_far, count_non_finite(so_far), options), view, scene, options);
+            write_interim_picture(picture_of_light(so_far, count_non_finite(so_far), options), view, scene, options);
         };
     TracedPicture traced =
         run_path_tracer(scene, solution, ray_caster, view, picture_options, options.path, on_picture);

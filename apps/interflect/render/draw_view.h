@@ -15,7 +15,7 @@ Picture draw_paths(const Scene& scene, const Solution* solution, const RayCaster
                    const PictureOptions& picture_options, const RenderArguments& options);
 
 /// Draws the light or a quantity of a solution. If a signal stops path tracing before every pixel has light, draws a
-/// preview instead, unless layers or an error image are wanted.
+/// preview instead. It cannot replace layers and error images, which are then incomplete.
 Picture draw_solution(const SolvedScene& solved, const RayCaster& ray_caster, const View& view, const DrawingPlan& plan,
                       const RenderArguments& options);
 

@@ -92,7 +92,8 @@ void write_picture(PendingFile& output, const Picture& picture, const View& view
                  view.name, picture.quantity, is_exposed ? fmt::format(", exposure {:+.2f}", *picture.exposure) : "");
 }
 
-void write_preview(const Picture& picture, const View& view, const Scene& scene, const RenderArguments& options) {
+void write_interim_picture(const Picture& picture, const View& view, const Scene& scene,
+                           const RenderArguments& options) {
     PendingFile output(options.output);
     write_image(output, picture.image, metadata_of(picture, view, scene, options.solver.seed()));
     spdlog::info("{}: picture so far; a better one will replace it", options.output.string());

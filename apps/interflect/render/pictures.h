@@ -34,6 +34,7 @@ void write_picture(detail::PendingFile& output, const Picture& picture, const Vi
                    std::uint64_t seed, const RenderArguments& options);
 
 /// Writes a picture that a better one will replace.
-void write_preview(const Picture& picture, const View& view, const Scene& scene, const RenderArguments& options);
+void write_interim_picture(const Picture& picture, const View& view, const Scene& scene,
+                           const RenderArguments& options);
 
 }  // namespace interflect::command

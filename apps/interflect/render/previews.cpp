@@ -6,7 +6,6 @@
 
 #include "apps/interflect/processes/signals.h"
 #include "apps/interflect/render/pictures.h"
-#include "interflect/denoise.h"
 
 namespace interflect::command {
 
@@ -43,13 +42,13 @@ Rendering draw_preview(const Scene& scene, const Solution& solution, const RayCa
     return interflect::render(scene, solution, ray_caster, view, quick_options(picture), monitor);
 }
 
-void write_preview_of(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                      const RenderArguments& options, int reduction) {
+void write_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
+                   const RenderArguments& options, int reduction) {
     if (!takes_previews(options)) return;
     const Rendering drawn = draw_preview(scene, solution, ray_caster, view, options.picture, reduction,
                                          options.path.denoise, {{}, &stop_flag()});
     if (drawn.interrupted) return;
-    write_preview(picture_of_light(drawn.image, drawn.non_finite_pixels, options), view, scene, options);
+    write_interim_picture(picture_of_light(drawn.image, drawn.non_finite_pixels, options), view, scene, options);
 }
 
 }  // namespace interflect::command

@@ -18,7 +18,7 @@
 
 namespace interflect::command {
 
-/// Options of `render`. complete_options() sets the members that depend on other options.
+/// Options of the command `render`.
 struct RenderArguments {
     SceneOptions scene;
     MeshOptions mesh;
@@ -26,10 +26,11 @@ struct RenderArguments {
     CutOptions section;  ///< Floor plan or section.
     DimmingOptions dimming;
     SolverOptions solver;
-    PathTracerArguments path;  ///< complete_options() chooses the default denoiser.
+    PathTracerArguments path;  ///< complete_options() sets the default denoiser.
     std::filesystem::path output;
     Size size;  ///< Size of the written picture, including its legend.
-    /// Options of interflect::render(). complete_options() sets all of them but `mirrors` and `light_walks`.
+    /// Options of interflect::render(). complete_options() sets its size, quantity, target and seed, and the defaults
+    /// of shading and samples.
     PictureOptions picture;
     Exposure exposure;
     Tonemap tonemap = Tonemap::srgb;
@@ -39,8 +40,8 @@ struct RenderArguments {
     bool progressive = false;  ///< Whether better pictures replace the first as the light improves.
 
     // Set by complete_options().
-    int legend_rows = 0;  ///< Height of the legend below the view [pixels]; 0 for no legend.
-    bool has_default_samples = true;
+    int legend_rows = 0;              ///< Height of the legend below the view [pixels]; 0 for no legend.
+    bool has_default_samples = true;  ///< Whether --samples is not given.
 
     void add_to(CLI::App& command);
 
