@@ -128,7 +128,7 @@ float export_exposure(const Scene& scene, const Solution& solution);
 struct SceneExportOptions {
     int width = 1280, height = 720;  ///< Size of the pictures [pixels], >= 1.
     int samples = 256;               ///< Samples per pixel, >= 1; Radiance has no such setting.
-    std::vector<View> views;         ///< Cameras; if empty, the views of the scene, or an overview.
+    std::vector<View> views;         ///< Cameras; if empty, the views of the scene, or overview().
 };
 
 /// Files written, and warnings about unsupported features.

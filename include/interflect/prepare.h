@@ -158,6 +158,16 @@ struct ViewCoverage {
     double backs = 0;    ///< Rays that first meet the back of a one-sided face, and pass through it.
 };
 
+/// Returns a view for a scene without views. The view from the corner, overview() of scene.h, is kept if it shows a lit
+/// interior. Otherwise, the view is from a lit room. Eyes are rated by the share of lit surfaces and by their distance;
+/// the best one looks where most of them are. Without a lit room, the view from the corner is replaced only if it shows
+/// no light. At most 128 eyes are sampled, above faces that face upwards, with 20 rays each. A surface is lit if it
+/// emits or if a random path of at most six reflections finds a source or the sky.
+/// @return  "overview", with the probable up axis of validate_setup(), else z; the same for any number of threads.
+/// Cost: about 50,000 rays, and O(n) for n patches.
+/// @throws InputError for a ray caster of another scene.
+View overview(const Scene& scene, const RayCaster& ray_caster);
+
 /// Traces a view's rays through 36 rows of pixels. From outside of a scene, most rays meet nothing or backs.
 /// @param aspect  Width over height of the picture. @throws InputError for a view that defines no picture.
 ViewCoverage view_coverage(const Scene& scene, const RayCaster& ray_caster, const View& view, float aspect);

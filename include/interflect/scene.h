@@ -209,7 +209,8 @@ bool emits_light(const Scene& scene);
 /// Returns the view of that name. @throws InputError that lists the views.
 const View& find_view(const Scene& scene, const std::string& name);
 
-/// Returns the default view from inside an upper corner of the scene to its middle.
+/// Returns a view from inside an upper corner of the scene's bounding box to its middle, which may lie in a wall. The
+/// overload in prepare.h avoids walls and darkness.
 View overview(const Scene& scene);
 
 /// Returns an orthographic view of the scene beyond a plane, with a margin; z up, or y in views along z.

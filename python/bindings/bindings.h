@@ -123,7 +123,9 @@ std::vector<std::string> sentences(const Warnings& warnings);
 /// Reports warnings by warnings.warn(). @param stack_level  1: caller of the C++ function.
 void warn(const Warnings& warnings, int stack_level);
 
-/// Returns the view of that name, or the given view itself, or the scene's first view for None.
+/// Returns the view of that name, or the given view itself.
 View view_of(const Scene& scene, const py::object& view);
+/// Also accepts None: the scene's first view, or an overview.
+View view_or_overview(const Scene& scene, const RayCaster& ray_caster, const py::object& view, int threads);
 
 }  // namespace interflect::python

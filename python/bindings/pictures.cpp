@@ -40,7 +40,7 @@ LitScene lit_scene_of(const py::object& lit, int threads) {
 SharedRendering draw(const py::object& lit, const py::object& view, const PictureOptions& options, int threads,
                      const py::object& progress) {
     const LitScene drawn = lit_scene_of(lit, threads);
-    const View camera = view_of(*drawn.scene, view);
+    const View camera = view_or_overview(*drawn.scene, *drawn.ray_caster, view, threads);
     return long_work(progress, threads, [&](const Monitor& monitor) {
         return std::make_shared<Rendering>(
             drawn.solution ? render(*drawn.scene, *drawn.solution, *drawn.ray_caster, camera, options, monitor)
@@ -50,7 +50,7 @@ SharedRendering draw(const py::object& lit, const py::object& view, const Pictur
 
 SharedRendering draw_preview(const SharedLight& light, const py::object& view, const PictureOptions& options,
                              int reduction, const std::string& denoiser, int threads, const py::object& progress) {
-    const View camera = view_of(*light->scene, view);
+    const View camera = view_or_overview(*light->scene, *light->ray_caster, view, threads);
     const PreviewOptions preview_options{reduction, find_denoiser(denoiser)};
     name_library_of_pyoidn();
     return long_work(progress, threads, [&](const Monitor& monitor) {

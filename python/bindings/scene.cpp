@@ -3,6 +3,7 @@
 #include "argument.h"
 #include "bindings.h"
 #include "fields.h"
+#include "interflect/prepare.h"
 #include "interflect/scene.h"
 #include "long_work.h"
 #include "scene_arrays.h"
@@ -81,9 +82,13 @@ void bind_summary(py::module_& m) {
 View view_of(const Scene& scene, const py::object& view) {
     if (py::isinstance<View>(view)) return py::cast<View>(view);
     if (py::isinstance<py::str>(view)) return find_view(scene, argument<std::string>(view, "view"));
-    if (!view.is_none())
-        throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " + found(view));
-    return scene.views.empty() ? overview(scene) : scene.views.front();
+    throw py::type_error("view: expected a View, the name of a view of the scene, or None, found " + found(view));
+}
+
+View view_or_overview(const Scene& scene, const RayCaster& ray_caster, const py::object& view, int threads) {
+    if (!view.is_none()) return view_of(scene, view);
+    if (!scene.views.empty()) return scene.views.front();
+    return pure_work(threads, [&] { return overview(scene, ray_caster); });
 }
 
 void bind_scene_parts(py::module_& m) {
@@ -248,8 +253,11 @@ void bind_scene(py::module_& m) {
         Documented(docs::groups_by_name));
     bind_summary(m);
     m.def(
-        "overview", [](const SharedScene& s) { return overview(*s); }, py::arg("scene"),
-        Documented("Returns a view from inside an upper corner of the scene to its middle."));
+        "overview", [](const SharedScene& s) { return pure_work(0, [&] { return overview(*s, RayCaster(*s)); }); },
+        py::arg("scene"),
+        Documented("Returns a view for a scene without views. It shows a lit room or, for scenes without one, the "
+                   "scene from an upper corner.")
+            .raises("InputError: for a scene with faults."));
 }
 
 }  // namespace interflect::python

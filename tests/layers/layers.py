@@ -23,7 +23,7 @@ INNER_LAYERS = {
     ],
     "raycast": ["embree", "."],
     "luminaires": ["skies", "."],
-    "checks": ["search", "faces", "lights", "."],
+    "checks": ["search", "faces", "lights", "views", "."],
     "view_factors": ["exchange", "rays", "."],
     "elements": ["."],
     "solver": [

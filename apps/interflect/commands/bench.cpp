@@ -16,6 +16,7 @@
 #include "apps/interflect/values/parse.h"
 #include "interflect/core.h"
 #include "interflect/exports/records/json_text.h"
+#include "interflect/prepare.h"
 #include "interflect/rates.h"
 #include "interflect/ray_caster.h"
 #include "interflect/scene.h"
@@ -80,11 +81,15 @@ void run(const BenchArguments& options, const CLI::App& command) {
     Scene scene = options.scene.load();
     GivenSettings given{.method = options.method, .limits = {.rays = options.rays}};
     for (const View& view : options.view.views(scene)) given.others.views.push_back({view});
-    if (is_picture && given.others.views.empty())
-        given.others.views.push_back({scene.views.empty() ? overview(scene) : scene.views.front()});
-    const SolveOptions solve_options = resolved(given);
+    const bool needs_overview = is_picture && given.others.views.empty() && scene.views.empty();
+    if (needs_overview)
+        given.others.views.push_back({overview(scene)});  // replaced once rays can be traced
+    else if (is_picture && given.others.views.empty())
+        given.others.views.push_back({scene.views.front()});
+    SolveOptions solve_options = resolved(given);
     scene = options.mesh.divide(std::move(scene), options.scene.read, solve_options.method.refines);
     const RayCaster ray_caster(scene);
+    if (needs_overview) solve_options.views.front().view = overview(scene, ray_caster);
 
     const Json figures = is_picture ? bench_picture(scene, ray_caster, solve_options, options.picture, options.rounds)
                                     : figures_of(solve_options.method.name,

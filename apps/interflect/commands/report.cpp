@@ -23,6 +23,7 @@
 #include "interflect/core.h"
 #include "interflect/denoise.h"
 #include "interflect/image.h"
+#include "interflect/prepare.h"
 #include "interflect/render.h"
 #include "interflect/scene.h"
 
@@ -106,12 +107,12 @@ ReportPicture draw_view(const SolvedScene& solved, const RayCaster& ray_caster, 
 }
 
 /// Returns the requested views, else the views of the scene, else an overview.
-std::vector<View> views_to_draw(const Scene& scene, const ReportArguments& options) {
+std::vector<View> views_to_draw(const Scene& scene, const RayCaster& ray_caster, const ReportArguments& options) {
     constexpr std::size_t most = 4;
     std::vector<View> views = options.view.views(scene);
     if (!views.empty()) return views;
     views = scene.views;
-    if (views.empty()) return {overview(scene)};
+    if (views.empty()) return {overview(scene, ray_caster)};
     if (views.size() > most) {
         spdlog::info("{} of {} views are drawn (--view chooses others)", most, views.size());
         views.resize(most);
@@ -156,8 +157,8 @@ void run(const ReportArguments& options) {
     require_memory_for_paths(options.size);
     PendingFile output(options.output);
     const SolvedScene solved = read_light_of(options.solution);
-    const std::vector<View> views = views_to_draw(solved.scene, options);
     const RayCaster ray_caster = make_ray_caster(solved.scene);
+    const std::vector<View> views = views_to_draw(solved.scene, ray_caster, options);
     warn_of_setup(solved.scene, ray_caster);
     const ReportContent content = make_content(solved, ray_caster, views, options);
     output.write(report_page(content, solved));

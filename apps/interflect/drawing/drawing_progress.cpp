@@ -14,10 +14,12 @@ Monitor DrawingProgress::monitor() {
 }
 
 void DrawingProgress::show(const Progress& progress) {
-    constexpr double patience = 1;  // time before the progress bar appears [s]
+    constexpr double seconds_to_bar = 1;  // pictures that take less need no progress bar
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    if (!bar_ && (seconds < patience || progress.fraction == 1)) return;
-    if (!bar_) bar_.emplace();
+    if (!bar_) {
+        if (seconds < seconds_to_bar || progress.fraction == 1) return;
+        bar_.emplace();
+    }
     bar_->show({progress.fraction, seconds, progress.rays, {}});
 }
 

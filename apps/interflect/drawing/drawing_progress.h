@@ -8,15 +8,15 @@
 
 namespace interflect::command {
 
-/// Progress bar of a picture, shown after one second. Meanwhile a signal ends the process, since half a picture is
-/// useless.
+/// Progress bar of a picture, shown after one second. During the lifetime of this object a signal ends the process,
+/// since half a picture is useless.
 class DrawingProgress {
   public:
     DrawingProgress();
     ~DrawingProgress();
     DrawingProgress(const DrawingProgress&) = delete;
     DrawingProgress& operator=(const DrawingProgress&) = delete;
-    /// Returns a monitor for one drawing at a time. It refers to this object.
+    /// Returns a monitor of the next picture, and restarts the time. The monitor refers to this object.
     Monitor monitor();
 
   private:

@@ -16,16 +16,20 @@ using Clock = std::chrono::steady_clock;
 
 const Clock::time_point process_start = Clock::now();
 
-/// Reduction of width and height, and exponent of the time as a function of the number of pixels. Measured: hybrid
-/// shading of 64 times the pixels traces 23 to 31 times the rays in three offices and a corridor, since records are
-/// sparser than pixels; smooth shading of 16 times the pixels takes 5 times the time, since it also prepares elements.
-struct Growth {
-    int reduction;
+/// Extrapolation from a measured small picture to the full one: the time grows as pixels^exponent.
+struct TimeGrowth {
+    int reduction;  ///< The small picture has 1 / reduction of the width and of the height.
     double exponent;
 };
-constexpr Growth hybrid_growth{8, 0.81}, gathering_growth{16, 1}, element_growth{4, 0.6};
+/// Measured: 64 times the pixels trace 23 to 31 times the rays in three offices and a corridor, since records are
+/// sparser than pixels.
+constexpr TimeGrowth hybrid_growth{8, 0.81};
+constexpr TimeGrowth gathering_growth{16, 1};
+/// Measured: 16 times the pixels take 5 times the time, since part of it prepares the elements.
+constexpr TimeGrowth element_growth{4, 0.6};
 
-constexpr double writing = 0.5e-6;  // [s] per pixel: exposure, tone mapping and compression
+/// Time of exposure, tone mapping and compression per pixel [s].
+constexpr double writing_time = 0.5e-6;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -36,12 +40,80 @@ double seconds_of(const Work& work) {
     return seconds_since(start);
 }
 
-/// Reduces a picture's size. Returns the ratio of the numbers of pixels.
-double reduce(int& width, int& height, int reduction) {
-    const double pixels = static_cast<double>(width) * height;
-    width = std::max(1, width / reduction);
-    height = std::max(1, height / reduction);
-    return pixels / (static_cast<double>(width) * height);
+double pixels_of(const PictureOptions& options) { return static_cast<double>(options.width) * options.height; }
+
+PictureOptions with_size(PictureOptions options, int width, int height) {
+    options.width = width;
+    options.height = height;
+    return options;
+}
+
+/// Returns options of the same picture with fewer pixels.
+PictureOptions reduced(const PictureOptions& options, int reduction) {
+    return with_size(options, std::max(1, options.width / reduction), std::max(1, options.height / reduction));
+}
+
+struct MeasuredPicture {
+    double drawing = 0;    // [s]
+    double filtering = 0;  // [s]; 0 without a denoiser
+    std::int64_t rays = 0;
+};
+
+/// Measured times of two pictures drawn by paths with DrawingTime::min_samples, from which the time of the full picture
+/// follows.
+struct PathTimes {
+    double sending = 0;         // time of sending the light to the other processes [s]
+    MeasuredPicture one_pixel;  // its time is that of preparing the light and starting the filter
+    MeasuredPicture small;
+    double pixels = 1;       // of the full picture
+    double pixel_ratio = 1;  // pixels of the full picture over those of the small one
+    double exponent = 1;     // TimeGrowth::exponent
+
+    /// Predicts the time of the full picture, or of a preview if `reduction` is above 1.
+    DrawingTime predict(int reduction) const {
+        const double small_tracing = std::max(0.0, small.drawing - one_pixel.drawing);
+        const double small_filtering = std::max(0.0, small.filtering - one_pixel.filtering);
+        const double more_pixels = pixel_ratio / (reduction * reduction);
+        const double tracing = sending + one_pixel.drawing + small_tracing * std::pow(more_pixels, exponent);
+        // The surfaces of a preview take two to four camera rays per pixel. The mean ray takes more time than these, so
+        // the smaller number is sufficient.
+        constexpr double rays_per_pixel = 2;
+        const double finding_surfaces =
+            rays_per_pixel * pixels * small_tracing / static_cast<double>(std::max<std::int64_t>(1, small.rays));
+        return {.drawing = tracing + (reduction > 1 ? finding_surfaces : 0),
+                .finishing = one_pixel.filtering + more_pixels * small_filtering + writing_time * pixels,
+                .reduction = reduction};
+    }
+};
+
+PathTimes measure_path_times(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
+                             const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser) {
+    SharedLight shared_light(scene, &solution);
+    PathTimes times;
+    times.sending = seconds_of([&] { shared_light.start(); });
+    if (denoiser) available_denoiser(*denoiser);  // loads its library before the measurements
+    const auto measure = [&](PictureOptions picture) {
+        picture.time = 1e-9;  // [s]; ends the picture after min_samples
+        picture.samples = DrawingTime::min_samples;
+        Rendering drawn;
+        MeasuredPicture measured;
+        measured.drawing = seconds_of([&] {
+            shared_light.share({{}, &stop_flag()}, [&](const Monitor& monitor) {
+                drawn = render(scene, solution, ray_caster, view, picture, monitor);
+            });
+        });
+        if (denoiser) measured.filtering = seconds_of([&] { denoise(drawn.layers, *denoiser); });
+        measured.rays = drawn.rays;
+        return measured;
+    };
+    const TimeGrowth& growth = options.shading == Shading::hybrid ? hybrid_growth : gathering_growth;
+    const PictureOptions small_picture = reduced(options, growth.reduction);
+    times.one_pixel = measure(with_size(options, 1, 1));
+    times.small = measure(small_picture);
+    times.pixels = pixels_of(options);
+    times.pixel_ratio = pixels_of(options) / pixels_of(small_picture);
+    times.exponent = growth.exponent;
+    return times;
 }
 
 }  // namespace
@@ -49,72 +121,37 @@ double reduce(int& width, int& height, int reduction) {
 double seconds_of_process() { return seconds_since(process_start); }
 
 int DrawingTime::samples_within(double seconds) const {
-    constexpr int usual = 8;                  // the noise determines the number of later samples
-    constexpr double usual_over_least = 2.2;  // ratio of the times, measured in office-graz
-    const double share = std::clamp((seconds / least - 1) / (usual_over_least - 1), 0.0, 1.0);
-    return least_samples + 2 * static_cast<int>(share * (usual - least_samples) / 2);
+    constexpr int most = 8;             // more samples are only drawn where pixels are noisy
+    constexpr double time_ratio = 2.2;  // of 8 and 2 samples, measured in office-graz
+    const double share = std::clamp((seconds / drawing - 1) / (time_ratio - 1), 0.0, 1.0);
+    const auto additional_pairs = static_cast<int>(share * (most - min_samples) / 2);
+    return min_samples + 2 * additional_pairs;
 }
 
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser,
                                   double limit) {
-    constexpr double shortest = 1e-9;  // time limit that ends the picture after least_samples [s]
-    SharedLight shared_light(scene, &solution);
-    const double sending = seconds_of([&] { shared_light.start(); });
-    Rendering traced;
-    const auto seconds_to_draw = [&](const PictureOptions& picture) {
-        return seconds_of([&] {
-            shared_light.share({{}, &stop_flag()}, [&](const Monitor& monitor) {
-                traced = render(scene, solution, ray_caster, view, picture, monitor);
-            });
-        });
-    };
-    // Measure the preparation and the start of the filter with a picture of one pixel.
-    PictureOptions one = options;
-    one.time = shortest;
-    one.samples = DrawingTime::least_samples;
-    one.width = one.height = 1;
-    if (denoiser) available_denoiser(*denoiser);  // loads its library
-    const auto seconds_to_filter = [&] {
-        return denoiser ? seconds_of([&] { denoise(traced.layers, *denoiser); }) : 0;
-    };
-    const double preparation = seconds_to_draw(one), starting_filter = seconds_to_filter();
-    // Measure a smaller picture.
-    PictureOptions small = options;
-    small.time = shortest;
-    small.samples = DrawingTime::least_samples;
-    const Growth& growth = options.shading == Shading::hybrid ? hybrid_growth : gathering_growth;
-    const double ratio = reduce(small.width, small.height, growth.reduction);
-    const double drawing = seconds_to_draw(small);
-    const double of_pixels = std::max(0.0, drawing - preparation), filtering = seconds_to_filter() - starting_filter;
-    // Extrapolate to all pixels, or to a preview that the limit permits.
-    const double pixels = static_cast<double>(options.width) * options.height;
-    // Surfaces of a preview take two to four camera rays per pixel; other rays take more time than these.
-    const double of_surfaces = 2 * pixels * of_pixels / static_cast<double>(std::max<std::int64_t>(1, traced.rays));
-    const auto time = [&](int reduction) {
-        const double more_pixels = ratio / (reduction * reduction);
-        const double least = sending + preparation + of_pixels * std::pow(more_pixels, growth.exponent);
-        return DrawingTime{least + (reduction > 1 ? of_surfaces : 0),
-                           starting_filter + more_pixels * std::max(0.0, filtering) + writing * pixels, reduction};
-    };
-    const int largest = options.shading == Shading::hybrid ? largest_reduction : 1;
+    const PathTimes times = measure_path_times(scene, solution, ray_caster, view, options, denoiser);
+    const int last_reduction = options.shading == Shading::hybrid ? largest_reduction : 1;
     int reduction = 1;
-    while (reduction < largest && time(reduction).total() > limit) ++reduction;
-    return time(reduction);
+    while (reduction < last_reduction && times.predict(reduction).total() > limit) ++reduction;
+    return times.predict(reduction);
 }
 
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                      const View& view, const PictureOptions& options) {
-    PictureOptions small = options;
-    const double ratio = reduce(small.width, small.height, element_growth.reduction);
-    const double drawing = seconds_of([&] { render(scene, solution, ray_caster, view, small, {{}, &stop_flag()}); });
-    const double least = std::pow(ratio, element_growth.exponent) * drawing;
-    return {least, writing * options.width * options.height};
+    const PictureOptions small_picture = reduced(options, element_growth.reduction);
+    const double pixel_ratio = pixels_of(options) / pixels_of(small_picture);
+    const double small_drawing = seconds_of([&] {
+        render(scene, solution, ray_caster, view, small_picture, {{}, &stop_flag()});
+    });
+    return {.drawing = std::pow(pixel_ratio, element_growth.exponent) * small_drawing,
+            .finishing = writing_time * options.width * options.height};
 }
 
 double reserved_for(const DrawingTime& predicted, bool is_refined, double left) {
-    constexpr double share_of_paths = 3.0 / 4;
-    const double drawing = is_refined ? std::max(share_of_paths * left, predicted.least) : predicted.least;
+    constexpr double share_of_refined = 3.0 / 4;
+    const double drawing = is_refined ? std::max(share_of_refined * left, predicted.drawing) : predicted.drawing;
     return std::min(largest_drawing_share * left, drawing + predicted.finishing);
 }
 

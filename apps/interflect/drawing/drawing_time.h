@@ -3,43 +3,56 @@
 #include <optional>
 
 #include "interflect/denoise.h"
+#include "interflect/ray_caster.h"
 #include "interflect/render.h"
+#include "interflect/scene.h"
+#include "interflect/solution.h"
 
 namespace interflect::command {
 
 /// Time since the process began [s].
 double seconds_of_process();
 
-/// Predicted duration of drawing a picture [s].
+/// Predicted duration of a picture.
 struct DrawingTime {
-    double least = 0;      ///< Time with least_samples per pixel.
-    double finishing = 0;  ///< Time of filtering noise and writing.
-    int reduction = 1;     ///< Above 1, of preview(): PreviewOptions::reduction.
+    static constexpr int min_samples = 2;  ///< Every pixel drawn by paths has at least this number of samples.
 
-    static constexpr int least_samples = 2;
-    double total() const { return least + finishing; }
-    /// Returns the even number of samples that every pixel of hybrid shading can get within a time [s]: two to eight.
+    double drawing = 0;    ///< Time with min_samples per pixel if paths are traced [s].
+    double finishing = 0;  ///< Time of filtering noise and writing [s].
+    int reduction = 1;     ///< Above 1, the picture is a preview() with this PreviewOptions::reduction.
+
+    double total() const { return drawing + finishing; }
+    /// Returns the number of samples that hybrid shading can take in every pixel within a time [s]: 2, 4, 6 or 8.
     int samples_within(double seconds) const;
 };
 
-/// Predicts the time of a picture from a smaller one. Within 25% for hybrid shading of 960 x 540 pixels in three
-/// offices and a corridor.
-/// @param options  Options of the full picture.
-/// @param limit    Maximum time [s]. If hybrid shading exceeds it, the prediction is for a preview with the smallest
-///                 reduction within the limit, at most largest_reduction.
+/// Largest PreviewOptions::reduction of a predicted preview.
+constexpr int largest_reduction = 4;
+
+/// Predicts the time of a picture drawn by paths from the time of a smaller one. The error of the prediction was at
+/// most 25% for hybrid shading of 960 x 540 pixels in three offices and a corridor.
+///
+/// If hybrid shading takes longer than the limit, a preview is predicted. It has the smallest reduction that is within
+/// the limit, or largest_reduction.
+/// @param options   Options of the full picture.
+/// @param denoiser  Filter of the full picture; empty: none.
+/// @param limit     Maximum time [s].
 DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                   const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser,
                                   double limit);
-constexpr int largest_reduction = 4;
-/// Predicts the time of flat or smooth shading from a smaller picture.
+
+/// Predicts the time of flat or smooth shading from the time of a smaller picture.
 DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solution, const RayCaster& ray_caster,
                                      const View& view, const PictureOptions& options);
 
-/// Drawing takes at most this share of the time that is left.
+/// Maximum share of the remaining time for drawing.
 constexpr double largest_drawing_share = 0.9;
 
-/// Returns the part of `left` [s] that is reserved for drawing: the predicted time, at most largest_drawing_share. If
-/// more samples refine the picture, it is at least three quarters, as in the default run of an office.
+/// Returns the part of the remaining time that is reserved for drawing [s]: the predicted time, at most
+/// largest_drawing_share.
+/// @param is_refined  Whether more samples improve the picture. It then receives at least three quarters of the
+///                    remaining time, its share of a run of an office without --time.
+/// @param left        Remaining time [s].
 double reserved_for(const DrawingTime& predicted, bool is_refined, double left);
 
 }  // namespace interflect::command

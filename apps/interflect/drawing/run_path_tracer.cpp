@@ -28,6 +28,7 @@ using namespace detail;
 
 namespace {
 
+/// @param shading  One that traces paths.
 const char* name_of(Shading shading) {
     switch (shading) {
         case Shading::path:
@@ -41,14 +42,59 @@ const char* name_of(Shading shading) {
     }
 }
 
-void log_outcome(Shading shading, const Rendering& traced, double seconds) {
+void log_path_tracing(Shading shading, const Rendering& traced, double seconds) {
     const auto rays = static_cast<double>(traced.rays);
+    const std::string escaped =
+        traced.escaped_rays > 0
+            ? fmt::format(", {} of the rays left the scene", percent(static_cast<double>(traced.escaped_rays) / rays))
+            : "";
     spdlog::info("{}: {} paths, {} rays in {}, estimated relative error {} a pixel{}", name_of(shading),
                  magnitude(static_cast<double>(traced.paths)), magnitude(rays), duration(seconds),
-                 percent(traced.relative_error),
-                 traced.escaped_rays > 0 ? fmt::format(", {} of the rays left the scene",
-                                                       percent(static_cast<double>(traced.escaped_rays) / rays))
-                                         : "");
+                 percent(traced.relative_error), escaped);
+}
+
+struct TimedRendering {
+    Rendering rendering;
+    double seconds = 0;  // duration of tracing
+};
+
+/// Traces paths until they are complete or a signal ends them. @param arguments  Denoiser of pictures for `on_picture`.
+TimedRendering trace_with_progress(SharedLight& shared_light, const Scene& scene, const Solution* solution,
+                                   const RayCaster& ray_caster, const View& view, const PictureOptions& options,
+                                   const PathTracerArguments& arguments,
+                                   const std::function<void(const Image&)>& on_picture) {
+    TimedRendering traced;
+    traced.seconds = with_path_progress(shared_light, [&](Monitor monitor) {
+        if (on_picture)
+            monitor.on_picture = [&](const Rendering& so_far) {
+                on_picture(arguments.denoise ? interflect::denoise(so_far.layers, *arguments.denoise).image
+                                             : so_far.image);
+            };
+        traced.rendering = solution ? render(scene, *solution, ray_caster, view, options, monitor)
+                                    : render(scene, ray_caster, view, options, monitor);
+    });
+    return traced;
+}
+
+void filter_noise(TracedPicture& traced, Denoiser denoiser) {
+    const LongWork work("filtering noise");
+    DenoisedPicture denoised = interflect::denoise(traced.layers, denoiser);
+    traced.image = std::move(denoised.image);
+    if (!denoised.standard_error.pixels.empty()) traced.standard_error = std::move(denoised.standard_error);
+    traced.filter = denoised.filter;
+}
+
+void write_error_image(PendingFile& file, const TracedPicture& traced, const Scene& scene, const View& view,
+                       const PictureOptions& options) {
+    const char* unit = options.quantity == PictureQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";
+    write_image(file, traced.standard_error,
+                {.view = view,
+                 .quantity = std::string("standard error of ") + unit,
+                 .scene = scene.name,
+                 .version = INTERFLECT_VERSION,
+                 .seed = options.seed,
+                 .exposure = 0,
+                 .filter = traced.filter});
 }
 
 }  // namespace
@@ -90,13 +136,13 @@ void PathTracerArguments::check_samples(const CLI::App& app, int samples) {
         throw UsageError("--samples", fmt::format("expected 2 or more, whose spread tells the error, found {}; "
                                                   "--shading smooth and flat take 1",
                                                   samples));
-    const CLI::Option& most = *app.get_option("--max-samples");
-    if (most.count() == 0) return;
+    const CLI::Option& max_samples = *app.get_option("--max-samples");
+    if (max_samples.count() == 0) return;
     if (app.get_option("--until")->count() == 0)
         throw UsageError("--max-samples", "it has no effect without --until: every pixel has --samples");
-    if (most.as<int>() < samples)
+    if (max_samples.as<int>() < samples)
         throw UsageError("--max-samples",
-                         fmt::format("expected no less than --samples, {}, found {}", samples, most.as<int>()));
+                         fmt::format("expected no less than --samples, {}, found {}", samples, max_samples.as<int>()));
 }
 
 bool has_every_pixel(const Rendering& traced) {
@@ -105,21 +151,21 @@ bool has_every_pixel(const Rendering& traced) {
 }
 
 std::vector<ImageLayer> layers_of(const Rendering& traced) {
-    const PictureLayers& l = traced.layers;
-    const auto of_image = [](const std::string& name, const char* channels, const Image& image) {
+    const PictureLayers& layers = traced.layers;
+    const auto layer_of_image = [](const std::string& name, const char* channels, const Image& image) {
         static_assert(sizeof(Rgb) == 3 * sizeof(float));
         return ImageLayer{name, channels, {&image.pixels.data()->x, 3 * image.pixels.size()}};
     };
-    return {of_image("emitted", "RGB", l.emitted),
-            of_image("direct", "RGB", l.reflected.direct),
-            of_image("indirect", "RGB", l.reflected.indirect),
-            of_image("albedo", "RGB", l.albedo),
-            of_image("normal", "XYZ", l.normal),
-            of_image("standard_error", "RGB", traced.standard_error),
-            {"depth", "Z", l.depth},
-            {"element_level", "V", l.level},
-            {"direct_variance", "V", l.reflected.direct_variance},
-            {"indirect_variance", "V", l.reflected.indirect_variance}};
+    return {layer_of_image("emitted", "RGB", layers.emitted),
+            layer_of_image("direct", "RGB", layers.reflected.direct),
+            layer_of_image("indirect", "RGB", layers.reflected.indirect),
+            layer_of_image("albedo", "RGB", layers.albedo),
+            layer_of_image("normal", "XYZ", layers.normal),
+            layer_of_image("standard_error", "RGB", traced.standard_error),
+            {"depth", "Z", layers.depth},
+            {"element_level", "V", layers.level},
+            {"direct_variance", "V", layers.reflected.direct_variance},
+            {"indirect_variance", "V", layers.reflected.indirect_variance}};
 }
 
 void require_memory_for_paths(Size size) {
@@ -135,36 +181,19 @@ TracedPicture run_path_tracer(const Scene& scene, const Solution* solution, cons
                         "a smaller --size, fewer --light-walks, and a scene of fewer faces, need less");
     std::optional<PendingFile> error_image;
     if (!arguments.error_image.empty()) error_image.emplace(arguments.error_image);
-    TracedPicture traced;
     stop_on_signal();
     SharedLight shared_light(scene, solution);
-    const double seconds = with_path_progress(shared_light, [&](Monitor monitor) {
-        if (on_picture)
-            monitor.on_picture = [&](const Rendering& so_far) {
-                on_picture(arguments.denoise ? interflect::denoise(so_far.layers, *arguments.denoise).image
-                                             : so_far.image);
-            };
-        static_cast<Rendering&>(traced) = solution ? render(scene, *solution, ray_caster, view, options, monitor)
-                                                   : render(scene, ray_caster, view, options, monitor);
-    });
-    if (solution && !has_every_pixel(traced) && !arguments.has_path_outputs()) return traced;
+    TimedRendering drawn =
+        trace_with_progress(shared_light, scene, solution, ray_caster, view, options, arguments, on_picture);
+    TracedPicture traced{std::move(drawn.rendering), {}};
+    const bool caller_can_replace_it = solution && !arguments.has_path_outputs();
+    if (caller_can_replace_it && !has_every_pixel(traced)) return traced;
     if (const auto dark = std::count(traced.batches.begin(), traced.batches.end(), 0u); dark > 0)
         spdlog::warn("{} of {} pixels were not reached before the end and are black", dark, traced.batches.size());
-    if (arguments.denoise && traced.paths > 0) {
-        const LongWork work("filtering noise");
-        DenoisedPicture denoised = interflect::denoise(traced.layers, *arguments.denoise);
-        traced.image = std::move(denoised.image);
-        if (!denoised.standard_error.pixels.empty()) traced.standard_error = std::move(denoised.standard_error);
-        traced.filter = denoised.filter;
-    }
+    if (arguments.denoise && traced.paths > 0) filter_noise(traced, *arguments.denoise);
     if (traced.interrupted) spdlog::warn("stopped early: the picture has more noise than asked for");
-    log_outcome(options.shading, traced, seconds);
-    if (error_image) {
-        const char* unit = options.quantity == PictureQuantity::irradiance ? "irradiance [lx]" : "radiance [cd/m^2]";
-        write_image(*error_image, traced.standard_error,
-                    {view, std::string("standard error of ") + unit, scene.name, INTERFLECT_VERSION, options.seed, 0,
-                     traced.filter});
-    }
+    log_path_tracing(options.shading, traced, drawn.seconds);
+    if (error_image) write_error_image(*error_image, traced, scene, view, options);
     return traced;
 }
 

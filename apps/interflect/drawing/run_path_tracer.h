@@ -22,21 +22,22 @@ struct PathTracerArguments {
     std::optional<Denoiser> denoise;    ///< Empty: off.
     bool layers = false;
 
-    /// @param picture  Receives the options of the library.
+    /// @param picture  Receives the options of interflect::render().
     void add_to(CLI::App& app, PictureOptions& picture);
-    /// @throws UsageError for an error image in an 8-bit format.
+    /// @throws UsageError for an error image in an 8-bit format, and as require_denoiser() does.
     void check() const;
-    /// @throws UsageError for fewer than two --samples, whose variance gives the error, and for --max-samples below
-    /// that or without --until.
+    /// @param samples  Number of paths per pixel or measuring point. The error is estimated from their variance.
+    /// @throws UsageError for fewer than two samples, for --max-samples below `samples`, and for --max-samples without
+    ///         --until.
     static void check_samples(const CLI::App& app, int samples);
     /// Whether the output contains results of path tracing other than the picture.
     bool has_path_outputs() const { return layers || !error_image.empty(); }
 };
 
-/// Whether each pixel has two batches of paths.
+/// Whether each pixel has two batches of paths, the fewest that give its light and error.
 bool has_every_pixel(const Rendering& traced);
 
-/// Returns the layers of an OpenEXR file; refers to `traced`.
+/// Returns the layers of an OpenEXR file. They refer to the values in `traced`.
 std::vector<ImageLayer> layers_of(const Rendering& traced);
 
 /// @throws std::runtime_error if a gathered or path-traced picture does not fit into memory.
@@ -44,13 +45,18 @@ void require_memory_for_paths(Size size);
 
 /// A picture drawn by paths.
 struct TracedPicture : Rendering {
-    std::string filter;  ///< DenoisedPicture::filter; empty: none.
+    std::string filter;  ///< DenoisedPicture::filter; empty if noise is not filtered.
 };
 
-/// Traces paths with a progress bar, logs the outcome, and writes the error image if requested. Ctrl-C ends it early
-/// with a partial result, which is neither filtered nor reported if smooth shading can replace it.
+/// Traces paths with a progress bar, filters noise, logs the outcome and writes the error image, as requested. Ctrl-C
+/// ends it early with fewer samples.
+///
+/// If a pixel then has fewer than two batches, the caller can draw the solution in another way. The picture is
+/// therefore returned unfiltered and is not logged, unless PathTracerArguments::has_path_outputs() or the solution is
+/// missing.
 /// @param solution    Null for shading without a solution.
-/// @param on_picture  Receives the picture so far (Monitor::on_picture), filtered as the last. May be empty.
+/// @param on_picture  Receives pictures during the work (Monitor::on_picture), filtered like the final one. May be
+///                    empty.
 TracedPicture run_path_tracer(const Scene& scene, const Solution* solution, const RayCaster& ray_caster,
                               const View& view, const PictureOptions& options, const PathTracerArguments& arguments,
                               const std::function<void(const Image&)>& on_picture = {});

@@ -478,4 +478,8 @@ SolveOptions SolverOptions::resolved(const std::vector<View>& views, float aspec
     return interflect::resolved(given);
 }
 
+bool SolverOptions::method_refines(bool has_views) const {
+    return given_.method.value_or(default_method(has_views)).refines;
+}
+
 }  // namespace interflect::command

@@ -99,6 +99,9 @@ struct SolverOptions {
     void add_to(CLI::App& app);
     /// Returns the options of solve(). @param aspect  Width over height of the pictures.
     SolveOptions resolved(const std::vector<View>& views, float aspect = 16.0f / 9, int pixel_rows = 720) const;
+    /// Whether the method divides patches itself.
+    /// @param has_views  Whether rays concentrate on views. The default method depends on it.
+    bool method_refines(bool has_views) const;
     std::uint64_t seed() const { return given_.others.seed; }
     double until() const { return given_.limits.limits().until; }  ///< Target of the relative error; 0 if not given.
     double time() const { return given_.limits.limits().time; }    ///< [s]; infinite if not given.

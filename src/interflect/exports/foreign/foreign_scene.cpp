@@ -13,6 +13,7 @@
 #include "interflect/exports/mesh/opacity.h"
 #include "interflect/exports/vertices/lit_polygons.h"
 #include "interflect/luminaires/skies/skies.h"
+#include "interflect/prepare.h"
 
 namespace interflect::detail {
 
@@ -73,7 +74,7 @@ class Meshes {
 
 std::vector<View> local_views(const Scene& scene, const std::vector<View>& chosen) {
     std::vector<View> views = chosen.empty() ? scene.views : chosen;
-    if (views.empty()) views.push_back(overview(scene));
+    if (views.empty()) views.push_back(overview(scene, RayCaster(scene)));
     for (View& view : views) {
         view.eye -= scene.origin;
         view.look_at -= scene.origin;
