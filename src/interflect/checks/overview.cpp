@@ -31,6 +31,9 @@ constexpr float least_lit = 0.01f;
 /// Distances [m] beyond which a larger room is not rated higher, and beyond which surfaces near the eye do not matter.
 constexpr float far_enough = 4, free_enough = 1;
 
+/// Number of rays from each of the best eyes.
+constexpr std::size_t many_rays = 96;
+
 /// Summary of the rays from an eye.
 struct Prospect {
     float fronts = 0, backs = 0, enclosed = 0, lit = 0;  ///< Shares of all rays, as in Sight.
@@ -116,7 +119,7 @@ std::vector<RatedEye> rate(const LitSights& sights, const std::vector<V3f>& eyes
 template <class Condition>
 std::optional<RatedEye> best_eye(const LitSights& sights, const std::vector<RatedEye>& rated,
                                  const Condition& condition) {
-    constexpr std::size_t few = 4, many_rays = 96;
+    constexpr std::size_t few = 4;
     const auto better = [](const RatedEye& a, const RatedEye& b) { return a.prospect.rating() > b.prospect.rating(); };
     std::vector<RatedEye> fit;
     std::copy_if(rated.begin(), rated.end(), std::back_inserter(fit), condition);
@@ -171,12 +174,27 @@ V3f best_direction(const LitSights& sights, const RatedEye& eye, const V3f& up) 
     return horizontal(best);
 }
 
-/// Returns a copy of a view with another eye and direction.
-View view_from(const Scene& scene, const LitSights& sights, const RatedEye& eye, const V3f& up, View view) {
+/// Returns an eye farther back that meets the condition too and shows more of the room, else the same eye.
+template <class Condition>
+RatedEye step_back(const LitSights& sights, const RatedEye& eye, const V3f& direction, const Condition& condition) {
+    constexpr float clearance = 0.4f;                 // of the surface behind [m]
+    constexpr float least_relative_lit = 0.5f;        // a place behind a wardrobe shows less light
+    constexpr std::array shares{1.0f, 0.67f, 0.33f};  // of the free distance, for rooms with niches and doors
+    const Sight behind = sights.look(eye.eye, {{-direction}}).front();
+    const float distance = std::min(behind.distance - clearance, far_enough);
+    if (!behind.meets_front || distance <= 0) return eye;
+    std::vector<V3f> places;
+    for (const float share : shares) places.push_back(eye.eye - share * distance * direction);
+    for (const RatedEye& place : rate(sights, places, many_rays))
+        if (condition(place) && place.prospect.lit >= least_relative_lit * eye.prospect.lit) return place;
+    return eye;
+}
+
+/// Returns a copy of a view with another eye and a horizontal direction.
+View view_from(const Scene& scene, const RatedEye& eye, const V3f& direction, const V3f& up, View view) {
     constexpr float down = 0.15f;  // vertical over horizontal component: 9 degrees below the horizon
-    const V3f direction = best_direction(sights, eye, up) - down * up;
     view.eye = scene.origin + Imath::V3d(eye.eye);
-    view.look_at = view.eye + Imath::V3d(direction) * static_cast<double>(eye.prospect.openness);
+    view.look_at = view.eye + Imath::V3d(direction - down * up) * static_cast<double>(eye.prospect.openness);
     view.up = up;
     return view;
 }
@@ -218,13 +236,19 @@ View overview(const Scene& scene, const RayCaster& ray_caster) {
         return p.is_usable() && p.enclosed >= least_enclosed && p.openness >= least_openness &&
                has_ceiling(sights, rated.eye, up);
     };
+    const auto view_from_back = [&](const RatedEye& eye, const auto& condition) {
+        const V3f direction = best_direction(sights, eye, up);
+        return view_from(scene, step_back(sights, eye, direction, condition), direction, up, from_corner);
+    };
     const std::vector<RatedEye> rated = rate(sights, eye_places(scene, ray_caster, up), few_rays);
-    std::optional<RatedEye> eye = best_eye(sights, rated, is_in_room);
+    if (const std::optional<RatedEye> eye = best_eye(sights, rated, is_in_room))
+        return view_from_back(*eye, is_in_room);
 
     // Without a room, replace only a dark view.
-    if (!eye && shown.lit < least_lit)
-        eye = best_eye(sights, rated, [](const RatedEye& r) { return r.prospect.is_usable(); });
-    return eye ? view_from(scene, sights, *eye, up, from_corner) : from_corner;
+    if (shown.lit >= least_lit) return from_corner;
+    const auto is_usable = [](const RatedEye& place) { return place.prospect.is_usable(); };
+    const std::optional<RatedEye> eye = best_eye(sights, rated, is_usable);
+    return eye ? view_from_back(*eye, is_usable) : from_corner;
 }
 
 }  // namespace interflect
