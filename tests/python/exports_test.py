@@ -47,7 +47,7 @@ class Exports(command.RenderTest):
         for extension, settings, options in (
             ("glb", {}, ()),
             ("gltf", lightmap, ("--lightmap", "--texels-per-metre", "4")),
-            ("ply", {}, ()),
+            ("ply", {"max_triangles": 300}, ("--max-triangles", "300")),
             ("obj", {"samples": 16, "seed": 3}, ("--samples", "16", "--seed", "3")),
             ("vtu", {}, ()),
             ("json", {"rays": 64}, ("--probe-rays", "64")),

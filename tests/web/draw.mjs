@@ -1,5 +1,6 @@
 // Draws glTF files with three.js in headless Chromium: node draw.mjs CAMERA WIDTH HEIGHT FILE... Writes FILE.png.
-// Prints a JSON list: {meshes, materials, pixels: [[r, g, b], ...] row by row from the top, of an sRGB display, 0 to 255}.
+// Prints a JSON list: {meshes, materials, pixels}. The pixels are bytes in base64: red, green, blue and alpha of an sRGB
+// display, row by row from the top. A list of numbers would take the browser several times as long as the drawing.
 import { createReadStream, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { dirname, extname, join, normalize } from "node:path";

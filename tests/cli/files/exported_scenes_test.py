@@ -65,6 +65,9 @@ class Exported(CommandTest):
         self.write("room.views.json", json.dumps(VIEWS))
 
 
+# By default the direct light of thousands of triangles and texels is traced.
+FEW_TRIANGLES = ("--max-triangles", "300")
+FEW_TEXELS = ("--lightmap", "--texels-per-metre", "2")
 EXPOSED = ("--exposure", "-6")
 ELEMENTS = (*EXPOSED, "--shading", "smooth", "--polygons")
 
@@ -419,8 +422,9 @@ class OneStem(Exported):
         self.write("room.mgf", room() + corners + board + "light sky overcast 500\n")
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
         before = {}
-        exports = [("room" + extension, ()) for extension in SCENE_FORMATS + LIGHT_FORMATS]
-        exports += [(name, ("--lightmap", "--texels-per-metre", "2", "--exposure", "0")) for name in ("room.glb", "room.gltf")]
+        exports = [("room" + extension, ()) for extension in SCENE_FORMATS + LIGHT_FORMATS if extension not in (".ply", ".obj")]
+        exports += [(name, FEW_TRIANGLES) for name in ("room.ply", "room.obj")]
+        exports += [(name, (*FEW_TEXELS, "--exposure", "0")) for name in ("room.glb", "room.gltf")]
         for name, options in exports:
             self.interflect("export", "room.h5", "-o", name, *options)
             for file, content in before.items():
@@ -448,7 +452,7 @@ class CutOuts(Exported):
 
     def test_are_masks_in_gltf(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
-        for options in ((), ("--lightmap",)):
+        for options in (FEW_TRIANGLES, FEW_TEXELS):
             self.interflect("export", "room.h5", "-o", "room.gltf", *options)
             gltf = json.loads(self.bytes("room.gltf"))
             board = next(m for m in gltf["materials"] if m["name"] == "board")
@@ -463,7 +467,7 @@ class CutOuts(Exported):
 
     def test_are_masks_in_obj(self):
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
-        self.interflect("export", "room.h5", "-o", "room.obj")
+        self.interflect("export", "room.h5", "-o", "room.obj", *FEW_TRIANGLES)
         self.assertIn("map_d room-obj-board-opacity.png", self.bytes("room.mtl").decode())
         (row,) = png_rows(self.bytes("room-obj-board-opacity.png"))
         self.assertEqual(row, [(0, 0, 0), (255, 255, 255), (0, 0, 0), (255, 255, 255)])
@@ -471,8 +475,8 @@ class CutOuts(Exported):
     def test_come_back(self):
         """Seen to fail with the holes closed."""
         self.interflect("solve", "room.mgf", "-o", "room.h5", "--rays", "1k")
-        self.interflect("export", "room.h5", "-o", "back.glb", "--lightmap", "--exposure", "0")
-        self.interflect("export", "room.h5", "-o", "back.obj")
+        self.interflect("export", "room.h5", "-o", "back.glb", *FEW_TEXELS, "--exposure", "0")
+        self.interflect("export", "room.h5", "-o", "back.obj", *FEW_TRIANGLES)
         view = ("--eye", "0.3,0.2,1.6", "--look-at", "1.2,3,1", "--up", "0,0,1", "--fov", "45")
         for scene, camera in (("room.mgf", view), ("back.obj", view), ("back.glb", ("--view", "door"))):
             picture = ("--shading", "path", "--samples", "256", "--size", "24x18")

@@ -122,7 +122,7 @@ class Agreement(RenderTest):
         self.assertNotEqual(self.bytes("last.png"), self.render("smooth.png", "--shading", "smooth", size=size))
 
     def test_progressive_pictures_end_with_the_same_bits(self):
-        size = ("--size", "160x120", "--samples", "8", "--rays", "4M", *VIEW)
+        size = ("--size", "80x60", "--samples", "8", "--rays", "4M", *VIEW)
         for kind in ("png", "exr"):
             said = self.draw(f"steps.{kind}", "--progressive", *size)
             self.assertGreaterEqual(said.count("picture so far"), 2, kind)

@@ -16,7 +16,7 @@ COMMAND = os.environ["INTERFLECT_COMMAND"]
 FRESH_PROCESS = """
 import sys, interflect as ifl
 import numpy as np
-np.save(sys.argv[1], ifl.render(ifl.solve("scenes/office.mgf", view="desk", rays=3e5), width=160, height=90))
+np.save(sys.argv[1], ifl.render(ifl.solve("scenes/office.mgf", view="desk", rays=5e4), width=48, height=27))
 """
 
 
@@ -32,8 +32,8 @@ class SameBits(unittest.TestCase):
     def test_of_a_picture(self):
         subprocess.run([sys.executable, "-B", "-c", FRESH_PROCESS, self.folder / "python.npy"], cwd=ROOT, check=True)
         # The size of the picture is part of the view that the command solves for.
-        self.interflect("solve", "scenes/office.mgf", "--view", "desk", "--rays", "300k", "-o", self.folder / "office.h5")
-        self.interflect("render", self.folder / "office.h5", "--view", "desk", "--size", "160x90", "-o", self.folder / "command.exr")
+        self.interflect("solve", "scenes/office.mgf", "--view", "desk", "--rays", "50k", "-o", self.folder / "office.h5")
+        self.interflect("render", self.folder / "office.h5", "--view", "desk", "--size", "48x27", "-o", self.folder / "command.exr")
         np.testing.assert_array_equal(np.load(self.folder / "python.npy"), ifl.read_image(self.folder / "command.exr"))
 
     def test_of_a_picture_without_options(self):
@@ -57,30 +57,31 @@ class SameBits(unittest.TestCase):
             np.testing.assert_array_equal(picture, ifl.read_image(self.folder / "command.exr"), shading)
 
     def test_of_solution_files(self):
-        for number, (options, arguments) in enumerate((
+        for number, (scene, options, arguments) in enumerate((
                 # The command moves these views to the front of the scene's, where they are.
-                ({"views": ["desk", "doorway"], "seed": 5}, ["--view", "desk", "--view", "doorway", "--seed", "5"]),
-                ({"method": "srr"}, ["--method", "srr"]),
-                ({"view": "desk", "preset": "paper"}, ["--view", "desk", "--preset", "paper"]),
-                ({"view": "desk", "one_bounce": True, "alpha": 0.2, "min_area": 0.01},
-                 ["--view", "desk", "--one-bounce", "--alpha", "0.2", "--min-area", "0.01"]),
+                ("office", {"views": ["desk", "doorway"], "seed": 5}, ["--view", "desk", "--view", "doorway", "--seed", "5"]),
+                ("maze", {"method": "srr"}, ["--method", "srr"]),
+                ("maze", {"view": "room-0", "preset": "paper"}, ["--view", "room-0", "--preset", "paper"]),
+                ("maze", {"view": "room-0", "one_bounce": True, "alpha": 0.2, "min_area": 0.01},
+                 ["--view", "room-0", "--one-bounce", "--alpha", "0.2", "--min-area", "0.01"]),
         )):
             with self.subTest(options):
                 # Saved scenes have the name of the file as it was given.
                 os.chdir(ROOT)
-                ifl.solve("scenes/office.mgf", rays=2e5, **options).save(self.folder / "python.h5")
-                self.interflect("solve", "scenes/office.mgf", "--rays", "200k", *arguments, "-o", self.folder / f"{number}.h5")
+                file = f"scenes/{scene}.mgf"
+                ifl.solve(file, rays=5e4, **options).save(self.folder / "python.h5")
+                self.interflect("solve", file, "--rays", "50k", *arguments, "-o", self.folder / f"{number}.h5")
                 self.assertEqual((self.folder / "python.h5").read_bytes(), (self.folder / f"{number}.h5").read_bytes())
 
     def test_of_light_groups(self):
         os.chdir(ROOT)
-        ifl.solve(ifl.load("scenes/office.mgf", light_groups=True), rays=2e5).save(self.folder / "python.h5")
-        self.interflect("solve", "scenes/office.mgf", "--rays", "200k", "--light-groups", "-o", self.folder / "command.h5")
+        ifl.solve(ifl.load("scenes/office.mgf", light_groups=True), rays=5e4).save(self.folder / "python.h5")
+        self.interflect("solve", "scenes/office.mgf", "--rays", "50k", "--light-groups", "-o", self.folder / "command.h5")
         self.assertEqual((self.folder / "python.h5").read_bytes(), (self.folder / "command.h5").read_bytes())
 
     def test_of_measuring_grids(self):
         """Grids of the office, before and after faces are cut for solving. Some points lie inside chairs."""
-        self.interflect("solve", "scenes/office.mgf", "--rays", "100k", "-o", self.folder / "office.h5")
+        self.interflect("solve", "scenes/office.mgf", "--rays", "10k", "-o", self.folder / "office.h5")
         scenes = ifl.load(ROOT / "scenes/office.mgf"), ifl.Solution.open(self.folder / "office.h5").scene
         for options, boundary in (([], 0), (["--boundary"], 0.5)):
             grids = [ifl.area_grid(scene, ifl.find_floor(scene, 0.44), boundary=boundary, height=0.44) for scene in scenes]
