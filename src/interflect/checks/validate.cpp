@@ -12,6 +12,7 @@
 #include "interflect/checks/search/finder.h"
 #include "interflect/raycast/embree/coincident.h"
 #include "interflect/scene/core/limits.h"
+#include "interflect/scene/luminaires/luminaire.h"
 
 namespace interflect {
 
@@ -175,15 +176,6 @@ class Validator {
             open.add_at((edge.a + edge.b) / 2, scene_.objects[patch.object], scene_.materials[patch.material].name);
         }
         open.append_to(findings_);
-    }
-
-    static std::optional<V3f> position_of(const Luminaire& luminaire) {
-        return std::visit(
-            [](const auto& kind) -> std::optional<V3f> {
-                if constexpr (requires { kind.position; }) return kind.position;
-                return std::nullopt;
-            },
-            luminaire.kind);
     }
 
     static constexpr float max_blocked = 0.9f;

@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "interflect/base/numbers/random.h"
 #include "interflect/checks/search/one_way.h"
+#include "interflect/checks/search/sight_lines.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
-#include "interflect/geometry/textures/tangent_frame.h"
 #include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/scene/core/core.h"
 
@@ -20,6 +19,10 @@ namespace {
 
 constexpr std::uint64_t rays_of_face = 64, paths_of_lamp = 64, reflections = 8, seed_of_surroundings = 1;
 constexpr float close_by = 0.1f;  // relative to a face's size
+
+V3f direction_around(const V3f& normal, std::uint64_t index) {
+    return SightLines::cosine_direction(normal, seed_of_surroundings, index);
+}
 
 Hit first_hit(const RayCaster& ray_caster, const Ray& ray) {
     Hit hit;
@@ -32,15 +35,6 @@ Hit first_hit(const RayCaster& ray_caster, const Ray& ray) {
 FaceSurroundings::FaceSurroundings(const Scene& scene, const RayCaster& ray_caster)
     : scene_(scene), ray_caster_(ray_caster), scene_size_(core_bounds(scene).size().length()) {}
 
-V3f FaceSurroundings::direction(const V3f& normal, std::uint64_t index) const {
-    const auto words = random_words(seed_of_surroundings, index);
-    const float radius = std::sqrt(unit_float(words[0])), angle = 2 * std::numbers::pi_v<float> * unit_float(words[1]);
-    const TangentFrame frame(normal);
-    return (radius * std::cos(angle) * frame.s + radius * std::sin(angle) * frame.t +
-            std::sqrt(1 - radius * radius) * normal)
-        .normalized();
-}
-
 Surroundings FaceSurroundings::measure(PatchIndex patch, Side side) const {
     const PatchGeometry geometry(scene_, scene_.patches[patch]);
     const V3f normal = side == Side::front ? geometry.normal() : -geometry.normal();
@@ -49,7 +43,7 @@ Surroundings FaceSurroundings::measure(PatchIndex patch, Side side) const {
     for (std::uint64_t i = 0; i < rays_of_face; ++i) {
         const auto words = random_words(seed_of_surroundings + 1, i);
         const V3f x = geometry.point(geometry.uniform_parameters(unit_float(words[0]), unit_float(words[1])));
-        const Ray ray{x + ray_caster_.ray_offset(patch) * normal, direction(normal, i)};
+        const Ray ray{x + ray_caster_.ray_offset(patch) * normal, direction_around(normal, i)};
         const Hit hit = first_hit(ray_caster_, ray);
         escaped += hit.patch == none;
         blocked += hit.patch != none && hit.distance < near;
@@ -75,7 +69,7 @@ bool FaceSurroundings::stays_within(float extent, const Start& start) const {
             const bool is_glass = largest_channel(transmittance_at(scene_, patch, geometry.parameters_of(x))) > 0;
             const V3f out = (is_glass ? -1.0f : 1.0f) * geometry.normal();
             ray = {x + ray_caster_.ray_offset(hit.patch) * out,
-                   is_glass ? ray.direction : direction(out, path * reflections + k)};
+                   is_glass ? ray.direction : direction_around(out, path * reflections + k)};
         }
     }
     return true;
@@ -86,7 +80,7 @@ bool FaceSurroundings::is_enclosed(PatchIndex patch) const {
     const float size = std::sqrt(geometry.area());
     return stays_within(std::min(scene_size_ / 10, std::max(5 * size, 0.5f)), [&](std::uint64_t path) {
         return Ray{geometry.centre() + ray_caster_.ray_offset(patch) * geometry.normal(),
-                   direction(geometry.normal(), path)};
+                   direction_around(geometry.normal(), path)};
     });
 }
 

@@ -30,7 +30,6 @@ class FaceSurroundings {
   private:
     template <class Start>
     bool stays_within(float extent, const Start& start) const;
-    V3f direction(const V3f& normal, std::uint64_t index) const;
 
     const Scene& scene_;
     const RayCaster& ray_caster_;

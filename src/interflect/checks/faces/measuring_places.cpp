@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <type_traits>
-#include <variant>
 
 #include "interflect/base/threads/parallel.h"
 #include "interflect/checks/search/one_way.h"
 #include "interflect/checks/search/shell.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
+#include "interflect/scene/luminaires/luminaire.h"
 
 namespace interflect {
 
@@ -95,16 +94,6 @@ class LightSearch {
     }
 
   private:
-    static std::optional<V3f> position_of(const Luminaire& luminaire) {
-        return std::visit(
-            [](const auto& light) -> std::optional<V3f> {
-                if constexpr (requires { light.position; })
-                    return light.position;
-                else
-                    return std::nullopt;
-            },
-            luminaire.kind);
-    }
     bool emits(PatchIndex patch) const {
         return largest_channel(scene_.materials[scene_.patches[patch].material].exitance) > 0;
     }

@@ -238,11 +238,6 @@ std::string luminaire_text(ForeignScene& scene, const Luminaire& luminaire, cons
     return "";
 }
 
-V3f equirectangular_direction(float x, float y) {
-    const float azimuth = (0.5f - x) * 2 * pi, polar = pi * y;
-    return {std::cos(azimuth) * std::sin(polar), std::sin(azimuth) * std::sin(polar), std::cos(polar)};
-}
-
 std::string camera_text(const View& view, std::size_t number) {
     return fmt::format("camera(\"view-{}\", {}, {}, {}, {}, {})\n", number, tuple(V3f(view.eye)),
                        tuple(V3f(view.look_at)), tuple(view.up), radians(view.fov), view.extent);
@@ -260,7 +255,7 @@ std::string blender_description(ForeignScene& scene) {
     for (const ForeignMesh& mesh : scene.meshes) text += mesh_text(scene, mesh);
     for (std::size_t i = 0; i < scene.scene.luminaires.size(); ++i)
         text += luminaire_text(scene, scene.scene.luminaires[i], scene.luminaires[i]);
-    if (const std::string image = scene.add_sky_image(2, equirectangular_direction); !image.empty())
+    if (const std::string image = scene.add_sky_image(2, latitude_longitude_direction); !image.empty())
         text += fmt::format("sky(\"{}\")\n", image);
     scene.warn_of_materials(ForeignScene::Support::all);
     return text + epilogue;

@@ -206,12 +206,6 @@ sky_indicatrix = 1 + arg(9)*(Exp(arg(10)*acos(sky_sun)) - Exp(arg(10)*PI/2)) + a
 sky_luminance = if(sky_zenith, bound(0, sky_gradation, 1e10)*bound(0, sky_indicatrix, 1e10), arg(13));
 )";
 
-/// Returns the direction of a point of an image of latitudes and longitudes.
-V3f sky_direction(float x, float y) {
-    const float azimuth = (0.5f - x) * 2 * pi, polar = pi * y;
-    return {std::cos(azimuth) * std::sin(polar), std::sin(azimuth) * std::sin(polar), std::cos(polar)};
-}
-
 /// Describes the sky. Radiance has one source in each direction, so several skies or a map become an image. A single
 /// sky model becomes a function.
 std::string sky_text(ForeignScene& scene) {
@@ -235,7 +229,7 @@ std::string sky_text(ForeignScene& scene) {
                             m.c, m.d, m.e, m.g, static_cast<double>(dome->ground) / std::numbers::pi * integral);
     } else {
         pattern = "sky.image";
-        const Texture image = scene.sky_image(2, sky_direction);
+        const Texture image = scene.sky_image(2, latitude_longitude_direction);
         const auto along = [](const char* share, std::uint32_t size, std::uint32_t other_side) {
             const std::string pixel = fmt::format("bound(0,{0}*({1})-.5,{0}-1)", size, share);
             return picture_coordinate(pixel, size, other_side);

@@ -180,6 +180,12 @@ std::string ForeignScene::add_opaque_reflectance_image(std::uint32_t m) {
 
 bool ForeignScene::has_sky() const { return std::any_of(scene.luminaires.begin(), scene.luminaires.end(), is_sky); }
 
+V3f latitude_longitude_direction(float x, float y) {
+    constexpr float pi = std::numbers::pi_v<float>;
+    const float azimuth = (0.5f - x) * 2 * pi, polar = pi * y;
+    return {std::cos(azimuth) * std::sin(polar), std::sin(azimuth) * std::sin(polar), std::cos(polar)};
+}
+
 Texture ForeignScene::sky_image(int aspect, const std::function<V3f(float, float)>& direction) const {
     // Maps keep their resolution up to 2048 rows. Larger maps are averaged, which preserves the power of a sun in them.
     constexpr std::uint32_t least_rows = 512, most_rows = 2048, samples_per_row_of_map = 2;

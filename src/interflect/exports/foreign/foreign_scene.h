@@ -98,4 +98,7 @@ std::string mitsuba_description(ForeignScene& scene);
 std::string pbrt_description(ForeignScene& scene);
 std::string blender_description(ForeignScene& scene);
 
+/// Returns the direction of a point of an image of latitudes and longitudes, see ForeignScene::sky_image().
+V3f latitude_longitude_direction(float x, float y);
+
 }  // namespace interflect::detail

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "interflect/exports/records/solve_report.h"
+#include "interflect/scene/sky/model_parameters.h"
 
 namespace interflect::detail {
 
@@ -46,10 +47,6 @@ Json list_of(const std::vector<float>& numbers) {
     for (const float x : numbers) json.push_back(shortest_number(x));
     return json;
 }
-
-/// Parameters of a sky model, in the order of the file.
-constexpr std::array<float SkyModel::*, 6> model_parameters = {&SkyModel::a, &SkyModel::b, &SkyModel::c,
-                                                               &SkyModel::d, &SkyModel::e, &SkyModel::g};
 
 Json record_of(const SkyDome& sky) {
     Json model = Json::array();

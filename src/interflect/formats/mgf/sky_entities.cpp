@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "interflect/formats/build/texture_files.h"
 #include "interflect/formats/mgf/reader.h"
 #include "interflect/scene/core/web_angles.h"
+#include "interflect/scene/sky/model_parameters.h"
 
 namespace interflect::detail {
 
@@ -21,9 +21,6 @@ void require_arguments(MgfWords words, std::size_t fewest, std::size_t most, con
     throw MgfFault(
         fmt::format("expected 'light sky {} {}', found {} arguments after 'sky'", words[0], usage, words.size()));
 }
-
-constexpr std::array<float SkyModel::*, 6> model_parameters = {&SkyModel::a, &SkyModel::b, &SkyModel::c,
-                                                               &SkyModel::d, &SkyModel::e, &SkyModel::g};
 
 }  // namespace
 
