@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "interflect/render/render_elements.h"
@@ -16,22 +18,21 @@ namespace {
 
 using namespace testing_support;
 
+constexpr int blocks = 6;  // along each side of a picture
+
+/// Returns the sum of luminance in each block of a picture of 72 x 48 pixels.
+std::vector<double> sums_of_blocks(const Image& image) {
+    std::vector<double> sums(blocks * blocks, 0);
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 72; ++x)
+            sums[static_cast<std::size_t>(y * blocks / 48 * blocks + x * blocks / 72)] +=
+                luminance(image.pixels[static_cast<std::size_t>(y * 72 + x)]);
+    return sums;
+}
+
 /// A room with a window, a lamp, a spot light and the sun. With the hierarchy and importance, the mean and blocks of
 /// the picture agree with path tracing. Shading is flat, so interpolation is not tested.
-struct Hierarchy {
-    const char* name;
-    const char* method;
-    RefinementCriterion criterion;
-};
-void PrintTo(const Hierarchy& hierarchy, std::ostream* out) { *out << hierarchy.name; }
-class LightSourcesOnTheHierarchy : public testing::TestWithParam<Hierarchy> {};
-INSTANTIATE_TEST_SUITE_P(All, LightSourcesOnTheHierarchy,
-                         testing::Values(Hierarchy{"ihsrr_by_variance", "ihsrr", RefinementCriterion::variance},
-                                         Hierarchy{"ihsrr_by_power", "ihsrr", RefinementCriterion::power},
-                                         Hierarchy{"hwdrs", "hwdrs", RefinementCriterion::power}),
-                         testing::PrintToStringParamName());
-
-TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
+TEST(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
     Scene scene = room_with_window({300, 350, 420});
     scene.materials[0].reflectance = {0.6f, 0.5f, 0.4f};
     scene.luminaires.push_back({"lamp", 0, PointLight{{3.1f, 2.2f, 2.4f}, {60, 60, 40}}});
@@ -44,32 +45,29 @@ TEST_P(LightSourcesOnTheHierarchy, AgreeWithPathTracing) {
     scene.luminaires.push_back({"sun", 0, DirectionalLight{{2, 0.3f, -1}, {2000, 1900, 1500}}});
     const RayCaster ray_caster(scene);
     const View view{"room", {4.7, 3.7, 1.6}, {0.5, 1.2, 0.9}, {0, 0, 1}, 70};
-    SolveOptions options{.method = find_method(GetParam().method)};
-    options.refinement.criterion = GetParam().criterion;
-    options.views = {{view, 1, 1.5f, 48}};
-    options.limits.rays = 4'000'000;
-    const Solution solution = solve(scene, ray_caster, options);
-    const PictureOptions picture{.width = 72, .height = 48, .shading = Shading::flat};
-    const Image found = render(scene, *solution.forest, ray_caster, view, solution.irradiance, picture).image;
     const PictureOptions paths{.width = 72, .height = 48, .shading = Shading::path, .samples = 512};
-    const Rendering traced = render(scene, ray_caster, view, paths);
-    constexpr int blocks = 6;
-    std::vector<double> mine(blocks * blocks, 0), reference(blocks * blocks, 0);
-    for (int y = 0; y < 48; ++y)
-        for (int x = 0; x < 72; ++x) {
-            const auto block = static_cast<std::size_t>(y * blocks / 48 * blocks + x * blocks / 72);
-            const auto pixel = static_cast<std::size_t>(y * 72 + x);
-            mine[block] += luminance(found.pixels[pixel]);
-            reference[block] += luminance(traced.image.pixels[pixel]);
+    const std::vector<double> reference = sums_of_blocks(render(scene, ray_caster, view, paths).image);
+    for (const auto& [method, criterion] : {std::pair{"ihsrr", RefinementCriterion::variance},
+                                            {"ihsrr", RefinementCriterion::power},
+                                            {"hwdrs", RefinementCriterion::power}}) {
+        SCOPED_TRACE(std::string(method) + (criterion == RefinementCriterion::variance ? " by variance" : " by power"));
+        SolveOptions options{.method = find_method(method)};
+        options.refinement.criterion = criterion;
+        options.views = {{view, 1, 1.5f, 48}};
+        options.limits.rays = 4'000'000;
+        const Solution solution = solve(scene, ray_caster, options);
+        const PictureOptions picture{.width = 72, .height = 48, .shading = Shading::flat};
+        const std::vector<double> found =
+            sums_of_blocks(render(scene, *solution.forest, ray_caster, view, solution.irradiance, picture).image);
+        double sum = 0, expected = 0, squares = 0;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            sum += found[i];
+            expected += reference[i];
+            squares += std::pow(found[i] / reference[i] - 1, 2) / static_cast<double>(found.size());
         }
-    double sum = 0, expected = 0, squares = 0;
-    for (std::size_t i = 0; i < mine.size(); ++i) {
-        sum += mine[i];
-        expected += reference[i];
-        squares += std::pow(mine[i] / reference[i] - 1, 2) / static_cast<double>(mine.size());
+        EXPECT_NEAR(sum / expected, 1, 0.01);
+        EXPECT_LT(std::sqrt(squares), 0.04);
     }
-    EXPECT_NEAR(sum / expected, 1, 0.01);
-    EXPECT_LT(std::sqrt(squares), 0.04);
 }
 
 }  // namespace
