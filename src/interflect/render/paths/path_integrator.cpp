@@ -172,8 +172,8 @@ PathIntegrator::SurfaceHit PathIntegrator::surface_hit(const Hit& hit, const Ray
 
 void PathIntegrator::record_first_hit(const SurfaceHit& hit, const Path& path) {
     FirstHit& first_hit = first_hits_[path.sample];
-    // find_surfaces() appends the paths behind panes and in mirrors, so their hits are recorded later. Behind a clear
-    // pane or in a pure mirror, sets_first_hit remains set, and the hit replaces that of the pane or mirror.
+    // find_surfaces() appends the paths behind panes and in mirrors, so their hits are recorded later. If the pane is
+    // clear or the mirror pure, sets_first_hit remains set, and the later hit replaces its hit.
     if (vertex_ == 1 && path.sets_first_hit) {
         first_hit = {.albedo = RgbD(hit.reflectance),
                      .normal = Imath::V3d(plan_.scene.geometry[hit.patch].normal()),

@@ -15,8 +15,8 @@ class BounceBudget {
   public:
     BounceBudget() = default;
     /// @param previous_total   total_unshot() of the previous pass; 0: unknown.
-    /// @param separates_first  Whether the first bounce is never the last one. Its light is then apart from that of
-    ///                         random walks. Requires two rays, so a pass of one ray traces two.
+    /// @param separates_first  Whether the first bounce must not be the last one, so that its light contains no light
+    ///                         of random walks. This needs two rays, so a pass of one ray traces two.
     BounceBudget(std::int64_t rays, double previous_total, bool separates_first = false);
 
     /// Returns the rays of the next bounce. @param unshot  Unshot power, relative to that of the first bounce.

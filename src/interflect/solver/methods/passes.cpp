@@ -287,8 +287,8 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     const BounceRays rays = pass.budget.next(pass.relative_unshot(bounce, experimental.beta));
     if (rays.expected == 0) return false;
     bounce.plan.rays = rays.started;
-    // Trace the rays, which may create elements. In the last bounce, random walks reflect them further, so more rays
-    // are expected than started
+    // Trace the rays, which may create elements. Random walks reflect those of the last bounce further, so more rays
+    // are expected than started. Derived classes trace other bounces in their own way
     TransportStep step = pass.make_step(state, std::move(bounce.plan));
     const std::uint32_t old_elements = state.light.forest->size();
     Received received =

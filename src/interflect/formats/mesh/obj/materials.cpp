@@ -237,6 +237,7 @@ std::uint32_t ObjMaterials::add_material(const std::string& name, const Definiti
              fmt::format("reflectance (Kd), or its sum with transmittance (d, Tr), above {} is reduced",
                          largest_reflectance),
              definition.location);
+    // The fault begins with "exitance"
     if (const std::string fault = exitance_fault(material.exitance); !fault.empty())
         throw InputError(*definition.location.file, definition.location.line,
                          fmt::format("material '{}': the {}", name, fault));
